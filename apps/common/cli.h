@@ -1,0 +1,63 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <string>
+
+namespace TCLAP
+{
+class CmdLine;
+}
+
+/** What every tool of the project shares: one way to end, to fail, to be interrupted and to show
+ *  progress. stdout carries results only; all of this goes to stderr. */
+namespace delio::cli
+{
+constexpr int kExitSuccess = 0;
+constexpr int kExitFailedRun = 1;
+constexpr int kExitBadCommandLine = 2;
+constexpr int kExitInterrupted = 130;
+
+/** Runs a tool: parses the command line into `cmd` (whose arguments the caller has added), then
+ *  calls `body`, and turns every ending into the contract's exit code and one line on stderr:
+ *  what() of a delio::Error, the first line of any other exception. */
+int run(
+    TCLAP::CmdLine& cmd, int argc, const char* const* argv, const bool& verbose,
+    const std::function<int()>& body);
+
+/** From now on Ctrl-C (SIGINT, SIGTERM) does not end the process but makes interrupted() true. */
+void catchInterrupts();
+bool interrupted();
+
+/** One line on stderr: `TOOL: warning: TEXT`. */
+void warn(const std::string& text);
+
+/** One line on stderr: `TOOL: TEXT`. */
+void inform(const std::string& text);
+
+/** Throws Error if `path` exists and `force` is false; the message names --force. */
+void refuseExisting(const std::string& path, bool force);
+
+/** A bar with the time left on a terminal; otherwise a plain line every ten percent. */
+class Progress
+{
+   public:
+    /** `total` of 0: unknown; only counts are shown then. */
+    Progress(std::string what, std::size_t total);
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    void update(std::size_t done);
+    /** Ends the line. Called by the destructor too. */
+    void finish();
+
+   private:
+    std::string what_;
+    std::size_t total_;
+    bool terminal_;
+    bool finished_ = false;
+    double begin_s_;
+    double lastShown_s_ = -1;
+    std::size_t nextTenth_ = 1;
+};
+}  // namespace delio::cli

@@ -1,0 +1,24 @@
+#pragma once
+#include <optional>
+#include <string>
+
+namespace delio::io
+{
+/** What OUT.meta.yaml says of the drive in OUT.rawlog. */
+struct DriveMeta
+{
+    std::string sensorModel = "unknown";  //!< e.g. HDL-64E
+    std::string source = "unknown";       //!< kitti-odometry | kitti-raw | synthetic
+    bool motionCompensated = true;
+    double verticalCorrectionDeg = 0;  //!< to be added to every point's vertical angle
+    double epoch_s = 0;                //!< Unix time of second 0 of times.txt
+    std::string generator;             //!< program and version that wrote the rawlog
+};
+
+/** `DRIVE.rawlog` and `.meta.yaml` give `DRIVE.meta.yaml`. */
+std::string sidecarPath(const std::string& rawlogPath, const std::string& extension);
+
+/** The meta.yaml beside a rawlog; nothing if there is none; Error if it cannot be understood. */
+std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath);
+void writeDriveMeta(const DriveMeta& meta, const std::string& rawlogPath);
+}  // namespace delio::io

@@ -1,0 +1,46 @@
+#pragma once
+#include <mrpt/poses/CPose3D.h>
+
+#include <string>
+#include <vector>
+
+namespace delio::io
+{
+/** Poses along a drive, in order of time: each maps the coordinates of the moving frame to those
+ *  of the frame of the first pose (or of the world, if the file says so). */
+struct Trajectory
+{
+    std::vector<mrpt::poses::CPose3D> poses;
+    std::vector<double> stamps_s;  //!< one per pose, or empty where the file has none (KITTI)
+};
+
+/** Reads a pose file: KITTI (12 numbers a line, row-major 3x4) or TUM (t x y z qx qy qz qw; lines
+ *  that start with '#' are skipped), told apart by the count of numbers. Rotations are
+ *  orthonormalised. Trailing spaces, empty lines and CR are accepted.
+ *  Throws Error with file and line for anything else: missing or empty file, wrong count of
+ *  numbers, text, NaN, a 3x3 part that is no rotation (off by more than 1e-2), stamps that do not
+ *  rise. */
+Trajectory readTrajectory(const std::string& path);
+
+/** Writes 12 numbers a line with the digits that give the same doubles back. */
+void writeKitti(const Trajectory& trajectory, const std::string& path);
+
+/** Writes `t x y z qx qy qz qw`; needs stamps. */
+void writeTum(const Trajectory& trajectory, const std::string& path);
+
+/** Reads times.txt: one number of seconds a line, as KITTI has it. Throws Error as above. */
+std::vector<double> readTimes(const std::string& path);
+
+/** KITTI's calib.txt: `Tr`, which maps LiDAR coordinates to cam0 coordinates. */
+struct Calibration
+{
+    bool hasTr = false;
+    mrpt::poses::CPose3D Tr;
+};
+
+/** Throws Error for a missing file or a malformed Tr; a file without Tr gives hasTr = false. */
+Calibration readCalibration(const std::string& path);
+
+/** Tr * T * Tr^-1 for each pose: a trajectory of the LiDAR as one of cam0. */
+Trajectory lidarToCam0(const Trajectory& lidar, const mrpt::poses::CPose3D& Tr);
+}  // namespace delio::io

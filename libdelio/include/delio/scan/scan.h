@@ -1,0 +1,27 @@
+#pragma once
+#include <mrpt/maps/CPointsMap.h>
+#include <mrpt/poses/CPose3D.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace delio
+{
+/** One LiDAR observation as its source gives it: nothing corrected, nothing dropped. */
+struct Scan
+{
+    std::size_t index = 0;  //!< counts the observations of the chosen label, from 0
+    double stamp_s = 0;     //!< seconds, as in times.txt (Unix seconds where there is no times.txt)
+
+    /** Metres, in the sensor's frame (x forward, y left, z up), in the order of the sensor. NaN
+     *  points may be among them. A CPointsMapXYZI where the source has intensities. */
+    mrpt::maps::CPointsMap::Ptr points;
+
+    /** Ring (laser) of each point where the source knows it, otherwise empty. */
+    std::vector<std::uint16_t> rings;
+
+    /** Pose of the sensor in the vehicle: maps sensor coordinates to vehicle coordinates. */
+    mrpt::poses::CPose3D sensorPose;
+};
+}  // namespace delio

@@ -1,0 +1,50 @@
+#include "command.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "test_data.h"
+
+namespace delio::test
+{
+CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments)
+{
+    const std::filesystem::path own = std::filesystem::path(DELIO_TOOLS) / tool;
+    const std::string program = std::filesystem::exists(own) ? own.string() : tool;
+    const TemporaryFolder folder;
+    const std::string out = folder / "out", err = folder / "err";
+
+    std::vector<std::string> words = {program};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (auto& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+
+    std::fflush(nullptr);
+    const pid_t child = fork();
+    if (child == 0)
+    {
+        if (!freopen("/dev/null", "r", stdin) || !freopen(out.c_str(), "w", stdout) ||
+            !freopen(err.c_str(), "w", stderr))
+            _exit(126);
+        execvp(argv[0], argv.data());
+        _exit(127);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    CommandResult result;
+    result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    result.out = readText(out);
+    result.err = readText(err);
+    return result;
+}
+
+bool isOneLine(const std::string& err)
+{
+    return !err.empty() && err.back() == '\n' && std::count(err.begin(), err.end(), '\n') == 1;
+}
+}  // namespace delio::test
