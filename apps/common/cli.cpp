@@ -1,9 +1,9 @@
 #include "cli.h"
 
+#include <mrpt/3rdparty/tclap/CmdLine.h>
 #include <mrpt/core/Clock.h>
 #include <mrpt/system/datetime.h>
 #include <mrpt/system/progress.h>
-#include <mrpt/3rdparty/tclap/CmdLine.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,52 +11,45 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <vector>
 
 #include "delio/error.h"
 
-namespace delio::cli
-{
-namespace
-{
+namespace delio::cli {
+namespace {
 // The one piece of state that a signal handler can reach.
 volatile std::sig_atomic_t interruptRequested = 0;
 
-void say(const std::string& text)
-{
+void say(const std::string& text) {
     std::cerr << program_invocation_short_name << ": " << text << std::endl;
 }
+
+/** TCLAP's own help, but a version and a failure in one plain line. */
+class OneLineOutput : public TCLAP::StdOutput {
+ public:
+    void version(TCLAP::CmdLineInterface& cmd) override {
+        std::cout << program_invocation_short_name << " " << cmd.getVersion() << std::endl;
+    }
+    void failure(TCLAP::CmdLineInterface&, TCLAP::ArgException& e) override {
+        failed = true;
+        const bool named = e.argId().find_first_not_of(" ") != std::string::npos;
+        say(e.error() + (named ? " (" + e.argId() + ")" : "") + "; see --help");
+    }
+    bool failed = false;
+};
 }  // namespace
 
-int run(
-    TCLAP::CmdLine& cmd, int argc, const char* const* argv, const bool& verbose,
-    const std::function<int()>& body)
-{
-    cmd.setExceptionHandling(false);
-    try
-    {
-        cmd.parse(argc, argv);
-    }
-    catch (const TCLAP::ExitException& e)  // --help and --version
-    {
-        return e.getExitStatus();
-    }
-    catch (const TCLAP::ArgException& e)
-    {
-        std::string line = e.error();
-        if (e.argId() != " " && !e.argId().empty()) line += " (" + e.argId() + ")";
-        say(line + "; see --help");
-        return kExitBadCommandLine;
-    }
-    try
-    {
+int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, const bool& verbose,
+        const std::function<int()>& body) {
+    OneLineOutput output;
+    cmd.setOutput(&output);
+    std::vector<const char*> words(argv, argv + argc);
+    if (!cmd.parse(argc, words.data())) return output.failed ? kExitBadCommandLine : kExitSuccess;
+    try {
         return body();
-    }
-    catch (const Error& e)
-    {
+    } catch (const Error& e) {
         say(e.what());
-    }
-    catch (const std::exception& e)
-    {
+    } catch (const std::exception& e) {
         // MRPT's exceptions carry a stack trace below their first line.
         const std::string what = e.what();
         say(verbose ? what : what.substr(0, what.find('\n')));
@@ -64,8 +57,7 @@ int run(
     return kExitFailedRun;
 }
 
-void catchInterrupts()
-{
+void catchInterrupts() {
     const auto handler = [](int) { interruptRequested = 1; };
     std::signal(SIGINT, handler);
     std::signal(SIGTERM, handler);
@@ -77,8 +69,7 @@ void warn(const std::string& text) { say("warning: " + text); }
 
 void inform(const std::string& text) { say(text); }
 
-void refuseExisting(const std::string& path, bool force)
-{
+void refuseExisting(const std::string& path, bool force) {
     if (!force && std::filesystem::exists(path))
         throw Error("'" + path + "' exists; choose another name, or overwrite it with --force");
 }
@@ -87,41 +78,33 @@ Progress::Progress(std::string what, std::size_t total)
     : what_(std::move(what)),
       total_(total),
       terminal_(isatty(STDERR_FILENO) != 0),
-      begin_s_(mrpt::Clock::nowDouble())
-{
-}
+      begin_s_(mrpt::Clock::nowDouble()) {}
 
 Progress::~Progress() { finish(); }
 
-void Progress::update(std::size_t done)
-{
+void Progress::update(std::size_t done) {
     const double now = mrpt::Clock::nowDouble();
     const double elapsed = now - begin_s_;
     const std::string count =
         total_ ? std::to_string(done) + "/" + std::to_string(total_) : std::to_string(done);
-    if (terminal_)
-    {
+    if (terminal_) {
         if (now - lastShown_s_ < 0.1 && done != total_) return;
         lastShown_s_ = now;
         std::string line = "\r" + what_ + " " + count;
-        if (total_ && done)
-        {
+        if (total_ && done) {
             const double fraction = static_cast<double>(done) / static_cast<double>(total_);
             const double left = elapsed * (1 - fraction) / fraction;
             line += " " + mrpt::system::progress(fraction, 30) + " ETA " +
                     mrpt::system::formatTimeInterval(left);
         }
         std::cerr << line << "   " << std::flush;
-    }
-    else if (total_ && done * 10 >= nextTenth_ * total_)
-    {
+    } else if (total_ && done * 10 >= nextTenth_ * total_) {
         nextTenth_ = done * 10 / total_ + 1;
         inform(what_ + " " + count);
     }
 }
 
-void Progress::finish()
-{
+void Progress::finish() {
     if (terminal_ && !finished_ && lastShown_s_ >= 0) std::cerr << std::endl;
     finished_ = true;
 }

@@ -3,15 +3,13 @@
 #include <functional>
 #include <string>
 
-namespace TCLAP
-{
+namespace TCLAP {
 class CmdLine;
 }
 
 /** What every tool of the project shares: one way to end, to fail, to be interrupted and to show
  *  progress. stdout carries results only; all of this goes to stderr. */
-namespace delio::cli
-{
+namespace delio::cli {
 constexpr int kExitSuccess = 0;
 constexpr int kExitFailedRun = 1;
 constexpr int kExitBadCommandLine = 2;
@@ -20,9 +18,8 @@ constexpr int kExitInterrupted = 130;
 /** Runs a tool: parses the command line into `cmd` (whose arguments the caller has added), then
  *  calls `body`, and turns every ending into the contract's exit code and one line on stderr:
  *  what() of a delio::Error, the first line of any other exception. */
-int run(
-    TCLAP::CmdLine& cmd, int argc, const char* const* argv, const bool& verbose,
-    const std::function<int()>& body);
+int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, const bool& verbose,
+        const std::function<int()>& body);
 
 /** From now on Ctrl-C (SIGINT, SIGTERM) does not end the process but makes interrupted() true. */
 void catchInterrupts();
@@ -38,9 +35,8 @@ void inform(const std::string& text);
 void refuseExisting(const std::string& path, bool force);
 
 /** A bar with the time left on a terminal; otherwise a plain line every ten percent. */
-class Progress
-{
-   public:
+class Progress {
+ public:
     /** `total` of 0: unknown; only counts are shown then. */
     Progress(std::string what, std::size_t total);
     ~Progress();
@@ -51,7 +47,7 @@ class Progress
     /** Ends the line. Called by the destructor too. */
     void finish();
 
-   private:
+ private:
     std::string what_;
     std::size_t total_;
     bool terminal_;

@@ -9,10 +9,8 @@
 
 #include "test_data.h"
 
-namespace delio::test
-{
-CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments)
-{
+namespace delio::test {
+CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments) {
     const std::filesystem::path own = std::filesystem::path(DELIO_TOOLS) / tool;
     const std::string program = std::filesystem::exists(own) ? own.string() : tool;
     const TemporaryFolder folder;
@@ -26,8 +24,7 @@ CommandResult runTool(const std::string& tool, const std::vector<std::string>& a
 
     std::fflush(nullptr);
     const pid_t child = fork();
-    if (child == 0)
-    {
+    if (child == 0) {
         if (!freopen("/dev/null", "r", stdin) || !freopen(out.c_str(), "w", stdout) ||
             !freopen(err.c_str(), "w", stderr))
             _exit(126);
@@ -43,8 +40,7 @@ CommandResult runTool(const std::string& tool, const std::vector<std::string>& a
     return result;
 }
 
-bool isOneLine(const std::string& err)
-{
+bool isOneLine(const std::string& err) {
     return !err.empty() && err.back() == '\n' && std::count(err.begin(), err.end(), '\n') == 1;
 }
 }  // namespace delio::test

@@ -2,10 +2,8 @@
 #include <string>
 #include <vector>
 
-namespace delio::test
-{
-struct CommandResult
-{
+namespace delio::test {
+struct CommandResult {
     int exitCode = -1;  //!< 128 + signal if a signal ended it
     std::string out;
     std::string err;

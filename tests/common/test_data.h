@@ -5,8 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace delio::test
-{
+namespace delio::test {
 /** Where the real data lies: DELIO_DATA, or ../shared/data beside the project. */
 std::filesystem::path dataFolder();
 
@@ -15,9 +14,8 @@ bool haveData(const std::string& part);
 bool dataIsRequired();
 
 /** A folder that is gone when the test is over. */
-class TemporaryFolder
-{
-   public:
+class TemporaryFolder {
+ public:
     TemporaryFolder();
     ~TemporaryFolder();
     TemporaryFolder(const TemporaryFolder&) = delete;
@@ -25,7 +23,7 @@ class TemporaryFolder
     std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
     const std::filesystem::path& path() const { return path_; }
 
-   private:
+ private:
     std::filesystem::path path_;
 };
 
@@ -35,10 +33,9 @@ std::string readText(const std::filesystem::path& path);
 
 /** First line of a test that needs `part` of the real data, e.g. "kitti/00_first16". */
 #define DELIO_NEED_DATA(part)                                                                   \
-    if (!delio::test::haveData(part))                                                           \
-    {                                                                                           \
-        const std::string missing = (delio::test::dataFolder() / (part)).string() +             \
-                                    " is not there (set DELIO_DATA)";                           \
+    if (!delio::test::haveData(part)) {                                                         \
+        const std::string missing =                                                             \
+            (delio::test::dataFolder() / (part)).string() + " is not there (set DELIO_DATA)";   \
         if (delio::test::dataIsRequired()) FAIL() << missing << " and DELIO_REQUIRE_DATA is 1"; \
         GTEST_SKIP() << missing;                                                                \
     }

@@ -8,32 +8,24 @@
 
 #include "delio/error.h"
 
-namespace delio::io
-{
+namespace delio::io {
 namespace fs = std::filesystem;
 
-void replaceFile(const std::string& path, const std::function<bool(const std::string&)>& write)
-{
+void replaceFile(const std::string& path, const std::function<bool(const std::string&)>& write) {
     const fs::path target(path);
     const fs::path temporary = target.parent_path() / (".partial-" + target.filename().string());
-    const auto giveUp = [&](const std::string& why)
-    {
+    const auto giveUp = [&](const std::string& why) {
         std::error_code ignored;
         fs::remove(temporary, ignored);
         throw Error("cannot write '" + path + "': " + why);
     };
-    try
-    {
+    try {
         if (!write(temporary.string())) giveUp("the disk is full or the folder is not writable");
-    }
-    catch (const Error&)
-    {
+    } catch (const Error&) {
         std::error_code ignored;
         fs::remove(temporary, ignored);
         throw;
-    }
-    catch (const std::exception& e)
-    {
+    } catch (const std::exception& e) {
         const std::string what = e.what();
         giveUp(what.substr(0, what.find('\n')));
     }
@@ -42,18 +34,14 @@ void replaceFile(const std::string& path, const std::function<bool(const std::st
     if (fault) giveUp(fault.message());
 }
 
-void replaceTextFile(const std::string& path, const std::function<void(std::ostream&)>& write)
-{
-    replaceFile(
-        path,
-        [&](const std::string& temporary)
-        {
-            std::ofstream out(temporary, std::ios::binary);
-            if (!out) throw Error("cannot write '" + path + "': " + std::strerror(errno));
-            out.imbue(std::locale::classic());
-            write(out);
-            out.close();
-            return static_cast<bool>(out);
-        });
+void replaceTextFile(const std::string& path, const std::function<void(std::ostream&)>& write) {
+    replaceFile(path, [&](const std::string& temporary) {
+        std::ofstream out(temporary, std::ios::binary);
+        if (!out) throw Error("cannot write '" + path + "': " + std::strerror(errno));
+        out.imbue(std::locale::classic());
+        write(out);
+        out.close();
+        return static_cast<bool>(out);
+    });
 }
 }  // namespace delio::io

@@ -11,26 +11,21 @@
 #include "delio/error.h"
 #include "delio/io/output_file.h"
 
-namespace delio::io
-{
+namespace delio::io {
 using mrpt::poses::CPose3D;
 
-namespace
-{
-std::string at(const std::string& path, std::size_t line)
-{
+namespace {
+std::string at(const std::string& path, std::size_t line) {
     return "'" + path + "', line " + std::to_string(line);
 }
 
 /** The numbers of one line; throws for anything that is not one. */
-std::vector<double> numbersOf(const std::string& text, const std::string& where)
-{
+std::vector<double> numbersOf(const std::string& text, const std::string& where) {
     std::vector<double> numbers;
     const char* p = text.data();
     const char* const end = p + text.size();
     const auto isSpace = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == ','; };
-    while (true)
-    {
+    while (true) {
         while (p != end && isSpace(*p)) ++p;
         if (p == end) return numbers;
         if (*p == '+') ++p;
@@ -38,7 +33,8 @@ std::vector<double> numbersOf(const std::string& text, const std::string& where)
         const auto result = std::from_chars(p, end, value);
         if (result.ec != std::errc{} || (result.ptr != end && !isSpace(*result.ptr)) ||
             !std::isfinite(value))
-            throw Error(where + ": not a finite number at '" + std::string(p, end).substr(0, 20) + "'");
+            throw Error(where + ": not a finite number at '" + std::string(p, end).substr(0, 20) +
+                        "'");
         numbers.push_back(value);
         p = result.ptr;
     }
@@ -46,14 +42,12 @@ std::vector<double> numbersOf(const std::string& text, const std::string& where)
 
 /** Calls `use(numbers, where)` for every line that holds any; throws if there is none. */
 template <typename Use>
-void forEachLine(const std::string& path, const Use& use)
-{
+void forEachLine(const std::string& path, const Use& use) {
     std::ifstream in(path);
     if (!in) throw Error("cannot read '" + path + "': no such file, or not readable");
     std::string text;
     bool any = false;
-    for (std::size_t line = 1; std::getline(in, text); ++line)
-    {
+    for (std::size_t line = 1; std::getline(in, text); ++line) {
         if (!text.empty() && text[0] == '#') continue;
         const std::string where = at(path, line);
         const auto numbers = numbersOf(text, where);
@@ -65,12 +59,11 @@ void forEachLine(const std::string& path, const Use& use)
     if (!any) throw Error("'" + path + "' is empty: no line with numbers in it");
 }
 
-CPose3D poseOf3x4(const std::vector<double>& numbers, std::size_t first, const std::string& where)
-{
+CPose3D poseOf3x4(const std::vector<double>& numbers, std::size_t first, const std::string& where) {
     using Rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
     const Rows m = Eigen::Map<const Rows>(numbers.data() + first);
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(
-        m.leftCols<3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.leftCols<3>(),
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
     if (R.determinant() < 0 || (R - m.leftCols<3>()).cwiseAbs().maxCoeff() > 1e-2)
         throw Error(where + ": the 3x3 part of the pose is not a rotation");
@@ -82,9 +75,8 @@ CPose3D poseOf3x4(const std::vector<double>& numbers, std::size_t first, const s
     return pose;
 }
 
-void appendTum(
-    Trajectory& trajectory, const std::vector<double>& numbers, const std::string& where)
-{
+void appendTum(Trajectory& trajectory, const std::vector<double>& numbers,
+               const std::string& where) {
     if (!trajectory.stamps_s.empty() && numbers[0] <= trajectory.stamps_s.back())
         throw Error(where + ": the stamps do not rise; sort the file by time");
     const Eigen::Quaterniond q(numbers[7], numbers[4], numbers[5], numbers[6]);
@@ -98,12 +90,10 @@ void appendTum(
     trajectory.poses.push_back(pose);
 }
 
-void writeNumbers(std::ostream& out, const std::vector<double>& numbers)
-{
+void writeNumbers(std::ostream& out, const std::vector<double>& numbers) {
     char text[64];
     const char* separator = "";
-    for (const double number : numbers)
-    {
+    for (const double number : numbers) {
         const auto end = std::to_chars(text, text + sizeof(text), number).ptr;
         out << separator;
         out.write(text, end - text);
@@ -113,90 +103,67 @@ void writeNumbers(std::ostream& out, const std::vector<double>& numbers)
 }
 }  // namespace
 
-Trajectory readTrajectory(const std::string& path)
-{
+Trajectory readTrajectory(const std::string& path) {
     Trajectory trajectory;
     std::size_t columns = 0;
-    forEachLine(
-        path,
-        [&](const std::vector<double>& numbers, const std::string& where)
-        {
-            if (columns == 0) columns = numbers.size();
-            if (numbers.size() != columns || (columns != 12 && columns != 8))
-                throw Error(
-                    where + ": " + std::to_string(numbers.size()) +
-                    " numbers; a KITTI pose has 12 on every line, a TUM pose 8");
-            if (columns == 12)
-                trajectory.poses.push_back(poseOf3x4(numbers, 0, where));
-            else
-                appendTum(trajectory, numbers, where);
-        });
+    forEachLine(path, [&](const std::vector<double>& numbers, const std::string& where) {
+        if (columns == 0) columns = numbers.size();
+        if (numbers.size() != columns || (columns != 12 && columns != 8))
+            throw Error(where + ": " + std::to_string(numbers.size()) +
+                        " numbers; a KITTI pose has 12 on every line, a TUM pose 8");
+        if (columns == 12)
+            trajectory.poses.push_back(poseOf3x4(numbers, 0, where));
+        else
+            appendTum(trajectory, numbers, where);
+    });
     return trajectory;
 }
 
-void writeKitti(const Trajectory& trajectory, const std::string& path)
-{
-    replaceTextFile(
-        path,
-        [&](std::ostream& out)
-        {
-            for (const auto& pose : trajectory.poses)
-            {
-                const auto& R = pose.getRotationMatrix();
-                std::vector<double> row;
-                for (int i = 0; i < 3; ++i)
-                {
-                    for (int j = 0; j < 3; ++j) row.push_back(R(i, j));
-                    row.push_back(pose[static_cast<unsigned>(i)]);
-                }
-                writeNumbers(out, row);
+void writeKitti(const Trajectory& trajectory, const std::string& path) {
+    replaceTextFile(path, [&](std::ostream& out) {
+        for (const auto& pose : trajectory.poses) {
+            const auto& R = pose.getRotationMatrix();
+            std::vector<double> row;
+            for (int i = 0; i < 3; ++i) {
+                for (int j = 0; j < 3; ++j) row.push_back(R(i, j));
+                row.push_back(pose[static_cast<unsigned>(i)]);
             }
-        });
+            writeNumbers(out, row);
+        }
+    });
 }
 
-void writeTum(const Trajectory& trajectory, const std::string& path)
-{
+void writeTum(const Trajectory& trajectory, const std::string& path) {
     if (trajectory.stamps_s.size() != trajectory.poses.size())
         throw Error("cannot write '" + path + "': the trajectory has no time for every pose");
-    replaceTextFile(
-        path,
-        [&](std::ostream& out)
-        {
-            for (std::size_t i = 0; i < trajectory.poses.size(); ++i)
-            {
-                const auto& pose = trajectory.poses[i];
-                mrpt::math::CQuaternionDouble q;
-                pose.getAsQuaternion(q);
-                writeNumbers(
-                    out, {trajectory.stamps_s[i], pose.x(), pose.y(), pose.z(), q.x(), q.y(), q.z(),
-                          q.r()});
-            }
-        });
+    replaceTextFile(path, [&](std::ostream& out) {
+        for (std::size_t i = 0; i < trajectory.poses.size(); ++i) {
+            const auto& pose = trajectory.poses[i];
+            mrpt::math::CQuaternionDouble q;
+            pose.getAsQuaternion(q);
+            writeNumbers(out, {trajectory.stamps_s[i], pose.x(), pose.y(), pose.z(), q.x(), q.y(),
+                               q.z(), q.r()});
+        }
+    });
 }
 
-std::vector<double> readTimes(const std::string& path)
-{
+std::vector<double> readTimes(const std::string& path) {
     std::vector<double> times;
-    forEachLine(
-        path,
-        [&](const std::vector<double>& numbers, const std::string& where)
-        {
-            if (numbers.size() != 1) throw Error(where + ": one time in seconds is wanted");
-            if (!times.empty() && numbers[0] < times.back())
-                throw Error(where + ": the times fall; they must be in order");
-            times.push_back(numbers[0]);
-        });
+    forEachLine(path, [&](const std::vector<double>& numbers, const std::string& where) {
+        if (numbers.size() != 1) throw Error(where + ": one time in seconds is wanted");
+        if (!times.empty() && numbers[0] < times.back())
+            throw Error(where + ": the times fall; they must be in order");
+        times.push_back(numbers[0]);
+    });
     return times;
 }
 
-Calibration readCalibration(const std::string& path)
-{
+Calibration readCalibration(const std::string& path) {
     std::ifstream in(path);
     if (!in) throw Error("cannot read '" + path + "': no such file, or not readable");
     Calibration calibration;
     std::string text;
-    for (std::size_t line = 1; std::getline(in, text); ++line)
-    {
+    for (std::size_t line = 1; std::getline(in, text); ++line) {
         const std::string where = at(path, line);
         // KITTI odometry writes `Tr:`, its development kit `Tr_velo_to_cam:`.
         const auto colon = text.find(':');
@@ -210,8 +177,7 @@ Calibration readCalibration(const std::string& path)
     return calibration;
 }
 
-Trajectory lidarToCam0(const Trajectory& lidar, const CPose3D& Tr)
-{
+Trajectory lidarToCam0(const Trajectory& lidar, const CPose3D& Tr) {
     Trajectory cam0 = lidar;
     for (auto& pose : cam0.poses) pose = Tr + pose + (-Tr);
     return cam0;

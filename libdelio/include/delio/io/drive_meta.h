@@ -2,11 +2,9 @@
 #include <optional>
 #include <string>
 
-namespace delio::io
-{
+namespace delio::io {
 /** What OUT.meta.yaml says of the drive in OUT.rawlog. */
-struct DriveMeta
-{
+struct DriveMeta {
     std::string sensorModel = "unknown";  //!< e.g. HDL-64E
     std::string source = "unknown";       //!< kitti-odometry | kitti-raw | synthetic
     bool motionCompensated = true;

@@ -3,8 +3,7 @@
 #include <iosfwd>
 #include <string>
 
-namespace delio::io
-{
+namespace delio::io {
 /** Lets `write` fill a file under a temporary name beside `path` (same extension, so that writers
  *  that look at it work), then renames it to `path`: what stands under `path` is always whole. If
  *  `write` throws, returns false or the disk is full, the temporary is removed, and Error names

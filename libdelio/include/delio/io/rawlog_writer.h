@@ -8,8 +8,7 @@
 
 #include "delio/io/drive_meta.h"
 
-namespace delio::io
-{
+namespace delio::io {
 /** The Unix time that stands for second 0 of a drive whose own times start at 0: MRPT takes time 0
  *  for "no time". (2011-09-26 00:00 UTC, the first day of KITTI.) */
 constexpr double kDriveEpoch_s = 1316995200.0;
@@ -18,9 +17,8 @@ constexpr double kDriveEpoch_s = 1316995200.0;
  *  side files. The rawlog is uncompressed (RawLogViewer needs that) and gets its name only in
  *  finish(): an unfinished drive leaves nothing under it. Scans lie in `OUT_Images/NNNNNN.bin`
  *  (KITTI's float32 x y z intensity) or, embedded, in the rawlog. */
-class RawlogWriter
-{
-   public:
+class RawlogWriter {
+ public:
     /** `path` ends in .rawlog. Throws Error if the rawlog, OUT_Images or a side file exists and
      *  `force` is false, or if the folder cannot be written. With `force` they are replaced. */
     RawlogWriter(const std::string& path, std::string label, bool embed, bool force);
@@ -39,13 +37,12 @@ class RawlogWriter
 
     /** Writes OUT.meta.yaml and, where the text is not empty, OUT.times.txt, OUT.calib.txt,
      *  OUT.poses.txt, byte for byte as given; then gives the rawlog its name. */
-    void finish(
-        const DriveMeta& meta, const std::string& timesText, const std::string& calibText,
-        const std::string& posesText);
+    void finish(const DriveMeta& meta, const std::string& timesText, const std::string& calibText,
+                const std::string& posesText);
 
     std::size_t scans() const { return count_; }
 
-   private:
+ private:
     std::string path_, label_, partialRawlog_, partialImages_, images_;
     bool embed_;
     bool finished_ = false;

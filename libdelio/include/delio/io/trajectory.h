@@ -4,12 +4,10 @@
 #include <string>
 #include <vector>
 
-namespace delio::io
-{
+namespace delio::io {
 /** Poses along a drive, in order of time: each maps the coordinates of the moving frame to those
  *  of the frame of the first pose (or of the world, if the file says so). */
-struct Trajectory
-{
+struct Trajectory {
     std::vector<mrpt::poses::CPose3D> poses;
     std::vector<double> stamps_s;  //!< one per pose, or empty where the file has none (KITTI)
 };
@@ -32,8 +30,7 @@ void writeTum(const Trajectory& trajectory, const std::string& path);
 std::vector<double> readTimes(const std::string& path);
 
 /** KITTI's calib.txt: `Tr`, which maps LiDAR coordinates to cam0 coordinates. */
-struct Calibration
-{
+struct Calibration {
     bool hasTr = false;
     mrpt::poses::CPose3D Tr;
 };

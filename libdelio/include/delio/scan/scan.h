@@ -6,11 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace delio
-{
+namespace delio {
 /** One LiDAR observation as its source gives it: nothing corrected, nothing dropped. */
-struct Scan
-{
+struct Scan {
     std::size_t index = 0;  //!< counts the observations of the chosen label, from 0
     double stamp_s = 0;     //!< seconds, as in times.txt (Unix seconds where there is no times.txt)
 
