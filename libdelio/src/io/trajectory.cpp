@@ -90,16 +90,15 @@ void appendTum(Trajectory& trajectory, const std::vector<double>& numbers,
     trajectory.poses.push_back(pose);
 }
 
-void writeNumbers(std::ostream& out, const std::vector<double>& numbers) {
+std::string rowOf(const std::vector<double>& numbers) {
+    std::string row;
     char text[64];
-    const char* separator = "";
     for (const double number : numbers) {
-        const auto end = std::to_chars(text, text + sizeof(text), number).ptr;
-        out << separator;
-        out.write(text, end - text);
-        separator = " ";
+        row.append(text, std::to_chars(text, text + sizeof(text), number).ptr);
+        row += ' ';
     }
-    out << '\n';
+    row.back() = '\n';
+    return row;
 }
 }  // namespace
 
@@ -119,17 +118,19 @@ Trajectory readTrajectory(const std::string& path) {
     return trajectory;
 }
 
+std::string kittiRow(const CPose3D& pose) {
+    const auto& R = pose.getRotationMatrix();
+    std::vector<double> numbers;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) numbers.push_back(R(i, j));
+        numbers.push_back(pose[static_cast<unsigned>(i)]);
+    }
+    return rowOf(numbers);
+}
+
 void writeKitti(const Trajectory& trajectory, const std::string& path) {
     replaceTextFile(path, [&](std::ostream& out) {
-        for (const auto& pose : trajectory.poses) {
-            const auto& R = pose.getRotationMatrix();
-            std::vector<double> row;
-            for (int i = 0; i < 3; ++i) {
-                for (int j = 0; j < 3; ++j) row.push_back(R(i, j));
-                row.push_back(pose[static_cast<unsigned>(i)]);
-            }
-            writeNumbers(out, row);
-        }
+        for (const auto& pose : trajectory.poses) out << kittiRow(pose);
     });
 }
 
@@ -141,8 +142,8 @@ void writeTum(const Trajectory& trajectory, const std::string& path) {
             const auto& pose = trajectory.poses[i];
             mrpt::math::CQuaternionDouble q;
             pose.getAsQuaternion(q);
-            writeNumbers(out, {trajectory.stamps_s[i], pose.x(), pose.y(), pose.z(), q.x(), q.y(),
-                               q.z(), q.r()});
+            out << rowOf(
+                {trajectory.stamps_s[i], pose.x(), pose.y(), pose.z(), q.x(), q.y(), q.z(), q.r()});
         }
     });
 }

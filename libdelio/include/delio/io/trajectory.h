@@ -20,7 +20,11 @@ struct Trajectory {
  *  rise. */
 Trajectory readTrajectory(const std::string& path);
 
-/** Writes 12 numbers a line with the digits that give the same doubles back. */
+/** A pose as KITTI writes it: 12 numbers, row-major 3x4, with the digits that give the same doubles
+ *  back, and a line feed. */
+std::string kittiRow(const mrpt::poses::CPose3D& pose);
+
+/** Writes a kittiRow() for each pose. */
 void writeKitti(const Trajectory& trajectory, const std::string& path);
 
 /** Writes `t x y z qx qy qz qw`; needs stamps. */

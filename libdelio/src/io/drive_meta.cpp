@@ -1,0 +1,52 @@
+#include "delio/io/drive_meta.h"
+
+#include <mrpt/containers/yaml.h>
+
+#include <filesystem>
+#include <ostream>
+
+#include "delio/error.h"
+#include "delio/io/output_file.h"
+
+namespace delio::io {
+std::string sidecarPath(const std::string& rawlogPath, const std::string& extension) {
+    std::filesystem::path path(rawlogPath);
+    return path.replace_extension().string() + extension;
+}
+
+std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath) {
+    const std::string path = sidecarPath(rawlogPath, ".meta.yaml");
+    if (!std::filesystem::exists(path)) return {};
+    try {
+        const auto yaml = mrpt::containers::yaml::FromFile(path);
+        DriveMeta meta;
+        meta.sensorModel = yaml.getOrDefault<std::string>("sensor_model", meta.sensorModel);
+        meta.source = yaml.getOrDefault<std::string>("source", meta.source);
+        meta.motionCompensated =
+            yaml.getOrDefault<bool>("motion_compensated", meta.motionCompensated);
+        meta.verticalCorrectionDeg =
+            yaml.getOrDefault<double>("vertical_correction_deg", meta.verticalCorrectionDeg);
+        meta.epoch_s = yaml.getOrDefault<double>("epoch_unix_s", meta.epoch_s);
+        meta.generator = yaml.getOrDefault<std::string>("generator", meta.generator);
+        return meta;
+    } catch (const std::exception& e) {
+        const std::string what = e.what();
+        throw Error("cannot understand '" + path + "': " + what.substr(0, what.find('\n')));
+    }
+}
+
+void writeDriveMeta(const DriveMeta& meta, const std::string& rawlogPath) {
+    mrpt::containers::yaml yaml = mrpt::containers::yaml::Map();
+    yaml["sensor_model"] = meta.sensorModel;
+    yaml["source"] = meta.source;
+    yaml["motion_compensated"] = meta.motionCompensated;
+    yaml["vertical_correction_deg"] = meta.verticalCorrectionDeg;
+    yaml["epoch_unix_s"] = meta.epoch_s;
+    yaml["generator"] = meta.generator;
+    replaceTextFile(sidecarPath(rawlogPath, ".meta.yaml"), [&](std::ostream& out) {
+        out << "# What this drive is; delio-slam reads it beside the rawlog.\n";
+        yaml.printAsYAML(out);
+        out << "\n";
+    });
+}
+}  // namespace delio::io

@@ -1,0 +1,132 @@
+#include "delio/io/rawlog_writer.h"
+
+#include <mrpt/core/Clock.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "delio/error.h"
+#include "delio/io/output_file.h"
+
+namespace delio::io {
+namespace fs = std::filesystem;
+
+namespace {
+const char* const kSideFiles[] = {".meta.yaml", ".times.txt", ".calib.txt", ".poses.txt",
+                                  ".faults.tsv"};
+
+void writeFloats(const std::string& path, const std::vector<float>& values) {
+    std::ofstream out(path, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(values.data()),
+              static_cast<std::streamsize>(values.size() * sizeof(float)));
+    if (!out.flush()) throw Error("cannot write '" + path + "': is the disk full?");
+}
+
+mrpt::maps::CPointsMapXYZI::Ptr cloudOf(const std::vector<float>& xyzi) {
+    auto cloud = mrpt::maps::CPointsMapXYZI::Create();
+    cloud->resize(xyzi.size() / 4);
+    for (std::size_t i = 0; i < xyzi.size() / 4; ++i) {
+        const float* p = &xyzi[4 * i];
+        cloud->setPointFast(i, p[0], p[1], p[2]);
+        cloud->setPointIntensity(i, p[3]);
+    }
+    return cloud;
+}
+
+/** MRPT counts time in 100 ns; rounding the sum of two doubles keeps times.txt's digits. */
+mrpt::Clock::time_point timeOf(double stamp_s, double epoch_s) {
+    const double wholeEpoch = std::floor(epoch_s);
+    const auto fraction = std::llround((stamp_s + (epoch_s - wholeEpoch)) * 1e7);
+    return mrpt::Clock::fromDouble(wholeEpoch) + mrpt::Clock::duration(fraction);
+}
+}  // namespace
+
+RawlogWriter::RawlogWriter(const std::string& path, std::string label, bool embed, bool force)
+    : path_(path), label_(std::move(label)), embed_(embed) {
+    const fs::path target(path);
+    if (target.extension() != ".rawlog")
+        throw Error("'" + path + "' does not end in .rawlog; name the output OUT.rawlog");
+    images_ = sidecarPath(path, "_Images");
+    const std::string partial =
+        (target.parent_path() / (".partial-" + target.stem().string())).string();
+    partialRawlog_ = partial + ".rawlog";
+    partialImages_ = partial + "_Images";
+    if (!force) {
+        std::vector<std::string> outputs = {path_, images_};
+        for (const char* extension : kSideFiles) outputs.push_back(sidecarPath(path, extension));
+        for (const auto& output : outputs)
+            if (fs::exists(output))
+                throw Error("'" + output +
+                            "' exists; choose another name, or overwrite it with --force");
+    }
+    std::error_code fault;
+    fs::remove_all(partialImages_, fault);
+    if (!out_.open(partialRawlog_))
+        throw Error("cannot write '" + path + "': the folder does not exist or is not writable");
+    if (!embed_ && !fs::create_directory(partialImages_, fault))
+        throw Error("cannot make the folder '" + images_ + "': " + fault.message());
+}
+
+RawlogWriter::~RawlogWriter() {
+    if (finished_) return;
+    out_.close();
+    std::error_code ignored;
+    fs::remove(partialRawlog_, ignored);
+    fs::remove_all(partialImages_, ignored);
+}
+
+void RawlogWriter::add(double stamp_s, double epoch_s, const std::vector<float>& xyzi) {
+    mrpt::obs::CObservationPointCloud observation;
+    observation.sensorLabel = label_;
+    observation.timestamp = timeOf(stamp_s, epoch_s);
+    if (embed_) {
+        observation.pointcloud = cloudOf(xyzi);
+    } else {
+        const std::string file = extraFile(".bin");
+        writeFloats(file, xyzi);
+        observation.setAsExternalStorage(
+            fs::path(file).filename().string(),
+            mrpt::obs::CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+    }
+    auto archive = mrpt::serialization::archiveFrom(out_);
+    archive << observation;
+    ++count_;
+}
+
+std::string RawlogWriter::extraFile(const std::string& extension) {
+    fs::create_directories(partialImages_);
+    char name[32];
+    std::snprintf(name, sizeof(name), "%06zu", count_);
+    return (fs::path(partialImages_) / (name + extension)).string();
+}
+
+void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
+                          const std::string& calibText, const std::string& posesText) {
+    // A full disk may show only now: everything that was handed over has to be in the file.
+    const auto written = out_.getPosition();
+    out_.close();
+    if (fs::file_size(partialRawlog_) != written)
+        throw Error("cannot write '" + path_ + "': is the disk full?");
+    const auto writeText = [&](const char* extension, const std::string& text) {
+        const std::string file = sidecarPath(path_, extension);
+        if (text.empty())
+            fs::remove(file);  // of a drive that was here before
+        else
+            replaceTextFile(file, [&](std::ostream& out) { out << text; });
+    };
+    writeText(".times.txt", timesText);
+    writeText(".calib.txt", calibText);
+    writeText(".poses.txt", posesText);
+    writeDriveMeta(meta, path_);
+    std::error_code fault;
+    fs::remove_all(images_, fault);
+    if (fs::exists(partialImages_)) fs::rename(partialImages_, images_, fault);
+    if (!fault) fs::rename(partialRawlog_, path_, fault);
+    if (fault) throw Error("cannot write '" + path_ + "': " + fault.message());
+    finished_ = true;
+}
+}  // namespace delio::io

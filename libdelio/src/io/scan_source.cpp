@@ -1,0 +1,141 @@
+#include "delio/io/scan_source.h"
+
+#include <mrpt/io/lazy_load_path.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "delio/error.h"
+#include "delio/io/decode_observation.h"
+#include "delio/io/drive_meta.h"
+
+namespace delio::io {
+namespace fs = std::filesystem;
+using mrpt::obs::CObservation;
+using mrpt::obs::CObservationPointCloud;
+
+namespace {
+bool startsLikeGzip(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return in.get() == 0x1F && in.get() == 0x8B;
+}
+
+double secondsSince(double epoch_s, const mrpt::Clock::time_point& stamp) {
+    // In MRPT's ticks of 100 ns, so that the digits of times.txt come back.
+    const double wholeEpoch = std::floor(epoch_s);
+    const auto ticks = (stamp - mrpt::Clock::fromDouble(wholeEpoch)).count();
+    return static_cast<double>(ticks) / 1e7 - (epoch_s - wholeEpoch);
+}
+}  // namespace
+
+ScanSource::ScanSource(const std::string& rawlogPath, std::string label, std::string imagesFolder,
+                       double epoch_s)
+    : path_(rawlogPath),
+      label_(std::move(label)),
+      imagesFolder_(std::move(imagesFolder)),
+      epoch_s_(epoch_s),
+      compressed_(startsLikeGzip(rawlogPath)) {
+    if (!fs::is_regular_file(path_) || !in_.open(path_))
+        throw Error("cannot read '" + path_ + "': no such file, or not readable");
+    if (in_.getTotalBytesCount() == 0) throw Error("'" + path_ + "' is empty: not a rawlog");
+}
+
+std::optional<double> ScanSource::fraction() const {
+    if (compressed_) return {};
+    return static_cast<double>(in_.getPosition()) / static_cast<double>(in_.getTotalBytesCount());
+}
+
+std::optional<Scan> ScanSource::next() {
+    const auto observation = nextObservation();
+    if (!observation) return {};
+    Scan scan;
+    try {
+        loadExternal(*observation);
+        scan = decodeObservation(*observation);
+    } catch (const Error& e) {
+        ended_ = true;
+        throw Error("scan " + std::to_string(count_ - 1) + " of '" + path_ + "': " + e.what());
+    }
+    scan.index = count_ - 1;
+    scan.stamp_s = secondsSince(epoch_s_, observation->timestamp);
+    return scan;
+}
+
+bool ScanSource::skip() { return nextObservation() != nullptr; }
+
+CObservation::Ptr ScanSource::nextObservation() {
+    while (true) {
+        while (pending_.empty())
+            if (!readEntry()) return {};
+        const auto observation = pending_.front();
+        pending_.pop_front();
+        if (label_.empty()) label_ = observation->sensorLabel;
+        if (observation->sensorLabel == label_) {
+            ++count_;
+            return observation;
+        }
+        otherLabels_.insert(observation->sensorLabel);
+    }
+}
+
+bool ScanSource::readEntry() {
+    if (ended_) return false;
+    const auto before = in_.getPosition();
+    mrpt::serialization::CSerializable::Ptr object;
+    try {
+        auto archive = mrpt::serialization::archiveFrom(in_);
+        object = archive.ReadObject();
+    } catch (const std::exception&) {
+        ended_ = true;
+        // Nothing was left to read: the end of the rawlog. Otherwise something is only half there.
+        if (in_.getPosition() == before && before > 0) return false;
+        throw Error("'" + path_ + "' " +
+                    (before == 0 ? "is not a rawlog, or damaged at its very beginning"
+                                 : "is cut off or damaged after scan " +
+                                       std::to_string(static_cast<long>(count_) - 1) + " (byte " +
+                                       std::to_string(before) + ")"));
+    }
+    const auto accept = [&](const CObservation::Ptr& observation) {
+        if (observation && isScan(*observation)) pending_.push_back(observation);
+    };
+    accept(std::dynamic_pointer_cast<CObservation>(object));
+    if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object))
+        for (const auto& observation : *frame) accept(observation);
+    return true;
+}
+
+void ScanSource::loadExternal(const CObservation& observation) const {
+    const auto* cloud = dynamic_cast<const CObservationPointCloud*>(&observation);
+    if (!cloud || !cloud->isExternallyStored()) {
+        observation.load();
+        return;
+    }
+    const fs::path name = cloud->getExternalStorageFile();
+    const fs::path beside = fs::path(path_).parent_path();
+    std::vector<fs::path> folders = {sidecarPath(path_, "_Images"), beside / "Images"};
+    if (!imagesFolder_.empty()) folders = {imagesFolder_};
+    std::string tried;
+    for (const auto& folder : folders) {
+        const fs::path file = name.is_absolute() ? name : folder / name;
+        tried += (tried.empty() ? "'" : ", '") + file.parent_path().string() + "'";
+        if (!fs::exists(file)) continue;
+        // KITTI's format has no header: only its size can tell that it was cut off.
+        if (file.extension() == ".bin" && fs::file_size(file) % (4 * sizeof(float)) != 0)
+            throw Error("'" + file.string() + "' is cut off: its size is no multiple of 16 bytes");
+        mrpt::io::setLazyLoadPathBase(folder.string());
+        try {
+            observation.load();
+        } catch (const std::exception&) {
+            throw Error("cannot read its points from '" + file.string() + "'");
+        }
+        return;
+    }
+    throw Error("its external file '" + name.string() + "' is in none of the folders tried: " +
+                tried + "; name the right one with --images");
+}
+}  // namespace delio::io

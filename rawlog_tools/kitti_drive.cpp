@@ -1,0 +1,239 @@
+#include "kitti_drive.h"
+
+#include <mrpt/poses/CPose3D.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "delio/error.h"
+#include "delio/io/rawlog_writer.h"
+#include "delio/io/trajectory.h"
+
+namespace delio {
+namespace fs = std::filesystem;
+using mrpt::poses::CPose3D;
+
+namespace {
+/** KITTI numbers its files; where one is missing (raw drive 0009 has a gap) its row stays in
+ *  times.txt, so rows are found by the number. */
+std::size_t numberOf(const fs::path& file) {
+    const std::string stem = file.stem().string();
+    if (stem.empty() || stem.size() > 18 || stem.find_first_not_of("0123456789") != stem.npos)
+        throw Error("'" + file.string() + "': a scan's name has to be a number, as KITTI has it");
+    return std::stoul(stem);
+}
+
+std::vector<fs::path> scansIn(const fs::path& folder) {
+    std::vector<fs::path> scans;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().extension() == ".bin") scans.push_back(entry.path());
+    std::sort(scans.begin(), scans.end(),
+              [](const fs::path& a, const fs::path& b) { return numberOf(a) < numberOf(b); });
+    if (scans.empty()) throw Error("'" + folder.string() + "' holds no .bin file: no scans");
+    return scans;
+}
+
+std::string textOf(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw Error("cannot read '" + file.string() + "'");
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+std::vector<std::string> linesOf(const fs::path& file) {
+    std::istringstream text(textOf(file));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(text, line);)
+        if (line.find_first_not_of(" \t\r") != line.npos) lines.push_back(line);
+    return lines;
+}
+
+/** The rows that belong to the scans. */
+template <typename Row>
+std::vector<Row> rowsOf(const std::vector<fs::path>& scans, const std::vector<Row>& rows,
+                        const fs::path& file) {
+    std::vector<Row> chosen;
+    for (const auto& scan : scans) {
+        const std::size_t number = numberOf(scan);
+        if (number >= rows.size())
+            throw Error("'" + file.string() + "' has " + std::to_string(rows.size()) +
+                        " rows but scan " + scan.filename().string() +
+                        " needs one; shorten the drive with --count " +
+                        std::to_string(chosen.size()) + " or complete the file");
+        chosen.push_back(rows[number]);
+    }
+    return chosen;
+}
+
+void useNominalTimes(KittiDrive& drive, const std::string& missing) {
+    drive.warnings.push_back(missing + " is not there: scans are taken as 0.1 s apart");
+    for (const auto& scan : drive.scans)
+        drive.times_s.push_back(0.1 * static_cast<double>(numberOf(scan)));
+}
+
+void readOdometrySequence(const fs::path& folder, KittiDrive& drive) {
+    drive.meta.source = "kitti-odometry";
+    drive.meta.epoch_s = io::kDriveEpoch_s;
+    const fs::path times = folder / "times.txt";
+    if (fs::exists(times)) {
+        drive.times_s = rowsOf(drive.scans, io::readTimes(times.string()), times);
+        drive.timeRows = rowsOf(drive.scans, linesOf(times), times);
+    } else {
+        useNominalTimes(drive, "'" + times.string() + "'");
+    }
+    const fs::path calib = folder / "calib.txt";
+    if (fs::exists(calib)) {
+        if (!io::readCalibration(calib.string()).hasTr)
+            drive.warnings.push_back("'" + calib.string() +
+                                     "' has no Tr: nothing can be brought to the cam0 frame");
+        drive.calibText = textOf(calib);
+    }
+    // KITTI's own layout has dataset/sequences/NN and dataset/poses/NN.txt.
+    const fs::path whole = fs::absolute(folder / "").parent_path();
+    for (const auto& poses : {folder / "poses.txt", whole.parent_path().parent_path() / "poses" /
+                                                        (whole.filename().string() + ".txt")}) {
+        if (!fs::exists(poses)) continue;
+        io::readTrajectory(poses.string());  // for its checks; the rows travel as they are
+        drive.poseRows = rowsOf(drive.scans, linesOf(poses), poses);
+        break;
+    }
+}
+
+/** Unix seconds of "2011-09-26 13:02:25.951199337" (UTC is assumed; KITTI gives no zone). */
+double stampOf(const std::string& line, const fs::path& file) {
+    std::tm date{};
+    char fraction[16] = "0";
+    if (std::sscanf(line.c_str(), "%d-%d-%d %d:%d:%d.%15[0-9]", &date.tm_year, &date.tm_mon,
+                    &date.tm_mday, &date.tm_hour, &date.tm_min, &date.tm_sec, fraction) < 6)
+        throw Error("'" + file.string() + "': '" + line + "' is not a date and time");
+    date.tm_year -= 1900;
+    date.tm_mon -= 1;
+    return static_cast<double>(timegm(&date)) + std::stod(std::string("0.") + fraction);
+}
+
+using Rows = std::map<std::string, std::vector<double>>;
+
+/** KITTI raw's calibration files: `KEY: numbers`; other rows (dates) are passed over. */
+Rows readRawCalibration(const fs::path& file) {
+    Rows rows;
+    for (const auto& line : linesOf(file)) {
+        const auto colon = line.find(':');
+        if (colon == line.npos) continue;
+        std::istringstream in(line.substr(colon + 1));
+        auto& row = rows[line.substr(0, colon)];
+        for (double number; in >> number;) row.push_back(number);
+    }
+    return rows;
+}
+
+CPose3D rigid(const Rows& rows, const std::string& R, const std::string& T, const fs::path& file) {
+    static const std::vector<double> none(3, 0.0);
+    const auto rotation = rows.find(R);
+    const auto found = rows.find(T);
+    const auto& shift = T.empty() ? none : found == rows.end() ? none : found->second;
+    if (rotation == rows.end() || rotation->second.size() != 9 || shift.size() != 3 ||
+        (!T.empty() && found == rows.end()))
+        throw Error("'" + file.string() + "' has no complete " + R +
+                    (T.empty() ? "" : " and " + T));
+    mrpt::math::CMatrixDouble33 m;
+    for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = rotation->second[static_cast<std::size_t>(i)];
+    CPose3D pose;
+    pose.setRotationMatrix(m);
+    pose.x(shift[0]);
+    pose.y(shift[1]);
+    pose.z(shift[2]);
+    return pose;
+}
+
+/** Pose of the OXTS unit in KITTI's Mercator world; `scale` is the cosine of the first latitude. */
+CPose3D poseOfOxts(const fs::path& file, double& scale) {
+    std::istringstream in(textOf(file));
+    double lat = 0, lon = 0, alt = 0, roll = 0, pitch = 0, yaw = 0;
+    if (!(in >> lat >> lon >> alt >> roll >> pitch >> yaw))
+        throw Error("'" + file.string() + "' does not begin with six numbers, as OXTS files do");
+    constexpr double earthRadius_m = 6378137.0;
+    if (scale == 0) scale = std::cos(lat * M_PI / 180);
+    const double x = scale * earthRadius_m * lon * M_PI / 180;
+    const double y = scale * earthRadius_m * std::log(std::tan(M_PI * (90 + lat) / 360));
+    return CPose3D::FromXYZYawPitchRoll(x, y, alt, yaw, pitch, roll);
+}
+
+void readOxts(const fs::path& folder, const CPose3D& imuToCam0, KittiDrive& drive) {
+    double scale = 0;
+    CPose3D first;
+    for (const auto& scan : drive.scans) {
+        const fs::path file = folder / "oxts" / "data" / (scan.stem().string() + ".txt");
+        if (!fs::exists(file)) {
+            drive.warnings.push_back("'" + file.string() + "' is not there: no ground truth");
+            drive.poseRows.clear();
+            return;
+        }
+        const CPose3D imu = poseOfOxts(file, scale);
+        if (drive.poseRows.empty()) first = imu;
+        drive.poseRows.push_back(io::kittiRow(imuToCam0 + (imu - first) + (-imuToCam0)));
+        drive.poseRows.back().pop_back();  // rows are kept without their line feed
+    }
+}
+
+void readRawDrive(const fs::path& folder, KittiDrive& drive) {
+    drive.meta.source = "kitti-raw";
+    const fs::path times = folder / "velodyne_points" / "timestamps.txt";
+    if (fs::exists(times)) {
+        const auto lines = rowsOf(drive.scans, linesOf(times), times);
+        drive.meta.epoch_s = stampOf(lines.front(), times);
+        for (const auto& line : lines)
+            drive.times_s.push_back(stampOf(line, times) - drive.meta.epoch_s);
+    } else {
+        drive.meta.epoch_s = io::kDriveEpoch_s;
+        useNominalTimes(drive, "'" + times.string() + "'");
+    }
+    const fs::path date = fs::absolute(folder / "").parent_path().parent_path();
+    const fs::path veloToCam = date / "calib_velo_to_cam.txt";
+    const fs::path camToCam = date / "calib_cam_to_cam.txt";
+    const fs::path imuToVelo = date / "calib_imu_to_velo.txt";
+    if (!fs::exists(veloToCam) || !fs::exists(camToCam)) {
+        drive.warnings.push_back("'" + veloToCam.string() + "' or '" + camToCam.string() +
+                                 "' is not there: no calibration and no ground truth");
+        return;
+    }
+    const CPose3D Tr = rigid(readRawCalibration(camToCam), "R_rect_00", "", camToCam) +
+                       rigid(readRawCalibration(veloToCam), "R", "T", veloToCam);
+    drive.calibText = "Tr: " + io::kittiRow(Tr);
+    if (!fs::exists(folder / "oxts") || !fs::exists(imuToVelo)) return;
+    readOxts(folder, Tr + rigid(readRawCalibration(imuToVelo), "R", "T", imuToVelo), drive);
+}
+}  // namespace
+
+KittiDrive openKittiDrive(const fs::path& folder, std::size_t start, std::size_t count) {
+    if (!fs::is_directory(folder))
+        throw Error("'" + folder.string() + "' is not a folder; name a KITTI sequence or drive");
+    const bool raw = fs::is_directory(folder / "velodyne_points" / "data");
+    const fs::path scanFolder = raw ? folder / "velodyne_points" / "data" : folder / "velodyne";
+    if (!fs::is_directory(scanFolder))
+        throw Error("'" + folder.string() +
+                    "' has neither velodyne/ (KITTI odometry) nor velodyne_points/data/ (raw)");
+    KittiDrive drive;
+    drive.scans = scansIn(scanFolder);
+    if (start >= drive.scans.size())
+        throw Error("'" + folder.string() + "' has " + std::to_string(drive.scans.size()) +
+                    " scans: none left from --start " + std::to_string(start) + " on");
+    const auto begin = drive.scans.begin() + static_cast<std::ptrdiff_t>(start);
+    const std::size_t left = drive.scans.size() - start;
+    const std::size_t used = count == 0 ? left : std::min(count, left);
+    drive.scans = {begin, begin + static_cast<std::ptrdiff_t>(used)};
+    drive.meta.sensorModel = "HDL-64E";
+    drive.meta.motionCompensated = !raw;
+    // Found by IMLS-SLAM and used by KISS-ICP, CT-ICP and MOLA: KITTI's calibration of the lasers'
+    // vertical angles is off by this much.
+    drive.meta.verticalCorrectionDeg = 0.205;
+    if (raw)
+        readRawDrive(folder, drive);
+    else
+        readOdometrySequence(folder, drive);
+    return drive;
+}
+}  // namespace delio

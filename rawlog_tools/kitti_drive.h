@@ -1,0 +1,27 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "delio/io/drive_meta.h"
+
+namespace delio {
+/** A drive in one of KITTI's two layouts, as it lies on the disk. */
+struct KittiDrive {
+    io::DriveMeta meta;
+    std::vector<std::filesystem::path> scans;  //!< in order of their numbers
+    std::vector<double> times_s;               //!< one per scan, since meta.epoch_s
+    std::vector<std::string> timeRows;  //!< one per scan, as they stand in times.txt; or none
+    std::vector<std::string> poseRows;  //!< one per scan, in the cam0 frame; or none
+    std::string calibText;              //!< of calib.txt; empty where there is no calibration
+    std::vector<std::string> warnings;  //!< what is missing but not needed
+};
+
+/** Reads everything but the scans of `count` scans from the `start`-th on (0: to the end).
+ *  `folder` is a KITTI odometry sequence (velodyne/, and where they are there calib.txt, times.txt,
+ *  poses.txt; also dataset/poses/NN.txt as KITTI ships them) or a KITTI raw drive
+ *  (velodyne_points/; calibration in the date folder above it; OXTS readings become poses).
+ *  Throws Error with one line for anything that cannot be used. */
+KittiDrive openKittiDrive(const std::filesystem::path& folder, std::size_t start,
+                          std::size_t count);
+}  // namespace delio

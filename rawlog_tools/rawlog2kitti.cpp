@@ -1,0 +1,103 @@
+// rawlog2kitti: the LiDAR scans of a rawlog as a KITTI odometry sequence.
+#include <mrpt/3rdparty/tclap/CmdLine.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "cli.h"
+#include "delio/error.h"
+#include "delio/io/drive_meta.h"
+#include "delio/io/scan_source.h"
+#include "delio/version.h"
+
+namespace {
+using namespace delio;
+namespace fs = std::filesystem;
+
+void writeScan(const mrpt::maps::CPointsMap& points, const fs::path& file) {
+    const auto* withIntensity = dynamic_cast<const mrpt::maps::CPointsMapXYZI*>(&points);
+    const auto& x = points.getPointsBufferRef_x();
+    const auto& y = points.getPointsBufferRef_y();
+    const auto& z = points.getPointsBufferRef_z();
+    std::vector<float> xyzi(4 * x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        xyzi[4 * i] = x[i];
+        xyzi[4 * i + 1] = y[i];
+        xyzi[4 * i + 2] = z[i];
+        xyzi[4 * i + 3] = withIntensity ? withIntensity->getPointIntensity(i) : 0.0F;
+    }
+    std::ofstream out(file, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(xyzi.data()),
+              static_cast<std::streamsize>(xyzi.size() * sizeof(float)));
+    if (!out.flush()) throw Error("cannot write '" + file.string() + "': is the disk full?");
+}
+
+/** Removes the half-written sequence unless it was given its name. */
+struct PartialFolder {
+    fs::path path;
+    ~PartialFolder() {
+        std::error_code ignored;
+        fs::remove_all(path, ignored);
+    }
+};
+}  // namespace
+
+int main(int argc, char** argv) {
+    TCLAP::CmdLine cmd("rawlog2kitti: the LiDAR scans of a rawlog as a KITTI odometry sequence",
+                       ' ', kVersion);
+    TCLAP::ValueArg<std::string> input("i", "input", "Rawlog to read", true, "", "IN.rawlog", cmd);
+    TCLAP::ValueArg<std::string> output("o", "output", "Folder to make", true, "", "SEQUENCE_DIR",
+                                        cmd);
+    TCLAP::ValueArg<std::string> label("", "sensor-label", "Sensor to take; default: the first one",
+                                       false, "", "L", cmd);
+    TCLAP::ValueArg<std::string> images("", "images", "Folder of the external files", false, "",
+                                        "DIR", cmd);
+    TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
+    TCLAP::SwitchArg verbose("", "verbose", "Say more", cmd);
+
+    return cli::run(cmd, argc, argv, verbose.getValue(), [&] {
+        cli::catchInterrupts();
+        const fs::path target = fs::absolute(fs::path(output.getValue()) / "").parent_path();
+        cli::refuseExisting(target.string(), force.getValue());
+        const auto meta = io::readDriveMeta(input.getValue());
+        io::ScanSource source(input.getValue(), label.getValue(), images.getValue(),
+                              meta ? meta->epoch_s : 0);
+
+        const PartialFolder partial{target.parent_path() /
+                                    (".partial-" + target.filename().string())};
+        std::error_code fault;
+        fs::create_directories(partial.path / "velodyne", fault);
+        if (fault) throw Error("cannot write '" + target.string() + "': " + fault.message());
+
+        std::string times;
+        std::size_t count = 0;
+        {
+            cli::Progress progress("converting", 0);
+            while (const auto scan = source.next()) {
+                if (cli::interrupted()) return cli::kExitInterrupted;
+                char text[64];
+                std::snprintf(text, sizeof(text), "%06zu.bin", count);
+                writeScan(*scan->points, partial.path / "velodyne" / text);
+                std::snprintf(text, sizeof(text), "%.7f\n", scan->stamp_s);
+                times += text;
+                progress.update(++count);
+            }
+        }
+        if (count == 0) throw Error("'" + input.getValue() + "' holds no LiDAR scans");
+        for (const auto& other : source.otherLabels())
+            cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
+        std::ofstream(partial.path / "times.txt") << times;
+        for (const std::string name : {"times.txt", "calib.txt", "poses.txt"}) {
+            const fs::path side = io::sidecarPath(input.getValue(), "." + name);
+            if (fs::exists(side))
+                fs::copy_file(side, partial.path / name, fs::copy_options::overwrite_existing);
+        }
+        fs::remove_all(target, fault);
+        fs::rename(partial.path, target, fault);
+        if (fault) throw Error("cannot write '" + target.string() + "': " + fault.message());
+        cli::inform("wrote " + std::to_string(count) + " scans to '" + target.string() + "'");
+        return cli::kExitSuccess;
+    });
+}
