@@ -1,0 +1,17 @@
+#pragma once
+#include <mrpt/poses/CPose3D.h>
+
+#include <vector>
+
+namespace delio::evaluation {
+/** Distances between positions after alignment, metres; NaN where there are no poses. */
+struct AbsoluteError {
+    double rmse_m = 0;
+    double max_m = 0;
+};
+
+/** APE: the positions of the estimate are moved onto those of the reference by the best rigid
+ *  motion (Umeyama, no scale), whatever their fixed frames are. Same count of poses in both. */
+AbsoluteError absoluteError(const std::vector<mrpt::poses::CPose3D>& reference,
+                            const std::vector<mrpt::poses::CPose3D>& estimate);
+}  // namespace delio::evaluation

@@ -1,0 +1,21 @@
+#pragma once
+#include <mrpt/poses/CPose3D.h>
+
+#include <vector>
+
+namespace delio::evaluation {
+/** Do the two trajectories belong to the same moving frame? LiDAR: x forward, y left, z up.
+ *  Camera: z forward, x right, y down. */
+enum class FrameMismatch {
+    none,
+    lidarAgainstCamera,  //!< estimate's axes are a LiDAR's, the reference's a camera's
+    cameraAgainstLidar   //!< the reverse, or an estimate turned from LiDAR to camera twice
+};
+
+/** Compares the directions in which the moving frames travel, metre by metre. A mismatch is
+ *  reported only where the directions disagree as they stand (mean cosine below 0.5) and agree
+ *  after the axes are swapped (above 0.9): a bad estimate is no mismatch. Neither is one that
+ *  moves too little to tell. Same count of poses in both. */
+FrameMismatch findFrameMismatch(const std::vector<mrpt::poses::CPose3D>& reference,
+                                const std::vector<mrpt::poses::CPose3D>& estimate);
+}  // namespace delio::evaluation

@@ -1,0 +1,40 @@
+#pragma once
+#include <mrpt/poses/CPose3D.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace delio::evaluation {
+/** Mean errors of a number of segments; NaN where there is none. */
+struct SegmentErrors {
+    std::size_t segments = 0;
+    double t_percent = 0;       //!< translation error per length of the segment, in percent
+    double r_deg_per_100m = 0;  //!< rotation error per length of the segment, in deg per 100 m
+};
+
+struct LengthErrors : SegmentErrors {
+    double length_m = 0;
+};
+
+struct KittiErrors : SegmentErrors {
+    std::vector<LengthErrors> perLength;  //!< one per length asked for, in that order
+};
+
+/** 100, 200, ... 800 m: what KITTI scores. */
+std::vector<double> kittiLengths_m();
+
+/** Length of the path through the positions, metres. */
+double pathLength_m(const std::vector<mrpt::poses::CPose3D>& poses);
+
+/** Lengths that a drive of `path_m` metres has several segments of, for drives that are too short
+ *  for KITTI's; empty where nothing moves. */
+std::vector<double> suggestedLengths_m(double path_m);
+
+/** The metric of KITTI's development kit: relative errors over all segments of the given lengths,
+ *  measured along the reference, that begin at every tenth pose. The means are over segments.
+ *  Both trajectories have the same count of poses, of the same moving frame; their fixed frames
+ *  may differ. The one change to the kit: rotationAngle_rad() in place of its acos. */
+KittiErrors kittiErrors(const std::vector<mrpt::poses::CPose3D>& reference,
+                        const std::vector<mrpt::poses::CPose3D>& estimate,
+                        const std::vector<double>& lengths_m = kittiLengths_m());
+}  // namespace delio::evaluation

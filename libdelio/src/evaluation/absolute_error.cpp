@@ -1,0 +1,29 @@
+#include "delio/evaluation/absolute_error.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+namespace delio::evaluation {
+using mrpt::poses::CPose3D;
+
+namespace {
+Eigen::Matrix3Xd positions(const std::vector<CPose3D>& poses) {
+    Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(poses.size()));
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        result.col(static_cast<Eigen::Index>(i)) << poses[i].x(), poses[i].y(), poses[i].z();
+    return result;
+}
+}  // namespace
+
+AbsoluteError absoluteError(const std::vector<CPose3D>& reference,
+                            const std::vector<CPose3D>& estimate) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (reference.empty()) return {none, none};
+    const Eigen::Matrix3Xd wanted = positions(reference);
+    const Eigen::Matrix3Xd found = positions(estimate);
+    const Eigen::Isometry3d align(Eigen::umeyama(found, wanted, false));
+    const Eigen::RowVectorXd squares = (align * found - wanted).colwise().squaredNorm();
+    return {std::sqrt(squares.mean()), std::sqrt(squares.maxCoeff())};
+}
+}  // namespace delio::evaluation

@@ -1,0 +1,43 @@
+#include "delio/evaluation/frame_check.h"
+
+#include <Eigen/Dense>
+
+namespace delio::evaluation {
+using mrpt::poses::CPose3D;
+
+namespace {
+constexpr double kStep_m = 1;      // long enough for a direction that noise does not hide
+constexpr int kStepsToTell = 5;    // fewer say too little
+constexpr double kDisagree = 0.5;  // mean cosines
+constexpr double kAgree = 0.9;
+
+/** Where the moving frame went from pose `a` to pose `b`, in its own axes at `a`. */
+Eigen::Vector3d direction(const CPose3D& a, const CPose3D& b) {
+    const CPose3D motion = b - a;
+    return Eigen::Vector3d(motion.x(), motion.y(), motion.z()).normalized();
+}
+}  // namespace
+
+FrameMismatch findFrameMismatch(const std::vector<CPose3D>& reference,
+                                const std::vector<CPose3D>& estimate) {
+    Eigen::Matrix3d lidarToCamera;
+    lidarToCamera << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+    double asIs = 0, fromLidar = 0, fromCamera = 0;
+    int steps = 0;
+    std::size_t begin = 0;
+    for (std::size_t i = 1; i < reference.size(); ++i) {
+        if (reference[i].distanceTo(reference[begin]) < kStep_m) continue;
+        const Eigen::Vector3d wanted = direction(reference[begin], reference[i]);
+        const Eigen::Vector3d found = direction(estimate[begin], estimate[i]);
+        asIs += wanted.dot(found);
+        fromLidar += wanted.dot(lidarToCamera * found);
+        fromCamera += wanted.dot(lidarToCamera.transpose() * found);
+        ++steps;
+        begin = i;
+    }
+    if (steps < kStepsToTell || asIs >= kDisagree * steps) return FrameMismatch::none;
+    if (fromLidar > kAgree * steps) return FrameMismatch::lidarAgainstCamera;
+    if (fromCamera > kAgree * steps) return FrameMismatch::cameraAgainstLidar;
+    return FrameMismatch::none;
+}
+}  // namespace delio::evaluation

@@ -1,0 +1,79 @@
+#include "delio/evaluation/kitti_metric.h"
+
+#include <mrpt/core/bits_math.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "delio/evaluation/rotation_angle.h"
+
+namespace delio::evaluation {
+using mrpt::poses::CPose3D;
+
+namespace {
+constexpr std::size_t kStep = 10;  // KITTI's: one second of its drives
+
+/** Distance travelled up to each pose. */
+std::vector<double> distances(const std::vector<CPose3D>& poses) {
+    std::vector<double> result;
+    double sum = 0;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (i > 0) sum += poses[i].distanceTo(poses[i - 1]);
+        result.push_back(sum);
+    }
+    return result;
+}
+
+/** Turns sums over segments into means. */
+void divide(SegmentErrors& sums) {
+    const auto n = static_cast<double>(sums.segments);
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    sums.t_percent = sums.segments ? sums.t_percent / n : none;
+    sums.r_deg_per_100m = sums.segments ? sums.r_deg_per_100m / n : none;
+}
+}  // namespace
+
+std::vector<double> kittiLengths_m() { return {100, 200, 300, 400, 500, 600, 700, 800}; }
+
+double pathLength_m(const std::vector<CPose3D>& poses) {
+    return poses.empty() ? 0 : distances(poses).back();
+}
+
+std::vector<double> suggestedLengths_m(double path_m) {
+    if (path_m < 0.1) return {};
+    // The greatest 1, 2 or 5 times a power of ten of which the path has eight.
+    const double eighth = path_m / 8;
+    const double power = std::pow(10, std::floor(std::log10(eighth)));
+    const double unit = power * (eighth >= 5 * power ? 5 : eighth >= 2 * power ? 2 : 1);
+    return {unit, 2 * unit, 3 * unit, 4 * unit};
+}
+
+KittiErrors kittiErrors(const std::vector<CPose3D>& reference, const std::vector<CPose3D>& estimate,
+                        const std::vector<double>& lengths_m) {
+    const auto travelled = distances(reference);
+    KittiErrors result;
+    for (const double length : lengths_m) {
+        LengthErrors errors;
+        errors.length_m = length;
+        for (std::size_t first = 0; first < travelled.size(); first += kStep) {
+            const auto beyond =
+                std::upper_bound(travelled.begin(), travelled.end(), travelled[first] + length);
+            if (beyond == travelled.end()) break;  // nor is there one for any later start
+            const auto last = static_cast<std::size_t>(beyond - travelled.begin());
+            const CPose3D error =
+                (reference[last] - reference[first]) - (estimate[last] - estimate[first]);
+            errors.t_percent += 100 * error.norm() / length;
+            errors.r_deg_per_100m += 100 * mrpt::RAD2DEG(rotationAngle_rad(error)) / length;
+            ++errors.segments;
+        }
+        result.segments += errors.segments;
+        result.t_percent += errors.t_percent;
+        result.r_deg_per_100m += errors.r_deg_per_100m;
+        divide(errors);
+        result.perLength.push_back(errors);
+    }
+    divide(result);
+    return result;
+}
+}  // namespace delio::evaluation
