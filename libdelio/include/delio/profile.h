@@ -1,6 +1,9 @@
 #pragma once
+#include <iosfwd>
 #include <map>
 #include <string>
+
+#include "delio/odometry.h"
 
 namespace delio {
 /** The text of each share/config/NAME.ini, by NAME. */

@@ -1,0 +1,85 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+
+#include "delio/increment.h"
+#include "delio/prediction.h"
+#include "delio/rotation/normals.h"
+#include "delio/rotation/outlier_removal.h"
+#include "delio/rotation/pattern_registration.h"
+#include "delio/scan/preprocess.h"
+#include "delio/scan/scan.h"
+#include "delio/translation/line_cloud.h"
+#include "delio/translation/line_registration.h"
+
+namespace delio {
+/** The options of each stage. */
+struct OdometryOptions {
+    scan::PreprocessOptions preprocess;
+    rotation::NormalsOptions normals;
+    rotation::OutlierRemovalOptions outliers;
+    rotation::PatternRegistrationOptions pattern;
+    translation::LineCloudOptions lines;
+    translation::LineRegistrationOptions lineRegistration;
+    PredictionOptions prediction;
+};
+
+/** Stages that time is measured of, in the order in which a scan goes through them. */
+enum Stage { kPreprocess, kNormals, kOutliers, kLines, kRotation, kTranslation, kStages };
+constexpr std::array<const char*, kStages> kStageNames = {"preprocess", "normals",  "outliers",
+                                                          "lines",      "rotation", "translation"};
+using StageTimes = std::array<double, kStages>;  //!< milliseconds
+
+/** What is kept of a scan to register others with; sensor's frame. */
+struct Features {
+    rotation::Pattern pattern;
+    translation::LineCloud lines;
+    std::size_t points = 0;  //!< used, after preprocessing
+    std::size_t notFinite = 0;
+    std::size_t normals = 0;
+};
+
+/** Scan `to` against scan `from`. */
+struct Registration {
+    Increment increment;  //!< maps the sensor's frame at `to` to that at `from`
+    rotation::RotationEstimate rotation;
+    translation::TranslationEstimate translation;
+    /** Why rotation, translation or both are the prediction; empty where both were registered. */
+    std::string predictedReason;
+};
+
+struct OdometryResult {
+    /** Maps the sensor's frame at this scan to that at the scan before; identity for the first. */
+    Increment increment;
+    Registration registration;  //!< against the last usable scan
+    bool predicted = false;     //!< the scan could not be registered
+    std::string reason;         //!< why
+    std::shared_ptr<const Features> features;
+    StageTimes times_ms{};
+};
+
+/** DeLiO, one scan after the other: rotation from the pattern of surface normals, the scan
+ *  unrotated, then translation from line clouds; both from the linear prediction on. A scan that
+ *  cannot be registered takes the prediction, and the next one is registered against the last
+ *  usable scan. */
+class Odometry {
+   public:
+    explicit Odometry(const OdometryOptions& options)
+        : options_(options), prediction_(options.prediction) {}
+
+    OdometryResult process(const Scan& scan);
+
+    /** Registers any two scans; `guess` maps frame `to` to frame `from`. */
+    Registration align(const Features& from, const Features& to, const mrpt::poses::CPose3D& guess,
+                       StageTimes& times_ms) const;
+
+   private:
+    std::shared_ptr<const Features> extract(const Scan& scan, StageTimes& times_ms) const;
+
+    OdometryOptions options_;
+    LinearPrediction prediction_;
+    std::shared_ptr<const Features> reference_;  //!< the last usable scan
+    mrpt::poses::CPose3D sinceReference_;        //!< maps the latest frame to that of reference_
+};
+}  // namespace delio

@@ -1,0 +1,33 @@
+#pragma once
+#include <mrpt/poses/CPose3D.h>
+
+#include <deque>
+
+#include "delio/stage_options.h"
+
+namespace delio {
+struct PredictionOptions : public StageOptions {
+    unsigned frames = 3;
+
+   protected:
+    std::vector<OptionField> fields() override;
+};
+
+/** Section V, equation (linear prediction): T_p = 2/(N(N+1)) sum_{j=1..N} (N-j+1) T_{i-j}, the mean
+ *  taken of rotation vectors and translations. While fewer than N increments are known, N is their
+ *  number; with none the prediction is "no motion". */
+class LinearPrediction {
+   public:
+    explicit LinearPrediction(const PredictionOptions& options) : frames_(options.frames) {}
+
+    /** The increment expected next: maps the coming frame to the present one. */
+    mrpt::poses::CPose3D predict() const;
+
+    /** Tells what the increment turned out to be. */
+    void observe(const mrpt::poses::CPose3D& increment);
+
+   private:
+    std::size_t frames_;
+    std::deque<mrpt::poses::CPose3D> latestFirst_;
+};
+}  // namespace delio

@@ -1,0 +1,30 @@
+#pragma once
+#include "delio/rotation/normals.h"
+#include "delio/stage_options.h"
+
+namespace delio::rotation {
+/** Section III-B: removal of scattered normals, "iteratively, considering various numbers of
+ *  neighbours, to retain a small but stable set". The paper gives no numbers. */
+struct OutlierRemovalOptions : public StageOptions {
+    unsigned rounds = 3;
+    unsigned first_neighbours = 40;
+    unsigned last_neighbours = 10;
+    double alpha = 1.0;
+
+ protected:
+    std::vector<OptionField> fields() override;
+};
+
+/** The pattern that normals draw on the unit sphere. */
+struct Pattern {
+    Eigen::Matrix3Xf directions;  //!< unit vectors
+    Eigen::VectorXf weights;      //!< one per direction, from the planarity
+    std::size_t removed = 0;      //!< normals that were outliers
+};
+
+/** In each round, the mean distance on the sphere to the k nearest normals is computed for every
+ *  normal; those where it exceeds the mean of all by more than alpha standard deviations are
+ *  removed. k goes from first_neighbours to last_neighbours. (The paper's interval has a lower end
+ *  too; with it the densest blobs, the best part of the pattern, would go first.) */
+Pattern removeOutliers(const SurfaceNormals& normals, const OutlierRemovalOptions& options);
+}  // namespace delio::rotation

@@ -1,0 +1,32 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "delio/scan/scan.h"
+#include "delio/stage_options.h"
+
+namespace delio::scan {
+struct PreprocessOptions : public StageOptions {
+    double min_range = 2.5;
+    double max_range = 80;
+    double vertical_correction_deg = 0;
+
+ protected:
+    std::vector<OptionField> fields() override;
+};
+
+/** A scan as the stages want it. */
+struct PointCloud {
+    Eigen::Matrix3Xf points;           //!< metres, in the sensor's frame, in the sensor's order
+    std::vector<std::uint16_t> rings;  //!< ring of each point, from 0; see ringsOf()
+    std::size_t notFinite = 0;         //!< points dropped because a coordinate was NaN or infinite
+    std::size_t outOfRange = 0;        //!< points dropped by min_range and max_range
+};
+
+/** Drops what is not finite or out of range, and raises every point's vertical angle by
+ *  `vertical_correction_deg` (range kept): KITTI's HDL-64E needs 0.205 deg (IMLS-SLAM, KISS-ICP).
+ */
+PointCloud preprocess(const Scan& scan, const PreprocessOptions& options);
+}  // namespace delio::scan

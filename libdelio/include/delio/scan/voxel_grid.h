@@ -1,0 +1,16 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace delio::scan {
+/** Which voxel each point is in: voxels are numbered from 0 in the order in which they are first
+ *  met. `size` in the unit of the points; also good for directions on the unit sphere. */
+struct VoxelNumbers {
+    std::vector<Eigen::Index> ofPoint;
+    Eigen::Index voxels = 0;
+};
+VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size);
+
+/** One point a voxel: the centroid of the points in it, in the order of their numbers. */
+Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size);
+}  // namespace delio::scan

@@ -1,0 +1,57 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "delio/stage_options.h"
+#include "delio/translation/line_cloud.h"
+
+namespace delio::translation {
+/** Section IV-B. Two skew lines see only the part of the translation along their common normal;
+ *  with `centroids` = true each step is the difference of the centroids of the closest points, as
+ *  the paper writes it, which shrinks the step along directions that few pairs see and so takes
+ *  many iterations. Otherwise each step goes straight to where those steps end for the pairs at
+ *  hand: the least squares solution over the pairs' common normals. */
+struct LineRegistrationOptions : public StageOptions {
+    bool centroids = false;
+    double min_angle_deg = 5;
+    double max_distance = 5;
+    unsigned max_iterations = 40;
+    double converged = 0.001;
+    unsigned min_matches = 100;
+    double min_observability = 0.005;
+    double prior_sigma = 0.5;
+
+ protected:
+    std::vector<OptionField> fields() override;
+};
+
+struct TranslationEstimate {
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();  //!< p_from = p_to(unrotated) + t
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   //!< m^2, in the axes of scan `from`
+    /** Eigenvalues, rising, of the mean projection of the pairs: how well the lines fix the three
+     *  directions, 0 to 1. */
+    Eigen::Vector3d observability = Eigen::Vector3d::Zero();
+    Eigen::Matrix3Xd unobservedAxes;  //!< unit vectors along which the prediction was kept
+    std::size_t matches = 0;
+    double residual_m = 0;  //!< root mean square distance of the matched lines
+    unsigned iterations = 0;
+    bool valid = false;  //!< false: too few lines or matches; translation is the prediction
+};
+
+/** The translation that brings the lines of `to`, already turned into the axes of `from`, onto
+ *  those of `from`: nearest midpoints, pairs farther apart than the mean dropped, closest points of
+ *  the two infinite lines, iterated to convergence from the prediction. */
+TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
+                                  const Eigen::Vector3d& predicted,
+                                  const LineRegistrationOptions& options);
+
+/** The closest points X_s, X_t of two infinite lines P + t u, the paper's formulas. Nothing is
+ *  divided where the lines are parallel: then `parallel` is true, X_s is P_s, and X_t the point of
+ *  the other line next to it. */
+struct ClosestPoints {
+    Eigen::Vector3d onSource, onTarget;
+    bool parallel = false;
+};
+ClosestPoints closestPoints(const Eigen::Vector3d& Ps, const Eigen::Vector3d& us,
+                            const Eigen::Vector3d& Pt, const Eigen::Vector3d& ut,
+                            double min_angle_deg);
+}  // namespace delio::translation

@@ -1,0 +1,118 @@
+#include "delio/odometry.h"
+
+#include <mrpt/system/CTicTac.h>
+
+#include <Eigen/Dense>
+
+namespace delio {
+using mrpt::poses::CPose3D;
+
+namespace {
+/** Runs a stage and adds its time. */
+template <typename Work>
+auto timed(double& ms, const Work& work) {
+    mrpt::system::CTicTac clock;
+    auto result = work();
+    ms += 1e3 * clock.Tac();
+    return result;
+}
+
+CPose3D poseOf(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
+    CPose3D pose;
+    pose.setRotationMatrix(mrpt::math::CMatrixDouble33(R));
+    pose.x(t.x());
+    pose.y(t.y());
+    pose.z(t.z());
+    return pose;
+}
+
+/** Orthonormal again: products of rotations lose it over thousands of scans. */
+CPose3D orthonormalised(const CPose3D& pose) {
+    const Eigen::Quaterniond q(Eigen::Matrix3d(pose.getRotationMatrix().asEigen()));
+    return poseOf(q.normalized().toRotationMatrix(), {pose.x(), pose.y(), pose.z()});
+}
+
+/** Both stages give their own covariance; that of the translation moves to the later frame. */
+Increment incrementOf(const rotation::RotationEstimate& rotation,
+                      const translation::TranslationEstimate& translation) {
+    const Eigen::Matrix3d& R = rotation.rotation;
+    Increment increment;
+    increment.pose = poseOf(R, translation.translation);
+    increment.covariance.setZero();
+    auto covariance = increment.covariance.asEigen();
+    covariance.topLeftCorner<3, 3>() = R.transpose() * translation.covariance * R;
+    covariance.bottomRightCorner<3, 3>() = rotation.covariance;
+    return increment;
+}
+}  // namespace
+
+std::shared_ptr<const Features> Odometry::extract(const Scan& scan, StageTimes& times_ms) const {
+    auto features = std::make_shared<Features>();
+    const auto cloud =
+        timed(times_ms[kPreprocess], [&] { return scan::preprocess(scan, options_.preprocess); });
+    const auto normals = timed(times_ms[kNormals], [&] {
+        return rotation::estimateNormals(cloud.points, options_.normals);
+    });
+    features->pattern = timed(times_ms[kOutliers], [&] {
+        return rotation::removeOutliers(normals, options_.outliers);
+    });
+    features->lines = timed(times_ms[kLines], [&] {
+        return translation::drawLines(cloud.points, cloud.rings, options_.lines);
+    });
+    features->points = static_cast<std::size_t>(cloud.points.cols());
+    features->notFinite = cloud.notFinite;
+    features->normals = static_cast<std::size_t>(normals.directions.cols());
+    return features;
+}
+
+Registration Odometry::align(const Features& from, const Features& to, const CPose3D& guess,
+                             StageTimes& times_ms) const {
+    Registration result;
+    result.rotation = timed(times_ms[kRotation], [&] {
+        return rotation::registerPatterns(
+            from.pattern, to.pattern, guess.getRotationMatrix().asEigen(), options_.pattern);
+    });
+    result.translation = timed(times_ms[kTranslation], [&] {
+        const auto unrotated = translation::rotated(to.lines, result.rotation.rotation);
+        return translation::registerLines(from.lines, unrotated, {guess.x(), guess.y(), guess.z()},
+                                          options_.lineRegistration);
+    });
+    result.increment = incrementOf(result.rotation, result.translation);
+    if (!result.rotation.valid) result.predictedReason = "too few normals";
+    if (!result.translation.valid)
+        result.predictedReason += result.rotation.valid ? "too few lines" : " and lines";
+    return result;
+}
+
+OdometryResult Odometry::process(const Scan& scan) {
+    OdometryResult result;
+    result.features = extract(scan, result.times_ms);
+    const CPose3D guess = sinceReference_ + prediction_.predict();
+    const bool usable = result.features->pattern.directions.cols() > 0 &&
+                        result.features->lines.midpoints.cols() > 0;
+    if (!usable) {
+        result.predicted = true;
+        result.reason = result.features->points == 0 ? "no points" : "no surfaces";
+        if (reference_) {
+            const Features nothing;
+            result.registration = align(*reference_, nothing, guess, result.times_ms);
+        }
+    } else if (reference_) {
+        result.registration = align(*reference_, *result.features, guess, result.times_ms);
+        result.reason = result.registration.predictedReason;
+        result.predicted = !result.reason.empty();
+    }
+    if (reference_) {
+        result.increment = result.registration.increment;
+        result.increment.pose =
+            orthonormalised((-sinceReference_) + result.registration.increment.pose);
+        prediction_.observe(result.increment.pose);
+        sinceReference_ = sinceReference_ + result.increment.pose;
+    }
+    if (usable) {
+        reference_ = result.features;
+        sinceReference_ = CPose3D();
+    }
+    return result;
+}
+}  // namespace delio

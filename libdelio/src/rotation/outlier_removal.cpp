@@ -1,0 +1,69 @@
+#include "delio/rotation/outlier_removal.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "../kd_tree.h"
+
+namespace delio::rotation {
+namespace {
+Eigen::VectorXf meanNeighbourDistances(const Eigen::Matrix3Xf& directions, std::size_t neighbours) {
+    const KdTree tree(directions);
+    Eigen::VectorXf means(directions.cols());
+    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, directions.cols(), 128),
+                      [&](const tbb::blocked_range<Eigen::Index>& range) {
+                          // The nearest one is the normal itself.
+                          std::vector<std::uint32_t> indices(neighbours + 1);
+                          std::vector<float> squared(neighbours + 1);
+                          for (Eigen::Index i = range.begin(); i != range.end(); ++i) {
+                              const std::size_t found =
+                                  tree.nearest(directions.col(i), indices.size(), indices.data(),
+                                               squared.data());
+                              float sum = 0;
+                              for (std::size_t j = 0; j < found; ++j) sum += std::sqrt(squared[j]);
+                              means[i] = found > 1 ? sum / static_cast<float>(found - 1) : 0.0F;
+                          }
+                      });
+    return means;
+}
+
+void keepOnly(const std::vector<Eigen::Index>& kept, Pattern& pattern) {
+    pattern.removed += static_cast<std::size_t>(pattern.directions.cols()) - kept.size();
+    pattern.directions = pattern.directions(Eigen::all, kept).eval();
+    pattern.weights = pattern.weights(kept).eval();
+}
+}  // namespace
+
+std::vector<OptionField> OutlierRemovalOptions::fields() {
+    return {
+        {"rounds", &rounds, "times that outliers are looked for; 0: not at all", 0, 100},
+        {"first_neighbours", &first_neighbours, "neighbours on the sphere in the first round", 1,
+         1e4},
+        {"last_neighbours", &last_neighbours, "neighbours on the sphere in the last round", 1, 1e4},
+        {"alpha", &alpha, "standard deviations above the mean that still belong", 0, 100}};
+}
+
+Pattern removeOutliers(const SurfaceNormals& normals, const OutlierRemovalOptions& options) {
+    Pattern pattern;
+    pattern.directions = normals.directions;
+    pattern.weights = normals.planarity;
+    for (unsigned round = 0; round < options.rounds && pattern.directions.cols() > 1; ++round) {
+        const double step =
+            options.rounds > 1 ? static_cast<double>(round) / (options.rounds - 1) : 0;
+        const double neighbours =
+            options.first_neighbours +
+            step * (static_cast<double>(options.last_neighbours) - options.first_neighbours);
+        const Eigen::VectorXf means = meanNeighbourDistances(
+            pattern.directions, static_cast<std::size_t>(std::lround(neighbours)));
+        const float mean = means.mean();
+        const float sigma = std::sqrt((means.array() - mean).square().mean());
+        std::vector<Eigen::Index> kept;
+        for (Eigen::Index i = 0; i < means.size(); ++i)
+            if (means[i] <= mean + static_cast<float>(options.alpha) * sigma) kept.push_back(i);
+        keepOnly(kept, pattern);
+    }
+    return pattern;
+}
+}  // namespace delio::rotation

@@ -1,0 +1,50 @@
+#include "delio/scan/preprocess.h"
+
+#include <cmath>
+
+#include "delio/scan/rings.h"
+
+namespace delio::scan {
+std::vector<OptionField> PreprocessOptions::fields() {
+    return {{"min_range", &min_range, "m; nearer points are dropped (the vehicle itself)", 0, 1e3},
+            {"max_range", &max_range, "m; farther points are dropped", 1, 1e4},
+            {"vertical_correction_deg", &vertical_correction_deg,
+             "deg added to each point's vertical angle; where absent: what DRIVE.meta.yaml says",
+             -5, 5}};
+}
+
+PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
+    const auto& x = scan.points->getPointsBufferRef_x();
+    const auto& y = scan.points->getPointsBufferRef_y();
+    const auto& z = scan.points->getPointsBufferRef_z();
+    const double angle = options.vertical_correction_deg * M_PI / 180;
+    const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+    const auto near = static_cast<float>(options.min_range * options.min_range);
+    const auto far = static_cast<float>(options.max_range * options.max_range);
+
+    PointCloud cloud;
+    cloud.points.resize(3, static_cast<Eigen::Index>(x.size()));
+    Eigen::Index kept = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const Eigen::Vector3f p(x[i], y[i], z[i]);
+        if (!p.allFinite()) {
+            ++cloud.notFinite;
+            continue;
+        }
+        const float squaredRange = p.squaredNorm();
+        if (squaredRange < near || squaredRange > far) {
+            ++cloud.outOfRange;
+            continue;
+        }
+        const float flat = p.head<2>().norm();
+        const float flatNow = c * flat - s * p.z();
+        cloud.points.col(kept) << p.head<2>() * (flat > 0 ? flatNow / flat : 1.0F),
+            s * flat + c * p.z();
+        if (!scan.rings.empty()) cloud.rings.push_back(scan.rings[i]);
+        ++kept;
+    }
+    cloud.points.conservativeResize(3, kept);
+    if (scan.rings.empty()) cloud.rings = ringsOf(cloud.points);
+    return cloud;
+}
+}  // namespace delio::scan

@@ -1,0 +1,66 @@
+#include "delio/scan/rings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace delio::scan {
+namespace {
+constexpr std::size_t kMostRings = 256;
+constexpr int kElevationSteps = 64;
+
+float elevationOf(const Eigen::Vector3f& p) { return std::atan2(p.z(), p.head<2>().norm()); }
+
+std::vector<std::uint16_t> ringsByOrder(const Eigen::Matrix3Xf& points) {
+    std::vector<std::uint16_t> rings;
+    rings.reserve(static_cast<std::size_t>(points.cols()));
+    std::uint16_t ring = 0;
+    float before = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        float azimuth = std::atan2(points(1, i), points(0, i));
+        if (azimuth < 0) azimuth += static_cast<float>(2 * M_PI);
+        // Half a turn: a ring may turn either way, and noise at its seam is small.
+        if (i > 0 && std::abs(azimuth - before) > static_cast<float>(M_PI)) ++ring;
+        before = azimuth;
+        rings.push_back(ring);
+    }
+    return rings;
+}
+
+/** True if each ring keeps to its elevation: the mean absolute deviation is small beside the whole
+ *  field of view. */
+bool areRings(const Eigen::Matrix3Xf& points, const std::vector<std::uint16_t>& rings) {
+    const std::size_t count = rings.empty() ? 0 : rings.back() + 1U;
+    if (count < 4 || count > kMostRings) return false;
+    std::vector<double> sum(count, 0), size(count, 0);
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        sum[rings[i]] += elevationOf(points.col(static_cast<Eigen::Index>(i)));
+        size[rings[i]] += 1;
+    }
+    double deviation = 0;
+    for (std::size_t i = 0; i < rings.size(); ++i)
+        deviation += std::abs(elevationOf(points.col(static_cast<Eigen::Index>(i))) -
+                              sum[rings[i]] / size[rings[i]]);
+    constexpr double kLargestDeviation = 1.0 * M_PI / 180;
+    return deviation < kLargestDeviation * static_cast<double>(rings.size());
+}
+
+std::vector<std::uint16_t> ringsByElevation(const Eigen::Matrix3Xf& points) {
+    std::vector<float> elevations;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        elevations.push_back(elevationOf(points.col(i)));
+    std::vector<std::uint16_t> rings;
+    if (elevations.empty()) return rings;
+    const auto [lowest, highest] = std::minmax_element(elevations.begin(), elevations.end());
+    const float step = std::max((*highest - *lowest) / kElevationSteps, 1e-6F);
+    for (const float elevation : elevations)
+        rings.push_back(static_cast<std::uint16_t>(
+            std::min(kElevationSteps - 1, static_cast<int>((*highest - elevation) / step))));
+    return rings;
+}
+}  // namespace
+
+std::vector<std::uint16_t> ringsOf(const Eigen::Matrix3Xf& points) {
+    auto rings = ringsByOrder(points);
+    return areRings(points, rings) ? rings : ringsByElevation(points);
+}
+}  // namespace delio::scan

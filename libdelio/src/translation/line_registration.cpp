@@ -1,0 +1,168 @@
+#include "delio/translation/line_registration.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "../kd_tree.h"
+
+namespace delio::translation {
+namespace {
+struct Match {
+    std::uint32_t from = 0;
+    float distance = -1;  //!< of the midpoints; negative: none
+};
+
+std::vector<Match> nearestMidpoints(const KdTree& tree, const LineCloud& to,
+                                    const Eigen::Vector3d& t, double farthest) {
+    std::vector<Match> matches(static_cast<std::size_t>(to.midpoints.cols()));
+    tbb::parallel_for(std::size_t{0}, matches.size(), [&](std::size_t i) {
+        const Eigen::Vector3f moved =
+            to.midpoints.col(static_cast<Eigen::Index>(i)) + t.cast<float>();
+        float squared = 0;
+        if (tree.nearest(moved, 1, &matches[i].from, &squared) == 1 &&
+            squared <= static_cast<float>(farthest * farthest))
+            matches[i].distance = std::sqrt(squared);
+    });
+    return matches;
+}
+
+/** Of all pairs' closest points: d = X_from - X_to, and the projection onto what the pair sees. */
+struct Sums {
+    Eigen::Vector3d d = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d seen = Eigen::Matrix3d::Zero();
+    double squared = 0;
+    std::size_t pairs = 0;
+};
+
+Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d& t,
+              const std::vector<Match>& matches, double min_angle_deg) {
+    double distances = 0, count = 0;
+    for (const auto& match : matches)
+        if (match.distance >= 0) {
+            distances += static_cast<double>(match.distance);
+            count += 1;
+        }
+    const double mean = distances / std::max(count, 1.0);
+    Sums sums;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        if (matches[i].distance < 0 || static_cast<double>(matches[i].distance) > mean) continue;
+        const auto s = static_cast<Eigen::Index>(i), f = static_cast<Eigen::Index>(matches[i].from);
+        const Eigen::Vector3d us = to.directions.col(s).cast<double>();
+        const Eigen::Vector3d ut = from.directions.col(f).cast<double>();
+        const auto closest = closestPoints(to.midpoints.col(s).cast<double>() + t, us,
+                                           from.midpoints.col(f).cast<double>(), ut, min_angle_deg);
+        const Eigen::Vector3d d = closest.onTarget - closest.onSource;
+        const Eigen::Vector3d normal = us.cross(ut);
+        // Skew lines see the direction of their common normal; (nearly) parallel ones everything
+        // but their own direction.
+        sums.seen += closest.parallel
+                         ? Eigen::Matrix3d(Eigen::Matrix3d::Identity() - ut * ut.transpose())
+                         : Eigen::Matrix3d(normal * normal.transpose() / normal.squaredNorm());
+        sums.d += d;
+        sums.squared += d.squaredNorm();
+        ++sums.pairs;
+    }
+    return sums;
+}
+
+/** (sum seen)^-1 d without the directions that are not seen. */
+Eigen::Vector3d solveSeen(const Sums& sums, double min_observability) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(sums.seen /
+                                                              static_cast<double>(sums.pairs));
+    Eigen::Vector3d step = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3d axis = axes.eigenvectors().col(k);
+        if (axes.eigenvalues()[k] >= min_observability)
+            step +=
+                axis * axis.dot(sums.d) / (axes.eigenvalues()[k] * static_cast<double>(sums.pairs));
+    }
+    return step;
+}
+
+/** Where each direction stands: seen ones get noise over geometry, the others the prediction and
+ *  the motion model's variance. */
+void settle(const Sums& sums, const Eigen::Vector3d& predicted,
+            const LineRegistrationOptions& options, TranslationEstimate& estimate) {
+    const auto pairs = static_cast<double>(sums.pairs);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(sums.seen / pairs);
+    estimate.observability = axes.eigenvalues();
+    estimate.residual_m = std::sqrt(sums.squared / pairs);
+    const double noise = sums.squared / (pairs * pairs);
+    for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3d axis = axes.eigenvectors().col(k);
+        const bool observed = axes.eigenvalues()[k] >= options.min_observability;
+        if (!observed) {
+            estimate.translation -= axis * axis.dot(estimate.translation - predicted);
+            estimate.unobservedAxes.conservativeResize(3, estimate.unobservedAxes.cols() + 1);
+            estimate.unobservedAxes.rightCols<1>() = axis;
+        }
+        estimate.covariance +=
+            (observed ? noise / axes.eigenvalues()[k] : options.prior_sigma * options.prior_sigma) *
+            axis * axis.transpose();
+    }
+}
+}  // namespace
+
+std::vector<OptionField> LineRegistrationOptions::fields() {
+    return {
+        {"centroids", &centroids,
+         "true: each step is the difference of the closest points' centroids; false: where "
+         "those steps end"},
+        {"min_angle_deg", &min_angle_deg, "deg; lines at a smaller angle count as parallel", 0.01,
+         90},
+        {"max_distance", &max_distance, "m; midpoints farther apart are never a pair", 0.01, 1000},
+        {"max_iterations", &max_iterations, "pairings at most", 1, 10000},
+        {"converged", &converged, "m; a smaller step ends the iteration", 0, 10},
+        {"min_matches", &min_matches, "pairs that are needed; fewer: predicted", 3, 1e6},
+        {"min_observability", &min_observability,
+         "0 to 1; a direction that the lines fix less keeps the prediction", 0, 1},
+        {"prior_sigma", &prior_sigma, "m; the motion model's error along such a direction", 0,
+         100}};
+}
+
+ClosestPoints closestPoints(const Eigen::Vector3d& Ps, const Eigen::Vector3d& us,
+                            const Eigen::Vector3d& Pt, const Eigen::Vector3d& ut,
+                            double min_angle_deg) {
+    const Eigen::Vector3d w = Ps - Pt;
+    const double a = us.dot(us), b = us.dot(ut), c = ut.dot(ut), d = us.dot(w), e = ut.dot(w);
+    const double sine = std::sin(min_angle_deg * M_PI / 180);
+    const double denominator = a * c - b * b;  // a c sin^2 of the angle
+    if (denominator <= a * c * sine * sine) return {Ps, Pt + e / c * ut, true};
+    return {Ps + (b * e - c * d) / denominator * us, Pt + (a * e - b * d) / denominator * ut,
+            false};
+}
+
+TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
+                                  const Eigen::Vector3d& predicted,
+                                  const LineRegistrationOptions& options) {
+    TranslationEstimate estimate;
+    estimate.translation = predicted;
+    const KdTree tree(from.midpoints);
+    Sums sums;
+    while (estimate.iterations < options.max_iterations) {
+        const auto matches = nearestMidpoints(tree, to, estimate.translation, options.max_distance);
+        sums = sumPairs(from, to, estimate.translation, matches, options.min_angle_deg);
+        if (sums.pairs < options.min_matches) break;
+        ++estimate.iterations;
+        const Eigen::Vector3d step = options.centroids
+                                         ? Eigen::Vector3d(sums.d / static_cast<double>(sums.pairs))
+                                         : solveSeen(sums, options.min_observability);
+        estimate.translation += step;
+        if (step.norm() < options.converged) break;
+    }
+    estimate.matches = sums.pairs;
+    if (sums.pairs < options.min_matches) {
+        estimate.translation = predicted;
+        estimate.covariance =
+            options.prior_sigma * options.prior_sigma * Eigen::Matrix3d::Identity();
+        estimate.unobservedAxes = Eigen::Matrix3d::Identity();
+        return estimate;
+    }
+    estimate.valid = true;
+    settle(sums, predicted, options, estimate);
+    return estimate;
+}
+}  // namespace delio::translation
