@@ -136,8 +136,8 @@ int main(int argc, char** argv) {
     ValueArg<double> zoom("", "zoom", "Metres across the picture (default: everything)", false, 0,
                           &metres, cmd);
     SwitchArg ortho("", "ortho", "Parallel projection instead of perspective", cmd);
-    ValueArg<double> pointSize("", "point-size", "Size of the points, pixels (default 1.5)", false,
-                               0, &pixels, cmd);
+    ValueArg<double> pointSize("", "point-size", "Size of the points, pixels (default 2)", false, 0,
+                               &pixels, cmd);
     ValueArg<std::string> colormap("", "colormap", "Colours of the heights (default turbo)", false,
                                    "turbo", &colormaps, cmd);
     ValueArg<std::string> background("", "background", "Colour behind (default: the scene's)",

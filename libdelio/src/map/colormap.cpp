@@ -58,7 +58,8 @@ mrpt::img::TColor colourAt(Colormap colormap, double t) {
     t = std::isfinite(t) ? std::clamp(t, 0.0, 1.0) : 0.0;
     switch (colormap) {
         case Colormap::Turbo:
-            return turbo(t);
+            // Without its nearly black ends, which vanish on a dark background.
+            return turbo(0.08 + 0.87 * t);
         case Colormap::Viridis:
             return viridis(t);
         case Colormap::Gray:

@@ -160,12 +160,12 @@ CPointsMapXYZI loadPly(const std::string& path) {
         bool whole = true;
         if (header.ascii) {
             whole = static_cast<bool>(std::getline(in, line));
-            std::istringstream words(line);
-            // Not by operator>>, which does not read "nan".
-            std::string word;
+            const char *at = line.data(), *const end = at + line.size();
             for (auto& value : values) {
-                whole = whole && words >> word;
-                if (whole) value = std::strtod(word.c_str(), nullptr);
+                while (at != end && (*at == ' ' || *at == '\t')) ++at;
+                const auto parsed = std::from_chars(at, end, value);
+                whole = whole && parsed.ec == std::errc{};
+                at = parsed.ptr;
             }
         } else {
             whole = static_cast<bool>(in.read(bytes.data(), static_cast<std::streamsize>(stride)));
@@ -173,7 +173,7 @@ CPointsMapXYZI loadPly(const std::string& path) {
                 values[p] = numberAt(bytes.data() + offsets[p], header.properties[p].type);
         }
         if (!whole)
-            refuse(path, "it is cut off after " + std::to_string(i) + " of " +
+            refuse(path, "it is cut off or malformed after " + std::to_string(i) + " of " +
                              std::to_string(header.vertices) + " points");
         const auto value = [&](std::size_t n) {
             return columns[n] < 0

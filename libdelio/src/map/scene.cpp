@@ -21,7 +21,7 @@ using mrpt::poses::CPose3D;
 
 namespace {
 const TColor kWhite(255, 255, 255), kRed(214, 39, 40), kBlue(31, 119, 180);
-const TColor kGreen(60, 200, 80), kGridGray(128, 128, 128, 110);
+const TColor kGreen(60, 200, 80), kGridGray(150, 150, 150);
 
 /** Extent over the ground, and a height for the grid. */
 struct Extent {
@@ -68,13 +68,13 @@ void addText(COpenGLScene& scene, unsigned row, const std::string& text, const T
     scene.getViewport()->addTextMessage(15, 15 + 24 * row, text, row, font);
 }
 
-void addGrid(COpenGLScene& scene, const Extent& extent, const TColor& textColour) {
+void addGrid(COpenGLScene& scene, const Extent& extent, double beyond_m, const TColor& textColour) {
     const double step = roundStep(extent.longer());
     const auto down = [&](double v) { return static_cast<float>(std::floor(v / step) * step); };
     const auto up = [&](double v) { return static_cast<float>(std::ceil(v / step) * step); };
     auto grid = mrpt::opengl::CGridPlaneXY::Create(
-        down(extent.xMin - step / 4), up(extent.xMax + step / 4), down(extent.yMin - step / 4),
-        up(extent.yMax + step / 4), static_cast<float>(extent.z), static_cast<float>(step));
+        down(extent.xMin - beyond_m), up(extent.xMax + beyond_m), down(extent.yMin - beyond_m),
+        up(extent.yMax + beyond_m), static_cast<float>(extent.z), static_cast<float>(step));
     grid->setColor_u8(kGridGray);
     grid->setName("grid");
     scene.insert(grid);
@@ -143,7 +143,7 @@ COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const std::vect
     auto scene = COpenGLScene::Create();
     scene->getViewport()->setCustomBackgroundColor(TColorf(options.background));
     const Extent extent = extentOf(points);
-    addGrid(*scene, extent, kWhite);
+    addGrid(*scene, extent, extent.longer() / 20, kWhite);
     scene->insert(cloud);
     if (!poses.empty()) {
         addWay(*scene, poses, extent.longer(), kWhite, 4, "trajectory");
@@ -163,9 +163,14 @@ COpenGLScene::Ptr trajectoryScene(const std::vector<CPose3D>& estimate,
 
     auto scene = COpenGLScene::Create();
     scene->getViewport()->setCustomBackgroundColor(TColorf(kWhite));
-    addGrid(*scene, extent, TColor(60, 60, 60));
+    addGrid(*scene, extent, size_m, TColor(60, 60, 60));
     if (!groundTruth.empty()) {
-        addWay(*scene, groundTruth, size_m, kBlue, 5, "ground_truth");
+        const auto byHeight = [](const CPose3D& a, const CPose3D& b) { return a.z() < b.z(); };
+        const double top = std::max_element(groundTruth.begin(), groundTruth.end(), byHeight)->z();
+        const double bottom = std::min_element(estimate.begin(), estimate.end(), byHeight)->z();
+        auto below = groundTruth;
+        for (auto& pose : below) pose.z_incr(std::min(0.0, bottom - top - size_m / 100));
+        addWay(*scene, below, size_m, kBlue, 7, "ground_truth");
         addText(*scene, 2, "ground truth", kBlue);
     }
     addWay(*scene, estimate, size_m, kRed, 3, "trajectory");

@@ -4,8 +4,10 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
+#include "delio/error.h"
 #include "delio/io/output_file.h"
 #include "gz_object.h"
+#include "mrpt_message.h"
 
 namespace delio::map {
 using mrpt::maps::CPointsMapXYZI;
@@ -19,6 +21,9 @@ void saveSimplemap(const CSimpleMap& map, const std::string& path) {
 CSimpleMap loadSimplemap(const std::string& path) {
     CSimpleMap map;
     loadWhole(path, "a .simplemap", map);
+    for (std::size_t i = 0; i < map.size(); ++i)
+        if (!map.getAsPair(i).pose || !map.getAsPair(i).sf)
+            throw Error("'" + path + "' has a key frame without a pose or without observations");
     return map;
 }
 
@@ -37,7 +42,12 @@ CPointsMapXYZI pointsOf(const CSimpleMap& map) {
             const auto* scan =
                 dynamic_cast<const mrpt::obs::CObservationPointCloud*>(observation.get());
             if (scan) {
-                scan->load();
+                try {
+                    scan->load();
+                } catch (const std::exception& e) {
+                    throw Error("the map's points are in another file, '" +
+                                scan->getExternalStorageFile() + "': " + messageOf(e));
+                }
                 if (scan->pointcloud)
                     all.insertAnotherMap(scan->pointcloud.get(), poses[i] + scan->sensorPose);
             } else {

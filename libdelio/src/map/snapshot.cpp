@@ -17,6 +17,7 @@
 
 #include "delio/error.h"
 #include "delio/io/output_file.h"
+#include "mrpt_message.h"
 
 namespace delio::map {
 using Eigen::Vector3d;
@@ -113,14 +114,19 @@ std::pair<double, double> span(const Content& content, const Value& value) {
     return {low, high};
 }
 
-/** Azimuth that lays the longer horizontal side of the content across the picture. */
-double acrossAzimuth_deg(const Content& content) {
+/** Azimuth that lays the longer horizontal side of the content across the picture. Seen straight
+ *  from above only by right angles, so that the grid stays straight. */
+double acrossAzimuth_deg(const Content& content, bool fromAbove) {
+    const auto& places = content.points.size() > 100 ? content.points : content.lines;
+    if (fromAbove) {
+        const auto [xMin, xMax] = span(content, [](const Vector3d& p) { return p.x(); });
+        const auto [yMin, yMax] = span(content, [](const Vector3d& p) { return p.y(); });
+        return xMax - xMin >= yMax - yMin ? -90 : 180;
+    }
     Eigen::Vector2d mean(0, 0);
     Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
-    const auto& places = content.lines.size() > 100 ? content.lines : content.points;
-    if (places.empty()) return -90;
     for (const auto& p : places) mean += p.head<2>();
-    mean /= static_cast<double>(places.size());
+    mean /= static_cast<double>(std::max<std::size_t>(places.size(), 1));
     for (const auto& p : places) scatter += (p.head<2>() - mean) * (p.head<2>() - mean).transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(scatter);
     const Eigen::Vector2d across = axes.eigenvectors().col(1);
@@ -139,8 +145,9 @@ struct View {
 
 View viewOf(const Content& content, const SnapshotOptions& options) {
     View view;
-    const double az =
-        mrpt::DEG2RAD(options.azimuth_deg ? *options.azimuth_deg : acrossAzimuth_deg(content));
+    const bool fromAbove = options.elevation_deg == 90;
+    const double az = mrpt::DEG2RAD(options.azimuth_deg ? *options.azimuth_deg
+                                                        : acrossAzimuth_deg(content, fromAbove));
     const double el = mrpt::DEG2RAD(options.elevation_deg);
     view.right = {-std::sin(az), std::cos(az), 0};
     view.back = {std::cos(az) * std::cos(el), std::sin(az) * std::cos(el), std::sin(el)};
@@ -318,11 +325,13 @@ CImage picture(COpenGLScene& scene, const SnapshotOptions& options) {
 
     const auto renderer = openRenderer(padded, height);
     CImage large;
-    {
+    try {
         const PreparedScene prepared(scene, options, view, static_cast<float>(scale));
         renderer->setCamera(scene, cameraOf(view, view.metresAcross * padded / width,
                                             double(padded) / height, options.ortho));
         renderer->render_RGB(scene, large);
+    } catch (const std::exception& e) {
+        throw Error("cannot render the scene: " + messageOf(e));
     }
     CImage cut = large;
     if (padded != width) large.extract_patch(cut, (padded - width) / 2, 0, width, height);

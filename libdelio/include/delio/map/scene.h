@@ -12,7 +12,7 @@
 namespace delio::map {
 struct SceneOptions {
     Colormap colormap = Colormap::Turbo;
-    float pointSize_px = 1.5F;
+    float pointSize_px = 2;
     mrpt::img::TColor background{16, 18, 22};
 };
 
@@ -25,7 +25,9 @@ mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points,
                                          const SceneOptions& options = {});
 
 /** Trajectories alone, on white: the estimate in red and, if it is given, the ground truth in
- *  blue, with a grid. Both in the same frame. Throws Error if there are no poses. */
+ *  blue, with a grid. Both in the same frame. Made to be seen from above: the ground truth is drawn
+ *  wider and is moved down until all of it is below the estimate, so that neither hides the other.
+ *  Throws Error if there are no poses. */
 mrpt::opengl::COpenGLScene::Ptr trajectoryScene(
     const std::vector<mrpt::poses::CPose3D>& estimate,
     const std::vector<mrpt::poses::CPose3D>& groundTruth = {});

@@ -14,7 +14,8 @@ void saveSimplemap(const mrpt::maps::CSimpleMap& map, const std::string& path);
 mrpt::maps::CSimpleMap loadSimplemap(const std::string& path);
 
 /** All points of a simplemap in the world's frame, metres: of point clouds with their intensities,
- *  of any other observation what MRPT makes points of. */
+ *  of any other observation what MRPT makes points of. Throws Error if clouds that are stored in
+ *  other files cannot be read. */
 mrpt::maps::CPointsMapXYZI pointsOf(const mrpt::maps::CSimpleMap& map);
 
 /** Mean poses of its key frames, in their order. */

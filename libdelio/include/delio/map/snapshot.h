@@ -14,7 +14,8 @@ struct SnapshotOptions {
     unsigned height_px = 1080;
 
     /** Where the camera stands, seen from the content: 0 on the side of +x, 90 of +y. Unset: such
-     *  that the longer side of the content lies across the picture. */
+     *  that the longer side of the content lies across the picture (looking straight down: turned
+     *  by right angles only, +x to the right or up). */
     std::optional<double> azimuth_deg;
     double elevation_deg = 55;          //!< above the horizon; 90 looks straight down
     std::optional<double> zoom_m;       //!< metres across the picture, through the content's middle
