@@ -80,32 +80,27 @@ Progress::Progress(std::string what, std::size_t total)
       terminal_(isatty(STDERR_FILENO) != 0),
       begin_s_(mrpt::Clock::nowDouble()) {}
 
-Progress::~Progress() { finish(); }
-
-void Progress::update(std::size_t done) {
-    const double now = mrpt::Clock::nowDouble();
-    const double elapsed = now - begin_s_;
-    const std::string count =
-        total_ ? std::to_string(done) + "/" + std::to_string(total_) : std::to_string(done);
-    if (terminal_) {
-        if (now - lastShown_s_ < 0.1 && done != total_) return;
-        lastShown_s_ = now;
-        std::string line = "\r" + what_ + " " + count;
-        if (total_ && done) {
-            const double fraction = static_cast<double>(done) / static_cast<double>(total_);
-            const double left = elapsed * (1 - fraction) / fraction;
-            line += " " + mrpt::system::progress(fraction, 30) + " ETA " +
-                    mrpt::system::formatTimeInterval(left);
-        }
-        std::cerr << line << "   " << std::flush;
-    } else if (total_ && done * 10 >= nextTenth_ * total_) {
-        nextTenth_ = done * 10 / total_ + 1;
-        inform(what_ + " " + count);
-    }
+Progress::~Progress() {
+    if (terminal_ && lastShown_s_ >= 0) std::cerr << std::endl;
 }
 
-void Progress::finish() {
-    if (terminal_ && !finished_ && lastShown_s_ >= 0) std::cerr << std::endl;
-    finished_ = true;
+void Progress::update(std::size_t done, std::optional<double> fraction) {
+    if (total_ > 0) fraction = static_cast<double>(done) / static_cast<double>(total_);
+    const std::string count =
+        std::to_string(done) + (total_ > 0 ? "/" + std::to_string(total_) : "");
+    if (!terminal_) {
+        if (!fraction || *fraction < nextLine_) return;
+        while (nextLine_ <= *fraction) nextLine_ += 0.1;
+        inform(what_ + " " + count);
+        return;
+    }
+    const double now = mrpt::Clock::nowDouble();
+    if (now - lastShown_s_ < 0.1 && done != total_) return;
+    lastShown_s_ = now;
+    std::cerr << "\r" << what_ << " " << count;
+    if (fraction && *fraction > 0)
+        std::cerr << " " << mrpt::system::progress(*fraction, 30) << " ETA "
+                  << mrpt::system::formatTimeInterval((now - begin_s_) * (1 / *fraction - 1));
+    std::cerr << "   " << std::flush;
 }
 }  // namespace delio::cli

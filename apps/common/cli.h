@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace TCLAP {
@@ -37,23 +38,21 @@ void refuseExisting(const std::string& path, bool force);
 /** A bar with the time left on a terminal; otherwise a plain line every ten percent. */
 class Progress {
  public:
-    /** `total` of 0: unknown; only counts are shown then. */
+    /** `total` of 0: not known. */
     Progress(std::string what, std::size_t total);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    void update(std::size_t done);
-    /** Ends the line. Called by the destructor too. */
-    void finish();
+    /** `fraction`: of the whole work, 0 to 1, where `total` is not known but this is. */
+    void update(std::size_t done, std::optional<double> fraction = {});
 
  private:
     std::string what_;
     std::size_t total_;
     bool terminal_;
-    bool finished_ = false;
     double begin_s_;
     double lastShown_s_ = -1;
-    std::size_t nextTenth_ = 1;
+    double nextLine_ = 0.1;
 };
 }  // namespace delio::cli

@@ -46,7 +46,8 @@ Increment incrementOf(const rotation::RotationEstimate& rotation,
 }
 }  // namespace
 
-std::shared_ptr<const Features> Odometry::extract(const Scan& scan, StageTimes& times_ms) const {
+std::shared_ptr<const Features> Odometry::extract(const Scan& scan, FeatureCounts& counts,
+                                                  StageTimes& times_ms) const {
     auto features = std::make_shared<Features>();
     const auto cloud =
         timed(times_ms[kPreprocess], [&] { return scan::preprocess(scan, options_.preprocess); });
@@ -58,9 +59,11 @@ std::shared_ptr<const Features> Odometry::extract(const Scan& scan, StageTimes& 
     features->lines = timed(times_ms[kLines], [&] {
         return translation::drawLines(cloud.points, cloud.rings, options_.lines);
     });
-    features->points = static_cast<std::size_t>(cloud.points.cols());
-    features->notFinite = cloud.notFinite;
-    features->normals = static_cast<std::size_t>(normals.directions.cols());
+    counts.points = static_cast<std::size_t>(cloud.points.cols());
+    counts.notFinite = cloud.notFinite;
+    counts.normals = static_cast<std::size_t>(normals.directions.cols());
+    counts.pattern = static_cast<std::size_t>(features->pattern.directions.cols());
+    counts.lines = static_cast<std::size_t>(features->lines.midpoints.cols());
     return features;
 }
 
@@ -89,17 +92,16 @@ Registration Odometry::align(const Features& from, const Features& to,
 
 OdometryResult Odometry::process(const Scan& scan) {
     OdometryResult result;
-    result.features = extract(scan, result.times_ms);
+    result.features = extract(scan, result.counts, result.times_ms);
     const auto& features = *result.features;
-    const bool usable =
-        features.pattern.directions.cols() > 0 && features.lines.midpoints.cols() > 0;
+    const bool usable = result.counts.pattern > 0 && result.counts.lines > 0;
     if (reference_) {
         std::optional<CPose3D> guess;
         if (prediction_.hasMotion()) guess = sinceReference_ + prediction_.predict();
         result.registration = align(*reference_, features, guess, result.times_ms);
         result.reason = result.registration.predictedReason;
     }
-    if (!usable) result.reason = features.points == 0 ? "no points" : "no surfaces";
+    if (!usable) result.reason = result.counts.points == 0 ? "no points" : "no surfaces";
     result.predicted = !result.reason.empty();
     if (reference_) {
         result.increment = result.registration.increment;

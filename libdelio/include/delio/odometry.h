@@ -36,9 +36,15 @@ using StageTimes = std::array<double, kStages>;  //!< milliseconds
 struct Features {
     rotation::Pattern pattern;
     translation::LineCloud lines;
-    std::size_t points = 0;  //!< used, after preprocessing
-    std::size_t notFinite = 0;
-    std::size_t normals = 0;
+};
+
+/** What can be said of a scan's features in numbers. */
+struct FeatureCounts {
+    std::size_t points = 0;     //!< used, after preprocessing
+    std::size_t notFinite = 0;  //!< dropped: a coordinate was NaN or infinite
+    std::size_t normals = 0;    //!< of surfaces
+    std::size_t pattern = 0;    //!< normals left in the pattern
+    std::size_t lines = 0;
 };
 
 /** Scan `to` against scan `from`. */
@@ -57,6 +63,7 @@ struct OdometryResult {
     bool predicted = false;     //!< the scan could not be registered
     std::string reason;         //!< why
     std::shared_ptr<const Features> features;
+    FeatureCounts counts;
     StageTimes times_ms{};
 };
 
@@ -78,7 +85,8 @@ class Odometry {
                        StageTimes& times_ms) const;
 
  private:
-    std::shared_ptr<const Features> extract(const Scan& scan, StageTimes& times_ms) const;
+    std::shared_ptr<const Features> extract(const Scan& scan, FeatureCounts& counts,
+                                            StageTimes& times_ms) const;
 
     OdometryOptions options_;
     LinearPrediction prediction_;

@@ -63,6 +63,7 @@ std::optional<Scan> ScanSource::next() {
     }
     scan.index = count_ - 1;
     scan.stamp_s = secondsSince(epoch_s_, observation->timestamp);
+    scan.time = observation->timestamp;
     return scan;
 }
 

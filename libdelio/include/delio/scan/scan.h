@@ -1,4 +1,5 @@
 #pragma once
+#include <mrpt/core/Clock.h>
 #include <mrpt/maps/CPointsMap.h>
 #include <mrpt/poses/CPose3D.h>
 
@@ -11,6 +12,7 @@ namespace delio {
 struct Scan {
     std::size_t index = 0;  //!< counts the observations of the chosen label, from 0
     double stamp_s = 0;     //!< seconds, as in times.txt (Unix seconds where there is no times.txt)
+    mrpt::Clock::time_point time;  //!< the same as MRPT's clock has it
 
     /** Metres, in the sensor's frame (x forward, y left, z up), in the order of the sensor. NaN
      *  points may be among them. A CPointsMapXYZI where the source has intensities. */
