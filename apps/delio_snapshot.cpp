@@ -151,6 +151,7 @@ int main(int argc, char** argv) {
         isVerbose = verbose.getValue();
         delio::cli::refuseExisting(output.getValue(), force.getValue());
         map::SnapshotOptions options;
+        map::SceneOptions sceneOptions;
         parseSize(size.getValue(), options.width_px, options.height_px);
         if (azimuth.isSet()) options.azimuth_deg = azimuth.getValue();
         options.elevation_deg = elevation.getValue();
@@ -161,8 +162,8 @@ int main(int argc, char** argv) {
             TColor colour;
             parseColour(background.getValue(), colour);
             options.background = colour;
+            sceneOptions.background = colour;
         }
-        map::SceneOptions sceneOptions;
         sceneOptions.colormap = map::colormapNamed(colormap.getValue());
 
         const auto scene = open(input.getValue(), sceneOptions, colormap.isSet());

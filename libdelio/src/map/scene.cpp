@@ -99,6 +99,7 @@ void addWay(COpenGLScene& scene, const std::vector<CPose3D>& poses, double exten
     }
     way->setColor_u8(colour);
     way->setVerticesPointSize(width_px);
+    way->enableVariablePointSize(false);
     way->setName(name);
     if (!way->empty()) scene.insert(way);
 }
@@ -109,6 +110,7 @@ void addMark(COpenGLScene& scene, const CPose3D& pose, const TColor& colour, dou
     dot->insertPoint({static_cast<float>(pose.x()), static_cast<float>(pose.y()),
                       static_cast<float>(pose.z()), colour.R, colour.G, colour.B});
     dot->setPointSize(14);
+    dot->enableVariablePointSize(false);
     dot->setName(name);
     scene.insert(dot);
     // Not CornerXYZ, which throws in a render when it is larger than 4 m.
@@ -138,15 +140,18 @@ COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const std::vect
         cloud->insertPoint({x[i], y[i], z[i], c.R, c.G, c.B});
     }
     cloud->setPointSize(options.pointSize_px);
+    cloud->enableVariablePointSize(false);
     cloud->setName("map");
 
     auto scene = COpenGLScene::Create();
     scene->getViewport()->setCustomBackgroundColor(TColorf(options.background));
     const Extent extent = extentOf(points);
-    addGrid(*scene, extent, extent.longer() / 20, kWhite);
+    const TColor& b = options.background;
+    const TColor ink = b.R + b.G + b.B > 3 * 128 ? TColor(0, 0, 0) : kWhite;
+    addGrid(*scene, extent, extent.longer() / 20, ink);
     scene->insert(cloud);
     if (!poses.empty()) {
-        addWay(*scene, poses, extent.longer(), kWhite, 4, "trajectory");
+        addWay(*scene, poses, extent.longer(), ink, 4, "trajectory");
         addMark(*scene, poses.front(), kGreen, extent.longer(), "start");
         addMark(*scene, poses.back(), kRed, extent.longer(), "end");
     }

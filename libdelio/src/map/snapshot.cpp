@@ -36,6 +36,7 @@ constexpr std::size_t kMaxSamples = 200000;
 struct Content {
     std::vector<Vector3d> points;  //!< a few of which may be strays
     std::vector<Vector3d> lines;   //!< ends of lines: none is left out
+    std::vector<Vector3d> grids;   //!< corners: shown where they fall into the picture
     bool empty() const { return points.empty() && lines.empty(); }
 };
 
@@ -50,43 +51,49 @@ void sample(const Cloud& cloud, const mrpt::poses::CPose3D& pose, std::vector<Ve
     }
 }
 
-void collect(const CRenderizable::Ptr& object, const mrpt::poses::CPose3D& parent, Content& content,
-             std::vector<mrpt::math::TBoundingBox>& others) {
+/** Corners of the box around an object: for what is neither points nor lines. */
+void addBox(const CRenderizable& object, const mrpt::poses::CPose3D& pose,
+            std::vector<Vector3d>& to) {
+    const auto box = object.getBoundingBoxLocal();
+    for (int corner = 0; corner < 8; ++corner) {
+        const auto at = pose.composePoint(mrpt::math::TPoint3D(corner & 1 ? box.max.x : box.min.x,
+                                                               corner & 2 ? box.max.y : box.min.y,
+                                                               corner & 4 ? box.max.z : box.min.z));
+        if (std::isfinite(at.norm())) to.emplace_back(at.x, at.y, at.z);
+    }
+}
+
+void collect(const CRenderizable::Ptr& object, const mrpt::poses::CPose3D& parent,
+             Content& content) {
     const mrpt::poses::CPose3D pose = parent + mrpt::poses::CPose3D(object->getPose());
     if (!object->isVisible()) return;
     if (const auto set = std::dynamic_pointer_cast<mrpt::opengl::CSetOfObjects>(object)) {
-        for (const auto& child : *set) collect(child, pose, content, others);
+        for (const auto& child : *set) collect(child, pose, content);
     } else if (const auto c =
                    std::dynamic_pointer_cast<mrpt::opengl::CPointCloudColoured>(object)) {
         sample(*c, pose, content.points);
     } else if (const auto p = std::dynamic_pointer_cast<mrpt::opengl::CPointCloud>(object)) {
         sample(*p, pose, content.points);
     } else if (const auto l = std::dynamic_pointer_cast<mrpt::opengl::CSetOfLines>(object)) {
-        const std::size_t step = l->size() / kMaxSamples + 1;
-        for (std::size_t i = 0; i < l->size(); i += step)
-            for (const auto& end : {(l->begin() + static_cast<std::ptrdiff_t>(i))->point1,
-                                    (l->begin() + static_cast<std::ptrdiff_t>(i))->point2}) {
+        const auto& lines = *l;  // const: a change would be noted otherwise
+        const std::size_t step = lines.size() / kMaxSamples + 1;
+        for (std::size_t i = 0; i < lines.size(); i += step) {
+            const auto& line = lines.begin()[static_cast<std::ptrdiff_t>(i)];
+            for (const auto& end : {line.point1, line.point2}) {
                 const auto q = pose.composePoint(end);
-                content.lines.emplace_back(q.x, q.y, q.z);
+                if (std::isfinite(q.norm())) content.lines.emplace_back(q.x, q.y, q.z);
             }
-    } else if (!std::dynamic_pointer_cast<mrpt::opengl::CGridPlaneXY>(object) &&
-               !std::dynamic_pointer_cast<mrpt::opengl::CCamera>(object)) {
-        others.push_back(object->getBoundingBoxLocal().compose(pose));
+        }
+    } else if (std::dynamic_pointer_cast<mrpt::opengl::CGridPlaneXY>(object)) {
+        addBox(*object, pose, content.grids);
+    } else if (!std::dynamic_pointer_cast<mrpt::opengl::CCamera>(object)) {
+        addBox(*object, pose, content.lines);
     }
 }
 
 Content contentOf(const COpenGLScene& scene) {
     Content content;
-    std::vector<mrpt::math::TBoundingBox> others;
-    for (const auto& object : *scene.getViewport()) collect(object, {}, content, others);
-    // What is neither points nor lines (a mesh of another program) counts by its box.
-    for (const auto& box : others)
-        for (int corner = 0; corner < 8; ++corner) {
-            const Vector3d at(corner & 1 ? box.max.x : box.min.x,
-                              corner & 2 ? box.max.y : box.min.y,
-                              corner & 4 ? box.max.z : box.min.z);
-            if (at.allFinite()) content.lines.push_back(at);
-        }
+    for (const auto& object : *scene.getViewport()) collect(object, {}, content);
     return content;
 }
 
@@ -174,26 +181,29 @@ View viewOf(const Content& content, const SnapshotOptions& options) {
                                                    std::abs(view.up.dot(q)) / tanY);
             };
             view.distance = std::max(span(content, needed).second, 0.2) * kMargin;
-            const auto [low, high] = span(content, [&](const Vector3d& p) {
-                const Vector3d q = p - view.middle;
-                return view.up.dot(q) / std::max(view.distance - view.back.dot(q), 0.1);
-            });
-            view.middle += view.up * (low + high) / 2 * view.distance;
+            for (const Vector3d& axis : {view.right, view.up}) {
+                const auto [low, high] = span(content, [&](const Vector3d& p) {
+                    const Vector3d q = p - view.middle;
+                    return axis.dot(q) / std::max(view.distance - view.back.dot(q), 0.1);
+                });
+                view.middle += axis * (low + high) / 2 * view.distance;
+            }
         }
         view.metresAcross = 2 * tanX * view.distance;
     }
     if (options.zoom_m) view.metresAcross = *options.zoom_m;
     view.distance = view.metresAcross / (2 * tanX);
 
-    double closest = -std::numeric_limits<double>::max(), deepest = -closest;
-    for (const auto* places : {&content.points, &content.lines})
-        for (const auto& p : *places) {
-            const double height = view.back.dot(p - view.middle);
-            closest = std::max(closest, height);
-            deepest = std::min(deepest, height);
-        }
+    // Strays do not count here either: MRPT keeps the camera's place in floats, so a camera that
+    // stands far off looks past its content.
+    const auto height = [&](const Vector3d& p) { return view.back.dot(p - view.middle); };
+    auto [deepest, closest] = span(content, height);
+    for (const auto& p : content.grids) {
+        deepest = std::min(deepest, height(p));
+        closest = std::max(closest, height(p));
+    }
+    const double slack = 10 + 0.5 * (closest - deepest);
     // In parallel projection the camera's distance shows nowhere: let it be in front of everything.
-    const double slack = 10 + 0.1 * (closest - deepest);
     if (options.ortho) view.distance = std::max(view.distance, closest + 2 * slack);
     view.nearest = view.distance - closest - slack;
     view.farthest = view.distance - deepest + slack;
@@ -217,6 +227,8 @@ mrpt::opengl::CCamera cameraOf(const View& view, double metresAcross, double asp
     return camera;
 }
 
+double lightness(const TColorf& c) { return 0.3 * c.R + 0.6 * c.G + 0.1 * c.B; }
+
 /** What rendering changes in a scene, put back when it is over. Sizes in pixels (points, text) are
  *  multiplied, as the picture is rendered larger than it is wanted. */
 class PreparedScene {
@@ -234,7 +246,10 @@ class PreparedScene {
             const auto points =
                 std::dynamic_pointer_cast<mrpt::opengl::CRenderizableShaderPoints>(object);
             if (!points) return;
-            sizes_.emplace_back(points, points->getPointSize());
+            sizes_.push_back(
+                {points, points->getPointSize(), points->isEnabledVariablePointSize()});
+            // MRPT would draw huge squares wherever a point's depth in clip space is about 0.
+            points->enableVariablePointSize(false);
             const bool isCloud = !std::dynamic_pointer_cast<mrpt::opengl::CSetOfLines>(object) &&
                                  object->getName() != "start" && object->getName() != "end";
             const float wanted =
@@ -247,8 +262,13 @@ class PreparedScene {
     ~PreparedScene() {
         viewport_->setViewportClipDistances(clipNear_, clipFar_);
         viewport_->setCustomBackgroundColor(background_);
-        for (const auto& [points, size] : sizes_) points->setPointSize(size);
-        showTexts(1);
+        for (const auto& [points, size, variable] : sizes_) {
+            points->setPointSize(size);
+            points->enableVariablePointSize(variable);
+        }
+        viewport_->clearTextMessages();
+        for (const auto& [id, text] : texts_)
+            viewport_->addTextMessage(text.x, text.y, text.text, id, text);
         // Buffers and shaders belong to the context that is about to go.
         scene_.unloadShaders();
         scene_.freeOpenGLResources();
@@ -264,6 +284,10 @@ class PreparedScene {
         for (const auto& [id, text] : texts_) {
             mrpt::opengl::TFontParams font = text;
             font.vfont_scale *= enlarged;
+            // On another background than the scene's own, a text must not vanish.
+            const double behind = lightness(viewport_->getCustomBackgroundColor());
+            if (std::abs(lightness(font.color) - behind) < 0.3)
+                font.color = behind > 0.5 ? TColorf(0, 0, 0) : TColorf(1, 1, 1);
             // Above 1 it is pixels, below a share of the picture.
             const auto place = [&](double v) { return v >= 1 ? v * enlarged : v; };
             viewport_->addTextMessage(place(text.x), place(text.y), text.text, id, font);
@@ -274,7 +298,12 @@ class PreparedScene {
     mrpt::opengl::COpenGLViewport::Ptr viewport_;
     float clipNear_ = 0, clipFar_ = 0;
     TColorf background_;
-    std::vector<std::pair<std::shared_ptr<mrpt::opengl::CRenderizableShaderPoints>, float>> sizes_;
+    struct Size {
+        std::shared_ptr<mrpt::opengl::CRenderizableShaderPoints> points;
+        float pixels;
+        bool variable;
+    };
+    std::vector<Size> sizes_;
     std::map<uint32_t, mrpt::opengl::CTextMessageCapable::DataPerText> texts_;
 };
 

@@ -122,8 +122,14 @@ TEST(Snapshot, PerspectiveShowsTheMiddleAtTheAskedScale) {
     EXPECT_NEAR(v, 200 - 10 * 5, 2);
 }
 
-TEST(Snapshot, EverythingIsInThePictureByDefault) {
-    const auto scene = map::mapScene(someMap(), someWay());
+TEST(Snapshot, EverythingFillsThePictureByDefault) {
+    const auto points = someMap();
+    auto cloud = mrpt::opengl::CPointCloud::Create();
+    cloud->loadFromPointsMap(&points);
+    cloud->setColor_u8(TColor(0, 255, 0));
+    cloud->insertPoint(1e5F, 1e5F, 1e4F);  // a stray that must not count
+    auto scene = mrpt::opengl::COpenGLScene::Create();
+    scene->insert(cloud);
     for (const bool ortho : {false, true})
         for (const double elevation : {0.0, 30.0, 55.0, 90.0, -20.0})
             for (const double azimuth : {0.0, 77.0, 180.0}) {
@@ -135,12 +141,35 @@ TEST(Snapshot, EverythingIsInThePictureByDefault) {
                 options.azimuth_deg = azimuth;
                 options.background = TColor(255, 0, 255);
                 const auto image = map::picture(*scene, options);
-                std::set<Rgb> colours;
+                int left = 320, right = -1, top = 240, bottom = -1;
                 for (int row = 0; row < 240; ++row)
                     for (int column = 0; column < 320; ++column)
-                        colours.insert(pixel(image, column, row));
-                EXPECT_GT(colours.size(), 30U) << ortho << " " << elevation << " " << azimuth;
+                        if (pixel(image, column, row)[1] > 100) {
+                            left = std::min(left, column);
+                            right = std::max(right, column);
+                            top = std::min(top, row);
+                            bottom = std::max(bottom, row);
+                        }
+                const std::string which = (ortho ? "ortho " : "perspective ") +
+                                          std::to_string(elevation) + " " + std::to_string(azimuth);
+                EXPECT_TRUE(right - left > 0.8 * 320 || bottom - top > 0.8 * 240) << which;
+                EXPECT_NEAR(left, 319 - right, 20) << which;
+                EXPECT_NEAR(top, 239 - bottom, 30) << which;
             }
+}
+
+TEST(Snapshot, AMapHasTheColoursOfItsHeights) {
+    const auto image = map::picture(*map::mapScene(someMap(), someWay()), {});
+    std::set<Rgb> colours;
+    std::size_t covered = 0;
+    for (int row = 0; row < static_cast<int>(image.getHeight()); ++row)
+        for (int column = 0; column < static_cast<int>(image.getWidth()); ++column) {
+            const auto p = pixel(image, column, row);
+            colours.insert(p);
+            covered += std::max({p[0], p[1], p[2]}) > 60;
+        }
+    EXPECT_GT(colours.size(), 100U);
+    EXPECT_GT(covered, 20000U);
 }
 
 TEST(Snapshot, RepeatsAndLeavesTheSceneAsItWas) {

@@ -17,9 +17,9 @@ struct SceneOptions {
 };
 
 /** A map and the way through it, in the world's frame (metres, z up): points coloured by their
- *  height above the ground around them, the trajectory in white with a green mark at its start and
- *  a red one at its end, and a grid whose step is written into the corner. `poses` may be
- *  empty. Throws Error if there are no points. */
+ *  height above the ground around them, the trajectory in white (on a light background: black) with
+ *  a green mark at its start and a red one at its end, and a grid whose step is written into the
+ *  corner. `poses` may be empty. Throws Error if there are no points. */
 mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points,
                                          const std::vector<mrpt::poses::CPose3D>& poses,
                                          const SceneOptions& options = {});
