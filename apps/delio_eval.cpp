@@ -266,7 +266,7 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg verbose("", "verbose", "Say what is compared with what", cmd);
 
     Settings settings;
-    return cli::run(cmd, argc, argv, settings.verbose, [&] {
+    return cli::run(cmd, argc, argv, verbose, [&] {
         settings.verbose = verbose.getValue();
         std::vector<Estimate> compared;
         for (const auto& text : estimates.getValue()) compared.push_back(estimateOf(text));

@@ -155,7 +155,7 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
     TCLAP::SwitchArg verbose("", "verbose", "Say more", cmd);
 
-    return cli::run(cmd, argc, argv, verbose.getValue(), [&] {
+    return cli::run(cmd, argc, argv, verbose, [&] {
         cli::catchInterrupts();
         Request request{input.getValue(),   output.getValue(),
                         profile.getValue(), "",

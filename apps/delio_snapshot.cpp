@@ -145,10 +145,7 @@ int main(int argc, char** argv) {
     SwitchArg force("", "force", "Overwrite an existing picture", cmd);
     SwitchArg verbose("", "verbose", "Say more about what is done and what went wrong", cmd);
 
-    // Known only once run() has parsed the command line.
-    bool isVerbose = false;
-    return delio::cli::run(cmd, argc, argv, isVerbose, [&] {
-        isVerbose = verbose.getValue();
+    return delio::cli::run(cmd, argc, argv, verbose, [&] {
         delio::cli::refuseExisting(output.getValue(), force.getValue());
         map::SnapshotOptions options;
         map::SceneOptions sceneOptions;
@@ -167,9 +164,9 @@ int main(int argc, char** argv) {
         sceneOptions.colormap = map::colormapNamed(colormap.getValue());
 
         const auto scene = open(input.getValue(), sceneOptions, colormap.isSet());
-        if (isVerbose) delio::cli::inform("read '" + input.getValue() + "'");
+        if (verbose.getValue()) delio::cli::inform("read '" + input.getValue() + "'");
         map::savePicture(*scene, options, output.getValue());
-        if (isVerbose) delio::cli::inform("wrote '" + output.getValue() + "'");
+        if (verbose.getValue()) delio::cli::inform("wrote '" + output.getValue() + "'");
         return delio::cli::kExitSuccess;
     });
 }

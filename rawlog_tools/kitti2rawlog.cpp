@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
     TCLAP::SwitchArg verbose("", "verbose", "Say more", cmd);
 
-    return cli::run(cmd, argc, argv, verbose.getValue(), [&] {
+    return cli::run(cmd, argc, argv, verbose, [&] {
         cli::catchInterrupts();
         auto drive = openKittiDrive(input.getValue(), start.getValue(), count.getValue());
         for (const auto& warning : drive.warnings) cli::warn(warning);

@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
     TCLAP::SwitchArg verbose("", "verbose", "Say more", cmd);
 
-    return cli::run(cmd, argc, argv, verbose.getValue(), [&] {
+    return cli::run(cmd, argc, argv, verbose, [&] {
         cli::catchInterrupts();
         const fs::path target = fs::absolute(fs::path(output.getValue()) / "").parent_path();
         cli::refuseExisting(target.string(), force.getValue());

@@ -39,7 +39,7 @@ class OneLineOutput : public TCLAP::StdOutput {
 };
 }  // namespace
 
-int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, const bool& verbose,
+int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, TCLAP::SwitchArg& verbose,
         const std::function<int()>& body) {
     OneLineOutput output;
     cmd.setOutput(&output);
@@ -50,9 +50,7 @@ int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, const bool& verb
     } catch (const Error& e) {
         say(e.what());
     } catch (const std::exception& e) {
-        // MRPT's exceptions carry a stack trace below their first line.
-        const std::string what = e.what();
-        say(verbose ? what : what.substr(0, what.find('\n')));
+        say(verbose.getValue() ? e.what() : plainMessage(e));
     }
     return kExitFailedRun;
 }

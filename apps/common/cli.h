@@ -6,7 +6,8 @@
 
 namespace TCLAP {
 class CmdLine;
-}
+class SwitchArg;
+}  // namespace TCLAP
 
 /** What every tool of the project shares: one way to end, to fail, to be interrupted and to show
  *  progress. stdout carries results only; all of this goes to stderr. */
@@ -18,8 +19,9 @@ constexpr int kExitInterrupted = 130;
 
 /** Runs a tool: parses the command line into `cmd` (whose arguments the caller has added), then
  *  calls `body`, and turns every ending into the contract's exit code and one line on stderr:
- *  what() of a delio::Error, the first line of any other exception. */
-int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, const bool& verbose,
+ *  what() of a delio::Error, plainMessage() of any other exception (all of it if `verbose` is set).
+ */
+int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, TCLAP::SwitchArg& verbose,
         const std::function<int()>& body);
 
 /** From now on Ctrl-C (SIGINT, SIGTERM) does not end the process but makes interrupted() true. */

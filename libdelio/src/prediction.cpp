@@ -15,8 +15,8 @@ mrpt::poses::CPose3D LinearPrediction::predict() const {
     Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
     const auto n = static_cast<double>(latestFirst_.size());
     for (std::size_t j = 0; j < latestFirst_.size(); ++j)
-        mean += 2 * (n - static_cast<double>(j)) / (n * (n + 1)) *
-                SE3::log(latestFirst_[j]).asEigen();
+        mean +=
+            2 * (n - static_cast<double>(j)) / (n * (n + 1)) * SE3::log(latestFirst_[j]).asEigen();
     return SE3::exp(SE3::tangent_vector(mean));
 }
 

@@ -30,8 +30,7 @@ std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath) {
         meta.generator = yaml.getOrDefault<std::string>("generator", meta.generator);
         return meta;
     } catch (const std::exception& e) {
-        const std::string what = e.what();
-        throw Error("cannot understand '" + path + "': " + what.substr(0, what.find('\n')));
+        throw Error("cannot understand '" + path + "': " + plainMessage(e));
     }
 }
 

@@ -26,8 +26,7 @@ void replaceFile(const std::string& path, const std::function<bool(const std::st
         fs::remove(temporary, ignored);
         throw;
     } catch (const std::exception& e) {
-        const std::string what = e.what();
-        giveUp(what.substr(0, what.find('\n')));
+        giveUp(plainMessage(e));
     }
     std::error_code fault;
     fs::rename(temporary, target, fault);

@@ -7,7 +7,6 @@
 #include "delio/error.h"
 #include "delio/io/output_file.h"
 #include "gz_object.h"
-#include "mrpt_message.h"
 
 namespace delio::map {
 using mrpt::maps::CPointsMapXYZI;
@@ -46,7 +45,7 @@ CPointsMapXYZI pointsOf(const CSimpleMap& map) {
                     scan->load();
                 } catch (const std::exception& e) {
                     throw Error("the map's points are in another file, '" +
-                                scan->getExternalStorageFile() + "': " + messageOf(e));
+                                scan->getExternalStorageFile() + "': " + plainMessage(e));
                 }
                 if (scan->pointcloud)
                     all.insertAnotherMap(scan->pointcloud.get(), poses[i] + scan->sensorPose);

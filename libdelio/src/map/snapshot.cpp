@@ -17,7 +17,6 @@
 
 #include "delio/error.h"
 #include "delio/io/output_file.h"
-#include "mrpt_message.h"
 
 namespace delio::map {
 using Eigen::Vector3d;
@@ -360,7 +359,7 @@ CImage picture(COpenGLScene& scene, const SnapshotOptions& options) {
                                             double(padded) / height, options.ortho));
         renderer->render_RGB(scene, large);
     } catch (const std::exception& e) {
-        throw Error("cannot render the scene: " + messageOf(e));
+        throw Error("cannot render the scene: " + plainMessage(e));
     }
     CImage cut = large;
     if (padded != width) large.extract_patch(cut, (padded - width) / 2, 0, width, height);
