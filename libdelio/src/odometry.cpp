@@ -53,9 +53,8 @@ std::shared_ptr<const Features> Odometry::extract(const Scan& scan, StageTimes& 
     const auto normals = timed(times_ms[kNormals], [&] {
         return rotation::estimateNormals(cloud.points, options_.normals);
     });
-    features->pattern = timed(times_ms[kOutliers], [&] {
-        return rotation::removeOutliers(normals, options_.outliers);
-    });
+    features->pattern = timed(times_ms[kOutliers],
+                              [&] { return rotation::removeOutliers(normals, options_.outliers); });
     features->lines = timed(times_ms[kLines], [&] {
         return translation::drawLines(cloud.points, cloud.rings, options_.lines);
     });
@@ -65,17 +64,21 @@ std::shared_ptr<const Features> Odometry::extract(const Scan& scan, StageTimes& 
     return features;
 }
 
-Registration Odometry::align(const Features& from, const Features& to, const CPose3D& guess,
-                             StageTimes& times_ms) const {
+Registration Odometry::align(const Features& from, const Features& to,
+                             const std::optional<CPose3D>& guess, StageTimes& times_ms) const {
+    const CPose3D predicted = guess.value_or(CPose3D());
     Registration result;
     result.rotation = timed(times_ms[kRotation], [&] {
         return rotation::registerPatterns(
-            from.pattern, to.pattern, guess.getRotationMatrix().asEigen(), options_.pattern);
+            from.pattern, to.pattern, predicted.getRotationMatrix().asEigen(), options_.pattern);
     });
     result.translation = timed(times_ms[kTranslation], [&] {
         const auto unrotated = translation::rotated(to.lines, result.rotation.rotation);
-        return translation::registerLines(from.lines, unrotated, {guess.x(), guess.y(), guess.z()},
-                                          options_.lineRegistration);
+        const Eigen::Vector3d t(predicted.x(), predicted.y(), predicted.z());
+        return guess
+                   ? translation::registerLines(from.lines, unrotated, t, options_.lineRegistration)
+                   : translation::searchTranslation(from.lines, unrotated,
+                                                    options_.lineRegistration);
     });
     result.increment = incrementOf(result.rotation, result.translation);
     if (!result.rotation.valid) result.predictedReason = "too few normals";
@@ -87,26 +90,23 @@ Registration Odometry::align(const Features& from, const Features& to, const CPo
 OdometryResult Odometry::process(const Scan& scan) {
     OdometryResult result;
     result.features = extract(scan, result.times_ms);
-    const CPose3D guess = sinceReference_ + prediction_.predict();
-    const bool usable = result.features->pattern.directions.cols() > 0 &&
-                        result.features->lines.midpoints.cols() > 0;
-    if (!usable) {
-        result.predicted = true;
-        result.reason = result.features->points == 0 ? "no points" : "no surfaces";
-        if (reference_) {
-            const Features nothing;
-            result.registration = align(*reference_, nothing, guess, result.times_ms);
-        }
-    } else if (reference_) {
-        result.registration = align(*reference_, *result.features, guess, result.times_ms);
+    const auto& features = *result.features;
+    const bool usable =
+        features.pattern.directions.cols() > 0 && features.lines.midpoints.cols() > 0;
+    if (reference_) {
+        std::optional<CPose3D> guess;
+        if (prediction_.hasMotion()) guess = sinceReference_ + prediction_.predict();
+        result.registration = align(*reference_, features, guess, result.times_ms);
         result.reason = result.registration.predictedReason;
-        result.predicted = !result.reason.empty();
     }
+    if (!usable) result.reason = features.points == 0 ? "no points" : "no surfaces";
+    result.predicted = !result.reason.empty();
     if (reference_) {
         result.increment = result.registration.increment;
         result.increment.pose =
             orthonormalised((-sinceReference_) + result.registration.increment.pose);
-        prediction_.observe(result.increment.pose);
+        if (!result.predicted || prediction_.hasMotion())
+            prediction_.observe(result.increment.pose);
         sinceReference_ = sinceReference_ + result.increment.pose;
     }
     if (usable) {

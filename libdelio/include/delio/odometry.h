@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "delio/increment.h"
@@ -64,17 +65,19 @@ struct OdometryResult {
  *  cannot be registered takes the prediction, and the next one is registered against the last
  *  usable scan. */
 class Odometry {
-   public:
+ public:
     explicit Odometry(const OdometryOptions& options)
         : options_(options), prediction_(options.prediction) {}
 
     OdometryResult process(const Scan& scan);
 
-    /** Registers any two scans; `guess` maps frame `to` to frame `from`. */
-    Registration align(const Features& from, const Features& to, const mrpt::poses::CPose3D& guess,
+    /** Registers any two scans; `guess` maps frame `to` to frame `from`; without one, translations
+     *  of a few metres are searched. */
+    Registration align(const Features& from, const Features& to,
+                       const std::optional<mrpt::poses::CPose3D>& guess,
                        StageTimes& times_ms) const;
 
-   private:
+ private:
     std::shared_ptr<const Features> extract(const Scan& scan, StageTimes& times_ms) const;
 
     OdometryOptions options_;

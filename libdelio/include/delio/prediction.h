@@ -9,7 +9,7 @@ namespace delio {
 struct PredictionOptions : public StageOptions {
     unsigned frames = 3;
 
-   protected:
+ protected:
     std::vector<OptionField> fields() override;
 };
 
@@ -17,16 +17,19 @@ struct PredictionOptions : public StageOptions {
  *  taken of rotation vectors and translations. While fewer than N increments are known, N is their
  *  number; with none the prediction is "no motion". */
 class LinearPrediction {
-   public:
+ public:
     explicit LinearPrediction(const PredictionOptions& options) : frames_(options.frames) {}
 
     /** The increment expected next: maps the coming frame to the present one. */
     mrpt::poses::CPose3D predict() const;
 
+    /** False until an increment was observed: the prediction is a mere guess then. */
+    bool hasMotion() const { return !latestFirst_.empty(); }
+
     /** Tells what the increment turned out to be. */
     void observe(const mrpt::poses::CPose3D& increment);
 
-   private:
+ private:
     std::size_t frames_;
     std::deque<mrpt::poses::CPose3D> latestFirst_;
 };

@@ -104,6 +104,25 @@ void settle(const Sums& sums, const Eigen::Vector3d& predicted,
             axis * axis.transpose();
     }
 }
+/** Mean distance between each line and the one with the nearest midpoint, metres; a line without
+ *  one near it counts as `kFar`. All lines count: registration itself looks only at the better
+ *  half, which wherever it ends consists of lines that fit. */
+double meanLineDistance(const LineCloud& from, const KdTree& tree, const LineCloud& to,
+                        const Eigen::Vector3d& t, const LineRegistrationOptions& options) {
+    constexpr double kFar = 0.3;
+    const auto matches = nearestMidpoints(tree, to, t, options.max_distance);
+    double sum = 0;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        const auto s = static_cast<Eigen::Index>(i), f = static_cast<Eigen::Index>(matches[i].from);
+        const auto closest =
+            closestPoints(to.midpoints.col(s).cast<double>() + t,
+                          to.directions.col(s).cast<double>(), from.midpoints.col(f).cast<double>(),
+                          from.directions.col(f).cast<double>(), options.min_angle_deg);
+        const double distance = (closest.onTarget - closest.onSource).norm();
+        sum += matches[i].distance < 0 ? kFar : std::min(distance, kFar);
+    }
+    return sum / static_cast<double>(std::max<std::size_t>(matches.size(), 1));
+}
 }  // namespace
 
 std::vector<OptionField> LineRegistrationOptions::fields() {
@@ -119,8 +138,10 @@ std::vector<OptionField> LineRegistrationOptions::fields() {
         {"min_matches", &min_matches, "pairs that are needed; fewer: predicted", 3, 1e6},
         {"min_observability", &min_observability,
          "0 to 1; a direction that the lines fix less keeps the prediction", 0, 1},
-        {"prior_sigma", &prior_sigma, "m; the motion model's error along such a direction", 0,
-         100}};
+        {"prior_sigma", &prior_sigma, "m; the motion model's error along such a direction", 0, 100},
+        {"search_radius", &search_radius,
+         "m; starts for the first pair of a drive lie in this horizontal disc", 0, 50},
+        {"search_step", &search_step, "m; distance between those starts", 0.1, 50}};
 }
 
 ClosestPoints closestPoints(const Eigen::Vector3d& Ps, const Eigen::Vector3d& us,
@@ -164,5 +185,26 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
     estimate.valid = true;
     settle(sums, predicted, options, estimate);
     return estimate;
+}
+
+TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to,
+                                      const LineRegistrationOptions& options) {
+    const KdTree tree(from.midpoints);
+    TranslationEstimate best = registerLines(from, to, Eigen::Vector3d::Zero(), options);
+    if (!best.valid) return best;
+    double bestDistance = meanLineDistance(from, tree, to, best.translation, options);
+    const int steps = static_cast<int>(options.search_radius / options.search_step);
+    for (int x = -steps; x <= steps; ++x)
+        for (int y = -steps; y <= steps; ++y) {
+            const Eigen::Vector3d start(x * options.search_step, y * options.search_step, 0);
+            if (start.norm() > options.search_radius || start.norm() == 0) continue;
+            const auto estimate = registerLines(from, to, start, options);
+            if (!estimate.valid) continue;
+            const double distance = meanLineDistance(from, tree, to, estimate.translation, options);
+            if (distance >= bestDistance) continue;
+            best = estimate;
+            bestDistance = distance;
+        }
+    return best;
 }
 }  // namespace delio::translation

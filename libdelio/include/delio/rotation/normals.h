@@ -11,11 +11,11 @@ namespace delio::rotation {
  *  cloud is therefore thinned to one point a voxel first, and neighbourhoods that are a line (one
  *  ring) or no plane at all are dropped. */
 struct NormalsOptions : public StageOptions {
-    double voxel_size = 0.25;
+    double voxel_size = 0.4;
     unsigned neighbours = 12;
     double max_radius = 1.5;
     double min_breadth = 0.1;
-    double max_thickness = 0.1;
+    double max_thickness = 0.15;
 
  protected:
     std::vector<OptionField> fields() override;

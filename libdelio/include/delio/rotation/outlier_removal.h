@@ -9,7 +9,7 @@ struct OutlierRemovalOptions : public StageOptions {
     unsigned rounds = 3;
     unsigned first_neighbours = 40;
     unsigned last_neighbours = 10;
-    double alpha = 1.0;
+    double alpha = 2.0;
 
  protected:
     std::vector<OptionField> fields() override;

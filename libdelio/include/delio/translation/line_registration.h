@@ -19,6 +19,8 @@ struct LineRegistrationOptions : public StageOptions {
     unsigned min_matches = 100;
     double min_observability = 0.005;
     double prior_sigma = 0.5;
+    double search_radius = 3;
+    double search_step = 1;
 
  protected:
     std::vector<OptionField> fields() override;
@@ -43,6 +45,13 @@ struct TranslationEstimate {
 TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
                                   const Eigen::Vector3d& predicted,
                                   const LineRegistrationOptions& options);
+
+/** The same where nothing is known of the motion (a drive's first pair): registered from starts all
+ *  over a horizontal disc of `search_radius`, and the result taken whose lines lie nearest to each
+ *  other. From a start at rest alone, the rings that the sensor draws on the ground would hold the
+ *  estimate there: they look the same wherever the sensor stands. */
+TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to,
+                                      const LineRegistrationOptions& options);
 
 /** The closest points X_s, X_t of two infinite lines P + t u, the paper's formulas. Nothing is
  *  divided where the lines are parallel: then `parallel` is true, X_s is P_s, and X_t the point of

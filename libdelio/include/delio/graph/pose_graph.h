@@ -1,0 +1,73 @@
+#pragma once
+#include <mrpt/poses/CPose3D.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "delio/graph/residual.h"
+#include "delio/increment.h"
+#include "delio/stage_options.h"
+
+namespace delio::graph {
+/** A measured relative pose between two nodes: T_to = T_from + increment.pose. */
+struct Edge {
+    std::size_t from = 0;
+    std::size_t to = 0;
+    Increment increment;
+};
+
+struct PoseGraphOptions : StageOptions {
+    /** More edges than the chain (i,i+1): 1 adds (i,i+2), 2 adds (i,i+3) too. For whoever makes
+     *  the edges; optimise() takes those that were added. */
+    unsigned skip_edges = 1;
+    unsigned max_iterations = 100;
+    /** Width c of the Geman-McClure kernel: an edge costs s / (1 + s/c^2) with s = e' Omega e, so c
+     *  is a count of standard deviations, and no edge ever costs more than c^2. 0: no kernel. */
+    double kernel_width = 10;
+
+ protected:
+    std::vector<OptionField> fields() override;
+};
+
+struct OptimisationResult {
+    double initial_cost = 0;  //!< F before (no factor 1/2; robust if there is a kernel)
+    double final_cost = 0;    //!< F after; never more than before
+    unsigned iterations = 0;  //!< Levenberg-Marquardt steps tried
+    bool converged = true;    //!< false where max_iterations ended it
+};
+
+/** The pose graph of the paper's section V: F(x) = sum over edges of e' Omega e is minimised over
+ *  the poses of all nodes but node 0, which stays where it is. e is that of residual.h, Omega the
+ *  inverse of the edge's covariance. Poses are metres, in the frame that node 0's pose is given
+ *  in. Poses given to addNode are the start of the minimisation, good or poor. */
+class PoseGraph {
+ public:
+    /** Returns the node's index: 0, 1, 2 ... Error for a pose that is not finite. */
+    std::size_t addNode(const mrpt::poses::CPose3D& initial);
+
+    /** Several edges between the same nodes, and edges backwards, are welcome. Error for a node
+     *  that does not exist, an edge from a node to itself, a pose that is not finite and a
+     *  covariance that is not symmetric and positive definite. */
+    void addEdge(const Edge& edge);
+
+    /** The same from an information matrix Omega, which is kept to the bit. */
+    void addEdge(std::size_t from, std::size_t to, const mrpt::poses::CPose3D& pose,
+                 const Matrix6& information);
+
+    /** Error, naming the node, where a node is not connected to node 0. */
+    OptimisationResult optimise(const PoseGraphOptions& options);
+
+    const std::vector<mrpt::poses::CPose3D>& poses() const { return poses_; }
+    const std::vector<Edge>& edges() const { return edges_; }
+    /** Omega of edges()[i], in the order of delio::Increment. */
+    const Matrix6& information(std::size_t i) const { return information_[i]; }
+
+ private:
+    void append(const Edge& edge, const Matrix6& information);
+    void requireConnected() const;
+
+    std::vector<mrpt::poses::CPose3D> poses_;
+    std::vector<Edge> edges_;
+    std::vector<Matrix6> information_;
+};
+}  // namespace delio::graph

@@ -1,0 +1,11 @@
+#pragma once
+#include <mrpt/serialization/CSerializable.h>
+
+#include <string>
+
+namespace delio::map {
+/** Reads one MRPT object from a file, gzip or plain. Throws Error for a file that is missing, holds
+ *  anything else than `what`, or is cut off anywhere. */
+void loadWhole(const std::string& path, const std::string& what,
+               mrpt::serialization::CSerializable& object);
+}  // namespace delio::map

@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+#include <mrpt/img/CImage.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "command.h"
+#include "delio/map/map_builder.h"
+#include "delio/map/ply.h"
+#include "delio/map/scene.h"
+#include "delio/map/simplemap.h"
+#include "test_data.h"
+
+namespace {
+using namespace delio;
+using mrpt::poses::CPose3D;
+using test::runTool;
+
+/** One map in every form that the tool reads. */
+class SnapshotTool : public testing::Test {
+ protected:
+    SnapshotTool() {
+        unsetenv("DISPLAY");
+        mrpt::maps::CPointsMapXYZI cloud;
+        for (int i = 0; i < 300; ++i)
+            for (int j = -5; j <= 5; ++j)
+                cloud.insertPointRGB(static_cast<float>(std::cos(0.02 * i) * (10 + j)),
+                                     static_cast<float>(std::sin(0.02 * i) * (10 + j)),
+                                     static_cast<float>(j % 3), 0.5F, 0, 0);
+        map::MapBuilder builder((map::MapOptions()), "velodyne");
+        const std::vector<CPose3D> poses = {CPose3D(), CPose3D::FromTranslation(5, 0, 0)};
+        for (std::size_t i = 0; i < poses.size(); ++i)
+            builder.add(i, poses[i], cloud, CPose3D::FromTranslation(0, 0, 1.7),
+                        mrpt::Clock::fromDouble(1316995200.0));
+        map::saveSimplemap(builder.simplemap(poses), at("map.simplemap"));
+        const auto points = builder.points(poses);
+        count_ = points.size();
+        map::savePly(points, at("map.ply"));
+        map::saveScene(*map::mapScene(points, poses), at("map.3Dscene"));
+    }
+    std::string at(const std::string& name) const { return folder_ / name; }
+
+    void expectPicture(const std::string& name, std::size_t width, std::size_t height) const {
+        mrpt::img::CImage image;
+        ASSERT_TRUE(image.loadFromFile(at(name)));
+        EXPECT_EQ(image.getWidth(), width);
+        EXPECT_EQ(image.getHeight(), height);
+    }
+
+    /** One line on stderr, nothing on stdout, the exit code, and no picture or part of one. */
+    void expectRefusal(const std::vector<std::string>& arguments, int exitCode) const {
+        const auto result = runTool("delio-snapshot", arguments);
+        std::string line;
+        for (const auto& word : arguments) line += word + " ";
+        EXPECT_EQ(result.exitCode, exitCode) << line << result.err;
+        EXPECT_TRUE(test::isOneLine(result.err)) << line << result.err;
+        EXPECT_EQ(result.out, "") << line;
+        for (const auto& file : std::filesystem::directory_iterator(folder_.path())) {
+            const std::string name = file.path().filename().string();
+            EXPECT_TRUE(name.find("out") == std::string::npos &&
+                        name.find("partial") == std::string::npos)
+                << line << "left " << name;
+        }
+    }
+
+    test::TemporaryFolder folder_;
+    std::size_t count_ = 0;
+};
+
+TEST_F(SnapshotTool, ShowsEveryKindOfMap) {
+    for (const char* name : {"map.simplemap", "map.ply", "map.3Dscene"}) {
+        const std::string picture = std::string(name) + ".png";
+        const auto result =
+            runTool("delio-snapshot", {"-i", at(name), "-o", at(picture), "--size", "321x200"});
+        EXPECT_EQ(result.exitCode, 0) << name << result.err;
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(result.err, "");
+        expectPicture(picture, 321, 200);
+    }
+}
+
+TEST_F(SnapshotTool, EveryOptionChangesThePicture) {
+    const auto render = [&](std::vector<std::string> more) {
+        std::vector<std::string> words = {"-i",      at("map.ply"), "-o",     at("p.png"),
+                                          "--force", "--size",      "200x150"};
+        words.insert(words.end(), more.begin(), more.end());
+        const auto result = runTool("delio-snapshot", words);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return test::readText(at("p.png"));
+    };
+    const std::string plain = render({});
+    EXPECT_EQ(render({}), plain);
+    for (const std::vector<std::string>& option : {std::vector<std::string>{"--azimuth", "-30"},
+                                                   {"--elevation", "20"},
+                                                   {"--zoom", "8"},
+                                                   {"--ortho"},
+                                                   {"--point-size", "5"},
+                                                   {"--background", "#ff8000"},
+                                                   {"--background", "white"},
+                                                   {"--colormap", "viridis"},
+                                                   {"--colormap", "gray"}})
+        EXPECT_NE(render(option), plain) << option[0];
+}
+
+TEST_F(SnapshotTool, RefusesBadInput) {
+    const std::string out = at("out.png");
+    expectRefusal({"-i", at("missing.ply"), "-o", out}, 1);
+    expectRefusal({"-i", at("missing.3Dscene"), "-o", out}, 1);
+    expectRefusal({"-i", at("missing.simplemap"), "-o", out}, 1);
+    test::writeText(at("notes.txt"), "hello");
+    expectRefusal({"-i", at("notes.txt"), "-o", out}, 1);
+    for (const char* kind : {".3Dscene", ".simplemap", ".ply"}) {
+        test::writeText(at(std::string("text") + kind), "hello");
+        expectRefusal({"-i", at(std::string("text") + kind), "-o", out}, 1);
+        const std::string whole = test::readText(at(std::string("map") + kind));
+        test::writeText(at(std::string("cut") + kind), whole.substr(0, whole.size() * 2 / 3));
+        expectRefusal({"-i", at(std::string("cut") + kind), "-o", out}, 1);
+    }
+    // One kind of MRPT file under the name of another.
+    std::filesystem::copy_file(at("map.simplemap"), at("other.3Dscene"));
+    expectRefusal({"-i", at("other.3Dscene"), "-o", out}, 1);
+    map::saveSimplemap({}, at("empty.simplemap"));
+    expectRefusal({"-i", at("empty.simplemap"), "-o", out}, 1);
+    map::savePly(mrpt::maps::CPointsMapXYZI(), at("empty.ply"));
+    expectRefusal({"-i", at("empty.ply"), "-o", out}, 1);
+    map::saveScene(mrpt::opengl::COpenGLScene(), at("empty.3Dscene"));
+    expectRefusal({"-i", at("empty.3Dscene"), "-o", out}, 1);
+}
+
+TEST_F(SnapshotTool, RefusesBadOutput) {
+    expectRefusal({"-i", at("map.ply"), "-o", at("no/such/out.png")}, 1);
+    expectRefusal({"-i", at("map.ply"), "-o", at("out.xyz")}, 1);
+    test::writeText(at("there.png"), "precious");
+    expectRefusal({"-i", at("map.ply"), "-o", at("there.png")}, 1);
+    EXPECT_EQ(test::readText(at("there.png")), "precious");
+    EXPECT_EQ(runTool("delio-snapshot",
+                      {"-i", at("map.ply"), "-o", at("there.png"), "--force", "--size", "64x64"})
+                  .exitCode,
+              0);
+    expectPicture("there.png", 64, 64);
+}
+
+TEST_F(SnapshotTool, RefusesABadCommandLine) {
+    const std::string in = at("map.ply"), out = at("out.png");
+    expectRefusal({}, 2);
+    expectRefusal({"-i", in}, 2);
+    for (const char* size : {"640", "640x", "x480", "0x480", "640x480x3", "-1x5", "640X480",
+                             "99999x10", "a", "640x480 ", "99999999999999999999x1"})
+        expectRefusal({"-i", in, "-o", out, "--size", size}, 2);
+    for (const char* colour : {"red", "#12345", "#12345g", "#1234567", "123456", ""})
+        expectRefusal({"-i", in, "-o", out, "--background", colour}, 2);
+    for (const char* number : {"abc", "1.5x", "nan", "1000"}) {
+        expectRefusal({"-i", in, "-o", out, "--azimuth", number}, 2);
+        expectRefusal({"-i", in, "-o", out, "--elevation", number}, 2);
+    }
+    expectRefusal({"-i", in, "-o", out, "--zoom", "0"}, 2);
+    expectRefusal({"-i", in, "-o", out, "--zoom", "-5"}, 2);
+    expectRefusal({"-i", in, "-o", out, "--point-size", "0"}, 2);
+    expectRefusal({"-i", in, "-o", out, "--colormap", "jet"}, 2);
+    expectRefusal({"-i", in, "-o", out, "--no-such-option"}, 2);
+}
+
+TEST_F(SnapshotTool, SaysWhatToInstallWithoutEgl) {
+    setenv("__EGL_VENDOR_LIBRARY_DIRS", folder_.path().c_str(), 1);
+    expectRefusal({"-i", at("map.ply"), "-o", at("out.png")}, 1);
+    const auto result = runTool("delio-snapshot", {"-i", at("map.ply"), "-o", at("out.png")});
+    EXPECT_NE(result.err.find("libegl1"), std::string::npos) << result.err;
+    unsetenv("__EGL_VENDOR_LIBRARY_DIRS");
+}
+
+TEST_F(SnapshotTool, Observations2mapTakesTheSimplemap) {
+    if (std::system("command -v observations2map >/dev/null") != 0)
+        GTEST_SKIP() << "observations2map (Debian: mrpt-apps) is not installed";
+    test::writeText(at("o2m.ini"),
+                    "[MappingApplication]\npointsMap_count=1\n"
+                    "[MappingApplication_pointsMap_00_insertOpts]\n"
+                    "minDistBetweenLaserPoints=0\nfuseWithExisting=false\nisPlanarMap=false\n");
+    const auto result =
+        runTool("observations2map", {at("o2m.ini"), at("map.simplemap"), at("o2m")});
+    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+    std::size_t lines = 0;
+    for (const auto& file : std::filesystem::directory_iterator(folder_.path()))
+        if (file.path().filename().string().find("o2m_") == 0 &&
+            file.path().extension() == ".txt") {
+            std::istringstream text(test::readText(file.path()));
+            for (std::string line; std::getline(text, line);) ++lines;
+        }
+    EXPECT_GE(lines, count_)
+        << "every point of the map (the same voxel from two scans is two here)";
+}
+}  // namespace

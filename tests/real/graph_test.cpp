@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "delio/graph/graph_file.h"
+#include "gauss_newton.h"
+#include "test_data.h"
+
+namespace {
+using namespace delio;
+
+/** Optimises a public graph without a kernel from the poses in its file; the least cost is known
+ *  from undamped Gauss-Newton steps taken by other code, here where that converges. */
+void expectTheMinimum(const std::string& file, double leastCost, int gaussNewtonSteps) {
+    auto graph = graph::loadG2o(test::dataFolder() / file);
+    if (gaussNewtonSteps > 0) {
+        const auto expected = test::gaussNewton(graph, gaussNewtonSteps);
+        EXPECT_NEAR(test::costOf(graph, expected), leastCost, 1e-6 * leastCost);
+    }
+    graph::PoseGraphOptions options;
+    options.kernel_width = 0;
+    const auto result = graph.optimise(options);
+    EXPECT_TRUE(result.converged);
+    EXPECT_NEAR(result.final_cost, leastCost, 1e-6 * leastCost);
+
+    const auto poses = test::isometriesOf(graph.poses());
+    EXPECT_NEAR(test::costOf(graph, poses), result.final_cost, 1e-9 * leastCost);
+    const auto gradient = test::gradientOf(graph, poses, 0);
+    const double largest = gradient.tail(gradient.size() - 6).cwiseAbs().maxCoeff();
+    EXPECT_LT(largest, 1e-3);
+    std::cout << file << ": " << result.iterations << " iterations, largest gradient " << largest
+              << "\n";
+}
+
+TEST(Graph, ParkingGarage) {
+    DELIO_NEED_DATA("graphs/parking-garage.g2o");
+    expectTheMinimum("graphs/parking-garage.g2o", 1.238690598, 8);
+}
+
+TEST(Graph, Sphere2500) {
+    DELIO_NEED_DATA("graphs/sphere2500.g2o");
+    expectTheMinimum("graphs/sphere2500.g2o", 727.2388518, 12);
+}
+
+TEST(Graph, SmallGrid3D) {
+    DELIO_NEED_DATA("graphs/smallGrid3D.g2o");
+    expectTheMinimum("graphs/smallGrid3D.g2o", 462.4825302, 40);
+}
+
+// A chain with nothing in conflict: every edge can be met.
+TEST(Graph, Torus) {
+    DELIO_NEED_DATA("graphs/graphslam_SE3_in_torus3D-first100.graph");
+    auto graph =
+        graph::loadG2o(test::dataFolder() / "graphs/graphslam_SE3_in_torus3D-first100.graph");
+    const auto result = graph.optimise({});
+    EXPECT_GT(result.initial_cost, 1);
+    EXPECT_LT(result.final_cost, 1e-6);
+}
+}  // namespace

@@ -1,0 +1,101 @@
+/** Maps of the real scans, as pictures: streets have to be seen in them. */
+#include <gtest/gtest.h>
+#include <mrpt/core/Clock.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
+
+#include <fstream>
+
+#include "delio/io/trajectory.h"
+#include "delio/map/map_builder.h"
+#include "delio/map/scene.h"
+#include "delio/map/snapshot.h"
+#include "test_data.h"
+
+namespace {
+using mrpt::poses::CPose3D;
+namespace map = delio::map;
+
+mrpt::maps::CPointsMapXYZI readScan(const std::filesystem::path& path) {
+    mrpt::maps::CPointsMapXYZI points;
+    std::ifstream in(path, std::ios::binary);
+    float p[4];
+    while (in.read(reinterpret_cast<char*>(p), sizeof(p)))
+        points.insertPointRGB(p[0], p[1], p[2], p[3], 0, 0);
+    return points;
+}
+
+struct Drive {
+    map::MapBuilder builder{map::MapOptions()};
+    std::vector<CPose3D> poses;
+};
+
+Drive readDrive(const std::string& name) {
+    const auto folder = delio::test::dataFolder() / "kitti" / name;
+    const auto calibration = delio::io::readCalibration((folder / "calib.txt").string());
+    Drive drive;
+    const CPose3D identity, toLidar = identity - calibration.Tr;
+    for (const auto& cam0 : delio::io::readTrajectory((folder / "poses.txt").string()).poses)
+        drive.poses.push_back(toLidar + cam0 + calibration.Tr);
+    std::vector<std::filesystem::path> scans;
+    for (const auto& file : std::filesystem::directory_iterator(folder / "velodyne"))
+        scans.push_back(file.path());
+    std::sort(scans.begin(), scans.end());
+    for (std::size_t i = 0; i < scans.size(); ++i)
+        drive.builder.add(i, drive.poses.at(i), readScan(scans[i]), CPose3D(),
+                          mrpt::Clock::fromDouble(1e9 + 0.1 * static_cast<double>(i)));
+    return drive;
+}
+
+/** Share of the pixels that differ from the background, and in how many colours. */
+struct Coverage {
+    double share = 0;
+    std::size_t colours = 0;
+};
+
+Coverage coverageOf(const mrpt::img::CImage& image) {
+    std::vector<unsigned> values;
+    std::size_t covered = 0;
+    for (int row = 0; row < static_cast<int>(image.getHeight()); ++row)
+        for (int column = 0; column < static_cast<int>(image.getWidth()); ++column) {
+            const auto* bgr =
+                image.ptr<std::uint8_t>(static_cast<unsigned>(column), static_cast<unsigned>(row));
+            values.push_back(unsigned{bgr[0]} | unsigned{bgr[1]} << 8 | unsigned{bgr[2]} << 16);
+            covered += bgr[0] > 60 || bgr[1] > 60 || bgr[2] > 60;
+        }
+    std::sort(values.begin(), values.end());
+    const auto end = std::unique(values.begin(), values.end());
+    return {
+        static_cast<double>(covered) / static_cast<double>(image.getWidth() * image.getHeight()),
+        static_cast<std::size_t>(end - values.begin())};
+}
+
+void expectAPictureOfStreets(const std::string& name, std::size_t minKeyScans) {
+    const Drive drive = readDrive(name);
+    EXPECT_GE(drive.builder.keyScans(), minKeyScans);
+    const auto points = drive.builder.points(drive.poses);
+    EXPECT_GT(points.size(), 50000U);
+    const auto scene = map::mapScene(points, drive.poses);
+    const auto coverage = coverageOf(map::picture(*scene, {}));
+    EXPECT_GT(coverage.share, 0.1);
+    EXPECT_GT(coverage.colours, 1000U);
+    // For looking at: DELIO_PICTURES=FOLDER keeps the pictures.
+    if (const char* folder = std::getenv("DELIO_PICTURES")) {
+        const std::string stem = std::string(folder) + "/" + name;
+        map::saveScene(*scene, stem + ".3Dscene");
+        map::savePicture(*scene, {}, stem + "_map.png");
+        map::savePicture(*scene, map::topView(), stem + "_top.png");
+        const auto way = map::trajectoryScene(drive.poses);
+        map::savePicture(*way, map::topView(), stem + "_trajectory.png");
+    }
+}
+
+TEST(RealMap, First16OfKitti00) {
+    DELIO_NEED_DATA("kitti/00_first16");
+    expectAPictureOfStreets("00_first16", 5);
+}
+
+TEST(RealMap, First60OfDrive0005) {
+    DELIO_NEED_DATA("kitti/drive0005_first60");
+    expectAPictureOfStreets("drive0005_first60", 10);
+}
+}  // namespace

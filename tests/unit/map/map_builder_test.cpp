@@ -1,0 +1,220 @@
+#include "delio/map/map_builder.h"
+
+#include <gtest/gtest.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/obs/CSensoryFrame.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+#include <set>
+#include <tuple>
+
+#include "delio/error.h"
+#include "delio/map/simplemap.h"
+#include "test_data.h"
+
+namespace {
+using namespace delio;
+using map::MapBuilder;
+using map::MapOptions;
+using mrpt::maps::CPointsMapXYZI;
+using mrpt::maps::CSimplePointsMap;
+using mrpt::poses::CPose3D;
+
+const auto kStamp = mrpt::Clock::fromDouble(1316995200.0);
+
+CPointsMapXYZI randomCloud(std::size_t count, unsigned seed, float reach = 20) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> place(-reach, reach), intensity(0, 1);
+    CPointsMapXYZI cloud;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float x = place(random), y = place(random), z = place(random) / 10;
+        cloud.insertPointRGB(x, y, z, intensity(random), 0, 0);
+    }
+    return cloud;
+}
+
+MapOptions everything() {
+    MapOptions options;
+    options.voxelSize_m = 0;
+    options.minRange_m = 0;
+    options.maxRange_m = 1e6;
+    return options;
+}
+
+CSimplePointsMap oneCloud(std::initializer_list<mrpt::math::TPoint3Df> points) {
+    CSimplePointsMap cloud;
+    for (const auto& p : points) cloud.insertPoint(p.x, p.y, p.z);
+    return cloud;
+}
+
+using Voxel = std::tuple<int, int, int>;
+Voxel voxelOf(double x, double y, double z, double size) {
+    return {static_cast<int>(std::floor(x / size)), static_cast<int>(std::floor(y / size)),
+            static_cast<int>(std::floor(z / size))};
+}
+
+TEST(MapBuilder, KeyScansByDistanceAndByAngle) {
+    MapOptions options = everything();
+    options.keyframeDistance_m = 2;
+    options.keyframeAngle_deg = 10;
+    MapBuilder builder(options);
+    const auto cloud = randomCloud(10, 1);
+    const auto offer = [&](double x, double yaw_deg) {
+        return builder.add(0, CPose3D::FromXYZYawPitchRoll(x, 0, 0, mrpt::DEG2RAD(yaw_deg), 0, 0),
+                           cloud, CPose3D(), kStamp);
+    };
+    EXPECT_TRUE(offer(0, 0));
+    EXPECT_FALSE(offer(1.9, 0));
+    EXPECT_TRUE(offer(2.1, 0));
+    EXPECT_FALSE(offer(0.2, 0)) << "1.9 m from the last key scan";
+    EXPECT_FALSE(offer(2.1, -9));
+    EXPECT_TRUE(offer(2.1, -11));
+    EXPECT_FALSE(offer(2.1, -19));
+    EXPECT_TRUE(offer(2.1, 349 + 11)) << "11 degrees, over the turn of the circle";
+    EXPECT_EQ(builder.keyScans(), 4U);
+}
+
+TEST(MapBuilder, UnusablePointsAreDroppedAndAnEmptyScanIsNoKeyScan) {
+    MapOptions options = everything();
+    options.minRange_m = 2.5;
+    options.maxRange_m = 60;
+    MapBuilder builder(options);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float inf = std::numeric_limits<float>::infinity();
+    EXPECT_FALSE(builder.add(0, CPose3D(), CSimplePointsMap(), CPose3D(), kStamp));
+    EXPECT_FALSE(builder.add(0, CPose3D(), oneCloud({{nan, 3, 0}, {1, 1, 1}, {0, 61, 0}}),
+                             CPose3D(), kStamp));
+    EXPECT_TRUE(builder.add(
+        0, CPose3D(), oneCloud({{nan, 3, 0}, {0, 0, 3}, {0, inf, 0}, {3, nan, 0}, {0, 59, 0}}),
+        CPose3D(), kStamp));
+    const auto points = builder.points({CPose3D()});
+    ASSERT_EQ(points.size(), 2U);
+    EXPECT_EQ(points.getPointsBufferRef_z()[0], 3);
+    EXPECT_EQ(points.getPointsBufferRef_y()[1], 59);
+}
+
+TEST(MapBuilder, OnePointPerVoxelAsBruteForceFindsIt) {
+    for (const double size : {0.2, 1.0, 3.3}) {
+        MapOptions options = everything();
+        options.voxelSize_m = size;
+        MapBuilder builder(options);
+        const auto cloud = randomCloud(20000, 2);
+        builder.add(0, CPose3D(), cloud, CPose3D(), kStamp);
+        std::set<Voxel> taken;
+        std::vector<std::size_t> expected;
+        for (std::size_t i = 0; i < cloud.size(); ++i)
+            if (taken
+                    .insert(voxelOf(cloud.getPointsBufferRef_x()[i],
+                                    cloud.getPointsBufferRef_y()[i],
+                                    cloud.getPointsBufferRef_z()[i], size))
+                    .second)
+                expected.push_back(i);
+        const auto points = builder.points({CPose3D()});
+        ASSERT_EQ(points.size(), expected.size()) << size;
+        for (std::size_t k = 0; k < expected.size(); ++k) {
+            const std::size_t i = expected[k];
+            EXPECT_EQ(points.getPointsBufferRef_x()[k], cloud.getPointsBufferRef_x()[i]);
+            EXPECT_EQ(points.getPointsBufferRef_y()[k], cloud.getPointsBufferRef_y()[i]);
+            EXPECT_EQ(points.getPointsBufferRef_z()[k], cloud.getPointsBufferRef_z()[i]);
+            EXPECT_EQ(points.getPointIntensity_fast(k), cloud.getPointIntensity_fast(i));
+        }
+    }
+}
+
+TEST(MapBuilder, WhatSeveralScansSawIsThereOnce) {
+    MapOptions options = everything();
+    options.voxelSize_m = 0.5;
+    MapBuilder builder(options);
+    const auto cloud = randomCloud(5000, 3);
+    builder.add(0, CPose3D(), cloud, CPose3D(), kStamp);
+    builder.add(1, CPose3D::FromTranslation(10, 0, 0), cloud, CPose3D(), kStamp);
+    EXPECT_EQ(builder.keyScans(), 2U);
+    const auto once = builder.points({CPose3D(), CPose3D()});
+    const auto apart = builder.points({CPose3D(), CPose3D::FromTranslation(100, 0, 0)});
+    EXPECT_EQ(2 * once.size(), apart.size());
+}
+
+TEST(MapBuilder, FinalPosesAndTheSensorsPlaceAreApplied) {
+    MapBuilder builder(everything());
+    const auto sensor = CPose3D::FromXYZYawPitchRoll(0.5, -0.2, 1.7, 1.2, 0.1, -0.3);
+    const auto cloud = randomCloud(200, 4);
+    builder.add(3, CPose3D(), cloud, sensor, kStamp);
+    std::vector<CPose3D> poses(4);
+    poses[3] = CPose3D::FromXYZYawPitchRoll(40, -7, 3, -2.5, 0.2, 0.4);
+    const auto points = builder.points(poses);
+    ASSERT_EQ(points.size(), cloud.size());
+    const Eigen::Matrix4d T =
+        poses[3].getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen() *
+        sensor.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen();
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const Eigen::Vector4d p(cloud.getPointsBufferRef_x()[i], cloud.getPointsBufferRef_y()[i],
+                                cloud.getPointsBufferRef_z()[i], 1);
+        const Eigen::Vector4d q = T * p;
+        EXPECT_NEAR(points.getPointsBufferRef_x()[i], q.x(), 1e-4);
+        EXPECT_NEAR(points.getPointsBufferRef_y()[i], q.y(), 1e-4);
+        EXPECT_NEAR(points.getPointsBufferRef_z()[i], q.z(), 1e-4);
+    }
+    // The simplemap tells the same.
+    const auto fromSimplemap = map::pointsOf(builder.simplemap(poses));
+    ASSERT_EQ(fromSimplemap.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_NEAR(fromSimplemap.getPointsBufferRef_x()[i], points.getPointsBufferRef_x()[i],
+                    1e-4);
+        EXPECT_EQ(fromSimplemap.getPointIntensity_fast(i), points.getPointIntensity_fast(i));
+    }
+}
+
+TEST(MapBuilder, MissingPosesAreAnError) {
+    MapBuilder builder(everything());
+    builder.add(5, CPose3D(), randomCloud(10, 5), CPose3D(), kStamp);
+    EXPECT_THROW(builder.points(std::vector<CPose3D>(5)), Error);
+    EXPECT_THROW(builder.simplemap({}), Error);
+}
+
+TEST(Simplemap, ReloadsEqualAndRepeatsByteForByte) {
+    const test::TemporaryFolder folder;
+    const auto sensor = CPose3D::FromXYZYawPitchRoll(0, 0, 1.7, 0.1, 0, 0);
+    const std::vector<CPose3D> poses = {CPose3D(),
+                                        CPose3D::FromXYZYawPitchRoll(5, 1, 0, 0.3, 0, 0)};
+    for (const char* name : {"a.simplemap", "b.simplemap"}) {
+        MapBuilder builder(MapOptions(), "velodyne");
+        builder.add(0, poses[0], randomCloud(3000, 6), sensor, kStamp);
+        builder.add(1, poses[1], randomCloud(3000, 7), sensor, kStamp);
+        map::saveSimplemap(builder.simplemap(poses), folder / name);
+    }
+    EXPECT_EQ(test::readText(folder / "a.simplemap"), test::readText(folder / "b.simplemap"));
+
+    const auto loaded = map::loadSimplemap(folder / "a.simplemap");
+    ASSERT_EQ(loaded.size(), 2U);
+    const auto pair = loaded.getAsPair(1);
+    EXPECT_LT((pair.pose->getMeanVal() - poses[1]).norm(), 1e-9);
+    const auto scan = pair.sf->getObservationByClass<mrpt::obs::CObservationPointCloud>();
+    ASSERT_TRUE(scan);
+    EXPECT_EQ(scan->sensorLabel, "velodyne");
+    EXPECT_EQ(scan->timestamp, kStamp);
+    EXPECT_FALSE(scan->isExternallyStored());
+    EXPECT_LT((scan->sensorPose - sensor).norm(), 1e-9);
+    MapBuilder again((MapOptions()));
+    again.add(0, CPose3D(), randomCloud(3000, 7), sensor, kStamp);
+    const auto kept = again.points({-sensor});
+    ASSERT_EQ(scan->pointcloud->size(), kept.size());
+}
+
+TEST(Simplemap, CutOffAnywhereIsAnError) {
+    const test::TemporaryFolder folder;
+    MapBuilder builder(everything());
+    builder.add(0, CPose3D(), randomCloud(300, 8), CPose3D(), kStamp);
+    map::saveSimplemap(builder.simplemap({CPose3D()}), folder / "whole.simplemap");
+    const std::string whole = test::readText(folder / "whole.simplemap");
+    for (std::size_t length = 0;
+         length<whole.size(); length += length + 40> whole.size() ? 1 : 17) {
+        test::writeText(folder / "cut.simplemap", whole.substr(0, length));
+        EXPECT_THROW(map::loadSimplemap(folder / "cut.simplemap"), Error) << length;
+    }
+    EXPECT_THROW(map::loadSimplemap(folder / "missing.simplemap"), Error);
+    EXPECT_THROW(map::loadSimplemap(folder.path().string()), Error);
+}
+}  // namespace
