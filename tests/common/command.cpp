@@ -10,9 +10,13 @@
 #include "test_data.h"
 
 namespace delio::test {
-CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments) {
+std::string toolPath(const std::string& tool) {
     const std::filesystem::path own = std::filesystem::path(DELIO_TOOLS) / tool;
-    const std::string program = std::filesystem::exists(own) ? own.string() : tool;
+    return std::filesystem::exists(own) ? own.string() : tool;
+}
+
+CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments) {
+    const std::string program = toolPath(tool);
     const TemporaryFolder folder;
     const std::string out = folder / "out", err = folder / "err";
 

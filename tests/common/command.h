@@ -9,6 +9,9 @@ struct CommandResult {
     std::string err;
 };
 
+/** Where one of the project's tools lies; any other name as it is. */
+std::string toolPath(const std::string& tool);
+
 /** Runs one of the project's tools (by its name) or any program of PATH, without a shell. */
 CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments);
 

@@ -1,0 +1,55 @@
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "mesh.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
+
+namespace delio::synth {
+/** What a ray hit; no range: nothing. */
+struct Hit {
+    double range = 0;
+    double cosIncidence = 0;
+    double reflectivity = 0;
+};
+
+/** Finds the first triangle on a ray, with Embree. The instruction set and the building thread are
+ *  fixed, and Embree only chooses the triangle: the range is computed from it in double precision.
+ */
+class RayCaster {
+ public:
+    RayCaster();
+    ~RayCaster();
+    RayCaster(const RayCaster&) = delete;
+    RayCaster& operator=(const RayCaster&) = delete;
+
+    void add(int id, Mesh mesh);
+    void remove(int id);
+    bool has(int id) const { return meshes_.count(id) != 0; }
+    /** The ids of all meshes, in order. */
+    std::vector<int> ids() const;
+    /** To be called after meshes were added or removed, before rays are cast. */
+    void commit();
+
+    /** Rays from `origin` along `directions` (unit vectors): may be called by several threads. */
+    void cast(const Eigen::Vector3d& origin, const std::vector<Eigen::Vector3d>& directions,
+              double maxRange, std::vector<Hit>& hits) const;
+
+ private:
+    struct Attached {
+        unsigned geometry;
+        Mesh mesh;
+    };
+    Hit exactHit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, unsigned geometry,
+                 unsigned triangle, double found) const;
+
+    RTCDeviceTy* device_;
+    RTCSceneTy* scene_;
+    std::map<int, Attached> meshes_;
+    std::vector<const Mesh*> byGeometry_;
+};
+}  // namespace delio::synth
