@@ -32,7 +32,8 @@ CPose3D orthonormalised(const CPose3D& pose) {
     return poseOf(q.normalized().toRotationMatrix(), {pose.x(), pose.y(), pose.z()});
 }
 
-/** Both stages give their own covariance; that of the translation moves to the later frame. */
+/** The covariance of both stages in the right tangent, which is the later frame's: the translation
+ *  has its own noise, and through the lever also that of the rotation it was unrotated by. */
 Increment incrementOf(const rotation::RotationEstimate& rotation,
                       const translation::TranslationEstimate& translation) {
     const Eigen::Matrix3d& R = rotation.rotation;
@@ -40,7 +41,11 @@ Increment incrementOf(const rotation::RotationEstimate& rotation,
     increment.pose = poseOf(R, translation.translation);
     increment.covariance.setZero();
     auto covariance = increment.covariance.asEigen();
-    covariance.topLeftCorner<3, 3>() = R.transpose() * translation.covariance * R;
+    const Eigen::Matrix3d lever = R.transpose() * translation.lever * R;
+    covariance.topLeftCorner<3, 3>() = R.transpose() * translation.covariance * R +
+                                       lever * rotation.covariance * lever.transpose();
+    covariance.topRightCorner<3, 3>() = lever * rotation.covariance;
+    covariance.bottomLeftCorner<3, 3>() = rotation.covariance * lever.transpose();
     covariance.bottomRightCorner<3, 3>() = rotation.covariance;
     return increment;
 }

@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
     TCLAP::SwitchArg verbose("", "verbose", "Say more", cmd);
 
-    return cli::run(cmd, argc, argv, verbose.getValue(), [&] {
+    return cli::run(cmd, argc, argv, verbose, [&] {
         if (scene.getValue() != "urban")
             return badUsage("there is no scene '" + scene.getValue() + "'; there is: urban");
         const auto model = findSensor(sensor.getValue());

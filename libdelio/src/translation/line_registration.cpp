@@ -33,12 +33,19 @@ std::vector<Match> nearestMidpoints(const KdTree& tree, const LineCloud& to,
 struct Sums {
     Eigen::Vector3d d = Eigen::Vector3d::Zero();
     Eigen::Matrix3d seen = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d lever = Eigen::Matrix3d::Zero();  //!< sum of seen * [midpoint]x
     double squared = 0;
     std::size_t pairs = 0;
 };
 
+Eigen::Matrix3d crossProductMatrix(const Eigen::Vector3d& v) {
+    Eigen::Matrix3d m;
+    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+    return m;
+}
+
 Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d& t,
-              const std::vector<Match>& matches, double min_angle_deg) {
+              const std::vector<Match>& matches, const LineRegistrationOptions& options) {
     double distances = 0, count = 0;
     for (const auto& match : matches)
         if (match.distance >= 0) {
@@ -52,15 +59,20 @@ Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d&
         const auto s = static_cast<Eigen::Index>(i), f = static_cast<Eigen::Index>(matches[i].from);
         const Eigen::Vector3d us = to.directions.col(s).cast<double>();
         const Eigen::Vector3d ut = from.directions.col(f).cast<double>();
-        const auto closest = closestPoints(to.midpoints.col(s).cast<double>() + t, us,
-                                           from.midpoints.col(f).cast<double>(), ut, min_angle_deg);
+        const auto closest =
+            closestPoints(to.midpoints.col(s).cast<double>() + t, us,
+                          from.midpoints.col(f).cast<double>(), ut, options.min_angle_deg);
+        if (closest.parallel && !options.centroids) continue;
         const Eigen::Vector3d d = closest.onTarget - closest.onSource;
         const Eigen::Vector3d normal = us.cross(ut);
-        // Skew lines see the direction of their common normal; (nearly) parallel ones everything
-        // but their own direction.
-        sums.seen += closest.parallel
-                         ? Eigen::Matrix3d(Eigen::Matrix3d::Identity() - ut * ut.transpose())
-                         : Eigen::Matrix3d(normal * normal.transpose() / normal.squaredNorm());
+        // Skew lines see the direction of their common normal: that of the surface which both lie
+        // on. (Nearly) parallel ones see everything but their own direction; they are only used
+        // with centroids.
+        const Eigen::Matrix3d seen =
+            closest.parallel ? Eigen::Matrix3d(Eigen::Matrix3d::Identity() - ut * ut.transpose())
+                             : Eigen::Matrix3d(normal * normal.transpose() / normal.squaredNorm());
+        sums.seen += seen;
+        sums.lever += seen * crossProductMatrix(to.midpoints.col(s).cast<double>());
         sums.d += d;
         sums.squared += d.squaredNorm();
         ++sums.pairs;
@@ -99,6 +111,10 @@ void settle(const Sums& sums, const Eigen::Vector3d& predicted,
             estimate.unobservedAxes.conservativeResize(3, estimate.unobservedAxes.cols() + 1);
             estimate.unobservedAxes.rightCols<1>() = axis;
         }
+        // A point p moves by w x p where the rotation is off by w; the translation undoes that.
+        if (observed)
+            estimate.lever +=
+                axis * axis.transpose() * sums.lever / (axes.eigenvalues()[k] * pairs);
         estimate.covariance +=
             (observed ? noise / axes.eigenvalues()[k] : options.prior_sigma * options.prior_sigma) *
             axis * axis.transpose();
@@ -165,7 +181,7 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
     Sums sums;
     while (estimate.iterations < options.max_iterations) {
         const auto matches = nearestMidpoints(tree, to, estimate.translation, options.max_distance);
-        sums = sumPairs(from, to, estimate.translation, matches, options.min_angle_deg);
+        sums = sumPairs(from, to, estimate.translation, matches, options);
         if (sums.pairs < options.min_matches) break;
         ++estimate.iterations;
         const Eigen::Vector3d step = options.centroids

@@ -9,10 +9,13 @@ namespace delio::translation {
  *  with `centroids` = true each step is the difference of the centroids of the closest points, as
  *  the paper writes it, which shrinks the step along directions that few pairs see and so takes
  *  many iterations. Otherwise each step goes straight to where those steps end for the pairs at
- *  hand: the least squares solution over the pairs' common normals. */
+ *  hand: the least squares solution over the pairs' common normals; and pairs of nearly parallel
+ *  lines are left out. Those have no common normal, so that they would hold the estimate within
+ *  their surface too; the rings on the ground look the same wherever the sensor stands, and with
+ *  them slow drives stood still. */
 struct LineRegistrationOptions : public StageOptions {
     bool centroids = false;
-    double min_angle_deg = 5;
+    double min_angle_deg = 15;
     double max_distance = 5;
     unsigned max_iterations = 40;
     double converged = 0.001;
@@ -28,7 +31,11 @@ struct LineRegistrationOptions : public StageOptions {
 
 struct TranslationEstimate {
     Eigen::Vector3d translation = Eigen::Vector3d::Zero();  //!< p_from = p_to(unrotated) + t
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   //!< m^2, in the axes of scan `from`
+    /** m^2, in the axes of scan `from`; of the lines' own noise, the rotation taken as true. */
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    /** How the translation follows an error of the rotation that the scan was unrotated by:
+     *  d translation / d w, w a small rotation (rad) about the axes of scan `from`. */
+    Eigen::Matrix3d lever = Eigen::Matrix3d::Zero();
     /** Eigenvalues, rising, of the mean projection of the pairs: how well the lines fix the three
      *  directions, 0 to 1. */
     Eigen::Vector3d observability = Eigen::Vector3d::Zero();
