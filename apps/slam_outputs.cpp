@@ -281,6 +281,8 @@ void SlamRun::writeSummary(const Options& options) const {
     summary["map_and_pictures_ms"] = map_ms_;
     summary["peak_rss_mb"] = peakMemory_mb();
     yaml warnings = yaml::Sequence();
+    // Otherwise an empty list is printed as nothing, which is no YAML that MRPT reads.
+    warnings.node().printInShortFormat = warnings_.empty();
     for (const auto& warning : warnings_) warnings.push_back(warning);
     summary["warnings"] = warnings;
     if (metrics_) {

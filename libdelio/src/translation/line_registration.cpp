@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "../kd_tree.h"
 
@@ -205,22 +206,24 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
 
 TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to,
                                       const LineRegistrationOptions& options) {
+    constexpr unsigned kCoarseIterations = 10;
+    LineRegistrationOptions coarse = options;
+    coarse.max_iterations = std::min(options.max_iterations, kCoarseIterations);
     const KdTree tree(from.midpoints);
-    TranslationEstimate best = registerLines(from, to, Eigen::Vector3d::Zero(), options);
-    if (!best.valid) return best;
-    double bestDistance = meanLineDistance(from, tree, to, best.translation, options);
+    Eigen::Vector3d best = Eigen::Vector3d::Zero();
+    double bestDistance = std::numeric_limits<double>::infinity();
     const int steps = static_cast<int>(options.search_radius / options.search_step);
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y) {
             const Eigen::Vector3d start(x * options.search_step, y * options.search_step, 0);
-            if (start.norm() > options.search_radius || start.norm() == 0) continue;
-            const auto estimate = registerLines(from, to, start, options);
+            if (start.norm() > options.search_radius) continue;
+            const auto estimate = registerLines(from, to, start, coarse);
             if (!estimate.valid) continue;
             const double distance = meanLineDistance(from, tree, to, estimate.translation, options);
             if (distance >= bestDistance) continue;
-            best = estimate;
+            best = estimate.translation;
             bestDistance = distance;
         }
-    return best;
+    return registerLines(from, to, best, options);
 }
 }  // namespace delio::translation

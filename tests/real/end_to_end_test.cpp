@@ -1,0 +1,98 @@
+// KITTI in; trajectory, map and picture out: the figures that README states, through the tools.
+#include <gtest/gtest.h>
+#include <mrpt/containers/yaml.h>
+#include <mrpt/img/CImage.h>
+
+#include <cstdio>
+#include <set>
+
+#include "command.h"
+#include "delio/evaluation/relative_error.h"
+#include "delio/io/trajectory.h"
+#include "test_data.h"
+
+namespace {
+using namespace delio;
+using mrpt::containers::yaml;
+
+/** kitti2rawlog and delio-slam on one extract; its summary. */
+yaml runOn(const std::string& extract, const test::TemporaryFolder& folder,
+           const std::string& profile) {
+    const auto sequence = test::dataFolder() / "kitti" / extract;
+    const std::string rawlog = folder / (extract + ".rawlog");
+    const std::string out = folder / (extract + profile);
+    if (!std::filesystem::exists(rawlog)) {
+        const auto converted = test::runTool("kitti2rawlog", {"-i", sequence, "-o", rawlog});
+        EXPECT_EQ(converted.exitCode, 0) << converted.err;
+    }
+    const auto slam = test::runTool("delio-slam", {"-i", rawlog, "-o", out, "--profile", profile});
+    EXPECT_EQ(slam.exitCode, 0) << slam.err;
+    std::printf("== %s, %s\n%s", extract.c_str(), profile.c_str(), slam.out.c_str());
+    return yaml::FromFile(out + "/summary.yaml");
+}
+
+/** Streets, not an empty frame: much of the picture is drawn on, in many colours. */
+void expectPictureOfMap(const std::string& file) {
+    mrpt::img::CImage picture;
+    ASSERT_TRUE(picture.loadFromFile(file));
+    std::set<int> colours;
+    std::size_t drawn = 0;
+    const auto background = picture.at<uint8_t>(5, 5, 0);
+    for (unsigned y = 0; y < picture.getHeight(); y += 2)
+        for (unsigned x = 0; x < picture.getWidth(); x += 2) {
+            const int r = picture.at<uint8_t>(x, y, 0), g = picture.at<uint8_t>(x, y, 1),
+                      b = picture.at<uint8_t>(x, y, 2);
+            drawn += std::abs(r - background) > 30;
+            colours.insert(r / 32 * 64 + g / 32 * 8 + b / 32);
+        }
+    EXPECT_GT(drawn, picture.getWidth() * picture.getHeight() / 4 / 20);
+    EXPECT_GT(colours.size(), 30U);
+}
+
+TEST(EndToEnd, FirstScansOfSequence00) {
+    DELIO_NEED_DATA("kitti/00_first16");
+    const test::TemporaryFolder folder;
+    const auto summary = runOn("00_first16", folder, "paper");
+    EXPECT_EQ(summary["scans"].as<int>(), 16);
+    EXPECT_EQ(summary["predicted"].as<int>(), 0);
+    EXPECT_TRUE(summary["complete"].as<bool>());
+    EXPECT_DOUBLE_EQ(summary["vertical_correction_deg"].as<double>(), 0.205);
+    EXPECT_LT(summary["metrics"]["end_error_percent"].as<double>(), 5);
+    EXPECT_LT(summary["metrics"]["scan_rotation_median_deg"].as<double>(), 0.5);
+    const std::string out = folder / "00_first16paper";
+    EXPECT_EQ(io::readTrajectory(out + "/trajectory_kitti.txt").poses.size(), 16U);
+    expectPictureOfMap(out + "/map.png");
+
+    // The second reference for these scans: SiMpLE's trajectory.
+    DELIO_NEED_DATA("evaluator/offline/00.txt");
+    auto simple = io::readTrajectory((test::dataFolder() / "evaluator/offline/00.txt").string());
+    simple.poses.resize(16);
+    const auto own = io::readTrajectory(out + "/trajectory_kitti_cam0.txt");
+    const auto error = evaluation::relativeError(simple.poses, own.poses);
+    const double end =
+        ((simple.poses.back() - simple.poses.front()) - (own.poses.back() - own.poses.front()))
+            .norm();
+    std::printf("against SiMpLE: per scan %.4f m, %.4f deg median; end %.3f m\n",
+                error.translation_m.median, error.rotation_deg.median, end);
+    EXPECT_LT(end, 0.05 * 11.7);
+}
+
+TEST(EndToEnd, FirstScansOfDrive0005) {
+    DELIO_NEED_DATA("kitti/drive0005_first60");
+    const test::TemporaryFolder folder;
+    const auto summary = runOn("drive0005_first60", folder, "paper");
+    EXPECT_EQ(summary["scans"].as<int>(), 60);
+    EXPECT_EQ(summary["predicted"].as<int>(), 0);
+    EXPECT_LT(summary["metrics"]["scan_rotation_median_deg"].as<double>(), 0.5);
+    const std::string out = folder / "drive0005_first60paper";
+    EXPECT_EQ(io::readTrajectory(out + "/trajectory_tum.txt").poses.size(), 60U);
+    expectPictureOfMap(out + "/map.png");
+}
+
+TEST(EndToEnd, PaperLiteralRunsToo) {
+    DELIO_NEED_DATA("kitti/00_first16");
+    const test::TemporaryFolder folder;
+    const auto summary = runOn("00_first16", folder, "paper-literal");
+    EXPECT_EQ(summary["scans"].as<int>(), 16);  // reported beside the paper profile; no target
+}
+}  // namespace
