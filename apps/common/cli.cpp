@@ -32,7 +32,7 @@ class OneLineOutput : public TCLAP::StdOutput {
     }
     void failure(TCLAP::CmdLineInterface&, TCLAP::ArgException& e) override {
         failed = true;
-        const bool named = e.argId().find_first_not_of(" ") != std::string::npos;
+        const bool named = e.argId().find_first_not_of(' ') != std::string::npos;
         say(e.error() + (named ? " (" + e.argId() + ")" : "") + "; see --help");
     }
     bool failed = false;

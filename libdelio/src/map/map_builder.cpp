@@ -7,10 +7,10 @@
 #include <mrpt/poses/Lie/SO.h>
 
 #include <cmath>
-#include <optional>
+#include <unordered_set>
 
 #include "delio/error.h"
-#include "voxel_set.h"
+#include "delio/scan/voxel_grid.h"
 
 namespace delio::map {
 using mrpt::maps::CPointsMap;
@@ -27,13 +27,14 @@ double angleBetween_deg(const CPose3D& a, const CPose3D& b) {
 /** Lets through the first point of each voxel; every point if the size is 0. */
 class Thinning {
  public:
-    explicit Thinning(double voxelSize_m) {
-        if (voxelSize_m > 0) taken_.emplace(voxelSize_m);
+    explicit Thinning(double voxelSize_m) : voxelSize_m_(voxelSize_m) {}
+    bool keeps(double x, double y, double z) {
+        return voxelSize_m_ == 0 || taken_.insert(scan::voxelKey({x, y, z}, voxelSize_m_)).second;
     }
-    bool keeps(double x, double y, double z) { return !taken_ || taken_->take(x, y, z); }
 
  private:
-    std::optional<VoxelSet> taken_;
+    double voxelSize_m_;
+    std::unordered_set<std::uint64_t> taken_;
 };
 
 const CPose3D& poseOf(std::size_t index, const std::vector<CPose3D>& poses) {

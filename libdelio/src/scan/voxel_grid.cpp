@@ -5,26 +5,23 @@
 #include <unordered_map>
 
 namespace delio::scan {
-namespace {
-/** 21 bits for each axis: a million voxels to either side of the origin. */
-std::uint64_t keyOf(const Eigen::Vector3f& p, float scale) {
-    const auto part = [&](float value) {
-        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value * scale)) +
-                                          (1 << 20)) &
-               0x1FFFFF;
+std::uint64_t voxelKey(const Eigen::Vector3d& point, double size) {
+    constexpr std::int64_t kHalf = 1 << 20;  // 21 bits for each axis
+    const auto part = [&](double value) {
+        const auto index = static_cast<std::int64_t>(std::floor(value / size));
+        return static_cast<std::uint64_t>(index + kHalf) & (2 * kHalf - 1);
     };
-    return part(p.x()) << 42 | part(p.y()) << 21 | part(p.z());
+    return part(point.x()) << 42 | part(point.y()) << 21 | part(point.z());
 }
-}  // namespace
 
 VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
-    const auto scale = static_cast<float>(1 / size);
     std::unordered_map<std::uint64_t, Eigen::Index> numbers;
     numbers.reserve(static_cast<std::size_t>(points.cols()));
     VoxelNumbers result;
     result.ofPoint.reserve(static_cast<std::size_t>(points.cols()));
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const auto [entry, isNew] = numbers.emplace(keyOf(points.col(i), scale), result.voxels);
+        const auto [entry, isNew] =
+            numbers.emplace(voxelKey(points.col(i).cast<double>(), size), result.voxels);
         result.voxels += isNew;
         result.ofPoint.push_back(entry->second);
     }

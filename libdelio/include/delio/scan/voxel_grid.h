@@ -1,8 +1,12 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 namespace delio::scan {
+/** The same number for all points of one voxel and for no others within a million voxels to either
+ *  side of the origin. */
+std::uint64_t voxelKey(const Eigen::Vector3d& point, double size);
 /** Which voxel each point is in: voxels are numbered from 0 in the order in which they are first
  *  met. `size` in the unit of the points; also good for directions on the unit sphere. */
 struct VoxelNumbers {
