@@ -141,12 +141,7 @@ CPose3D rigid(const Rows& rows, const std::string& R, const std::string& T, cons
                     (T.empty() ? "" : " and " + T));
     mrpt::math::CMatrixDouble33 m;
     for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = rotation->second[static_cast<std::size_t>(i)];
-    CPose3D pose;
-    pose.setRotationMatrix(m);
-    pose.x(shift[0]);
-    pose.y(shift[1]);
-    pose.z(shift[2]);
-    return pose;
+    return {m, shift};
 }
 
 /** Pose of the OXTS unit in KITTI's Mercator world; `scale` is the cosine of the first latitude. */

@@ -17,19 +17,10 @@ auto timed(double& ms, const Work& work) {
     return result;
 }
 
-CPose3D poseOf(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
-    CPose3D pose;
-    pose.setRotationMatrix(mrpt::math::CMatrixDouble33(R));
-    pose.x(t.x());
-    pose.y(t.y());
-    pose.z(t.z());
-    return pose;
-}
-
 /** Orthonormal again: products of rotations lose it over thousands of scans. */
 CPose3D orthonormalised(const CPose3D& pose) {
     const Eigen::Quaterniond q(Eigen::Matrix3d(pose.getRotationMatrix().asEigen()));
-    return poseOf(q.normalized().toRotationMatrix(), {pose.x(), pose.y(), pose.z()});
+    return {q.normalized().toRotationMatrix(), Eigen::Vector3d(pose.x(), pose.y(), pose.z())};
 }
 
 /** The covariance of both stages in the right tangent, which is the later frame's: the translation
@@ -38,7 +29,7 @@ Increment incrementOf(const rotation::RotationEstimate& rotation,
                       const translation::TranslationEstimate& translation) {
     const Eigen::Matrix3d& R = rotation.rotation;
     Increment increment;
-    increment.pose = poseOf(R, translation.translation);
+    increment.pose = CPose3D(R, translation.translation);
     increment.covariance.setZero();
     auto covariance = increment.covariance.asEigen();
     const Eigen::Matrix3d lever = R.transpose() * translation.lever * R;

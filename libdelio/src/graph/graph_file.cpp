@@ -64,12 +64,7 @@ class Line {
         for (double& value : v) value = number();
         Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
         if (!(std::abs(q.norm() - 1) <= 1e-3)) fail("the quaternion is not of length 1");
-        CPose3D pose;
-        pose.setRotationMatrix(mrpt::math::CMatrixDouble33(q.normalized().toRotationMatrix()));
-        pose.x(v[0]);
-        pose.y(v[1]);
-        pose.z(v[2]);
-        return pose;
+        return {q.normalized().toRotationMatrix(), Eigen::Vector3d(v[0], v[1], v[2])};
     }
 
     Matrix6 symmetric() {

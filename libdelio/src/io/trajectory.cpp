@@ -67,12 +67,7 @@ CPose3D poseOf3x4(const std::vector<double>& numbers, std::size_t first, const s
     const Eigen::Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
     if (R.determinant() < 0 || (R - m.leftCols<3>()).cwiseAbs().maxCoeff() > 1e-2)
         throw Error(where + ": the 3x3 part of the pose is not a rotation");
-    CPose3D pose;
-    pose.setRotationMatrix(mrpt::math::CMatrixDouble33(R));
-    pose.x(m(0, 3));
-    pose.y(m(1, 3));
-    pose.z(m(2, 3));
-    return pose;
+    return {R, Eigen::Vector3d(m.col(3))};
 }
 
 void appendTum(Trajectory& trajectory, const std::vector<double>& numbers,
@@ -81,13 +76,9 @@ void appendTum(Trajectory& trajectory, const std::vector<double>& numbers,
         throw Error(where + ": the stamps do not rise; sort the file by time");
     const Eigen::Quaterniond q(numbers[7], numbers[4], numbers[5], numbers[6]);
     if (std::abs(q.norm() - 1) > 1e-2) throw Error(where + ": the quaternion is not of length 1");
-    CPose3D pose;
-    pose.setRotationMatrix(mrpt::math::CMatrixDouble33(q.normalized().toRotationMatrix()));
-    pose.x(numbers[1]);
-    pose.y(numbers[2]);
-    pose.z(numbers[3]);
     trajectory.stamps_s.push_back(numbers[0]);
-    trajectory.poses.push_back(pose);
+    trajectory.poses.emplace_back(q.normalized().toRotationMatrix(),
+                                  Eigen::Vector3d(numbers[1], numbers[2], numbers[3]));
 }
 
 std::string rowOf(const std::vector<double>& numbers) {
