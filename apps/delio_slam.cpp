@@ -29,7 +29,7 @@ struct Request {
     std::string input, output, profile, configText, label, images, truth, truthFrame;
     std::vector<std::string> assignments;
     std::size_t start = 0, count = 0, every = 1;
-    bool withMap = true, withGraph = true;
+    bool withMap = true, withGraph = true, verbose = false;
 };
 
 std::string textOf(const std::string& path) {
@@ -76,6 +76,7 @@ void process(const Request& request, io::ScanSource& source, std::optional<Slam>
             const double read_ms = 1e3 * clock.Tac();
             if (!slam) slam.emplace(options, request.withGraph, request.withMap, source.label());
             run.addScan(*scan, slam->process(*scan), read_ms);
+            if (request.verbose) cli::inform(run.describeLastScan());
             progress.update(run.reports.size(), source.fraction());
             for (std::size_t i = 1; i < request.every; ++i)
                 if (!source.skip()) break;
@@ -153,17 +154,26 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg noMap("", "no-map", "Leave out map, scene and map.png", cmd);
     TCLAP::SwitchArg noGraph("", "no-graph", "Leave out the pose graph's optimisation", cmd);
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
-    TCLAP::SwitchArg verbose("", "verbose", "Say more", cmd);
+    TCLAP::SwitchArg verbose("", "verbose", "A line for each scan, and all the text of errors",
+                             cmd);
 
     return cli::run(cmd, argc, argv, verbose, [&] {
         cli::catchInterrupts();
-        Request request{input.getValue(),   output.getValue(),
-                        profile.getValue(), "",
-                        label.getValue(),   images.getValue(),
-                        truth.getValue(),   truthFrame.getValue(),
-                        set.getValue(),     start.getValue(),
-                        count.getValue(),   std::max(1U, every.getValue()),
-                        !noMap.getValue(),  !noGraph.getValue()};
+        Request request;
+        request.input = input.getValue();
+        request.output = output.getValue();
+        request.profile = profile.getValue();
+        request.label = label.getValue();
+        request.images = images.getValue();
+        request.truth = truth.getValue();
+        request.truthFrame = truthFrame.getValue();
+        request.assignments = set.getValue();
+        request.start = start.getValue();
+        request.count = count.getValue();
+        request.every = std::max(1U, every.getValue());
+        request.withMap = !noMap.getValue();
+        request.withGraph = !noGraph.getValue();
+        request.verbose = verbose.getValue();
         try {
             if (config.isSet()) request.configText = textOf(config.getValue());
             optionsFor(request, {});

@@ -15,6 +15,7 @@
 #include "delio/evaluation/association.h"
 #include "delio/evaluation/frame_check.h"
 #include "delio/evaluation/kitti_metric.h"
+#include "delio/evaluation/rotation_angle.h"
 #include "delio/graph/graph_file.h"
 #include "delio/io/drive_meta.h"
 #include "delio/io/output_file.h"
@@ -88,6 +89,16 @@ void SlamRun::addScan(const Scan& scan, const ScanReport& report, double read_ms
     reports.back().odometry.features.reset();  // Slam keeps what registration needs
     sensorPoses_.push_back(scan.sensorPose);
     read_ms_.push_back(read_ms);
+}
+
+std::string SlamRun::describeLastScan() const {
+    const auto& report = reports.back();
+    const auto& pose = report.odometry.increment.pose;
+    double ms = read_ms_.back() + report.graph_ms;
+    for (const double stage : report.odometry.times_ms) ms += stage;
+    return format("scan %zu: moved %.3f m, turned %.3f deg, %.0f ms%s%s", report.index, pose.norm(),
+                  mrpt::RAD2DEG(evaluation::rotationAngle_rad(pose)), ms,
+                  report.odometry.predicted ? ", predicted: " : "", report.odometry.reason.c_str());
 }
 
 void SlamRun::optimise(Slam& slam) {

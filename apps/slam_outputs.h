@@ -22,8 +22,9 @@ class SlamRun {
                        const std::string& truthFrame);
 
     void addScan(const Scan& scan, const ScanReport& report, double read_ms);
+    /** One line for people: what became of the scan that was added last. */
+    std::string describeLastScan() const;
     void warn(const std::string& text);
-
     void optimise(Slam& slam);
     void write(const Slam& slam, const Options& options, bool withMap);
     void optimiseAndWrite(graph::PoseGraph& graph, const Options& options);

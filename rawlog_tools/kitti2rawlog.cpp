@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
     TCLAP::ValueArg<std::string> label("", "label", "Sensor label in the rawlog", false, "velodyne",
                                        "LABEL", cmd);
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
-    TCLAP::SwitchArg verbose("", "verbose", "Say more", cmd);
+    TCLAP::SwitchArg verbose("", "verbose", "All the text of errors", cmd);
 
     return cli::run(cmd, argc, argv, verbose, [&] {
         cli::catchInterrupts();

@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
     TCLAP::ValueArg<std::string> images("", "images", "Folder of the external files", false, "",
                                         "DIR", cmd);
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
-    TCLAP::SwitchArg verbose("", "verbose", "Say more", cmd);
+    TCLAP::SwitchArg verbose("", "verbose", "All the text of errors", cmd);
 
     return cli::run(cmd, argc, argv, verbose, [&] {
         cli::catchInterrupts();
