@@ -23,7 +23,8 @@ void requireIniLines(const std::string& text) {
         if (first == line.npos || line[first] == '#' || line[first] == ';') continue;
         const bool isSection = line[first] == '[' && line.find(']') != line.npos;
         inSection = inSection || isSection;
-        if (!isSection && (!inSection || line.find('=') == line.npos))
+        const auto equals = line.find('=');
+        if (!isSection && (!inSection || equals == line.npos || equals == first))
             throw Error("options, line " + std::to_string(number) + ": '" + line +
                         "' is neither [section], 'key = value' inside one, nor a # comment");
     }
@@ -77,7 +78,9 @@ void Options::load(const std::string& iniText) {
 void Options::set(const std::string& assignment) {
     const auto dot = assignment.find('.');
     const auto equals = assignment.find('=');
-    if (dot == assignment.npos || equals == assignment.npos || dot > equals)
+    // A key that begins like a comment or a section would be one.
+    if (equals == assignment.npos || dot > equals || dot + 1 == equals ||
+        std::string("#;[").find(assignment[dot + 1]) != std::string::npos)
         throw Error("'" + assignment + "' is not of the form section.key=value");
     load("[" + assignment.substr(0, dot) + "]\n" + assignment.substr(dot + 1) + "\n");
 }

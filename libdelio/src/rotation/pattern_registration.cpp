@@ -14,12 +14,17 @@ namespace delio::rotation {
 namespace {
 constexpr double kDeg = M_PI / 180;
 
+/** Pairs are never taken to fit better than this: the same scan twice leaves no residual at all,
+ * but a covariance has to be one. */
+constexpr double kLeastResidual_rad = 0.01 * kDeg;
+
 /** What pairing gives: the sum of w n_from n_to' that SVD wants, and what the residual wants. */
 struct Pairing {
     Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
     double weight = 0;
     double squaredAngles = 0;
     std::size_t matches = 0;
+    std::size_t normals = 0;  //!< that the matches stand for
 };
 
 /** Sums over the normals of `to`. They are made per block of fixed size and added in order: the
@@ -39,6 +44,7 @@ Pairing pairAll(Eigen::Index count, const PairOne& pairOne) {
         total.weight += block.weight;
         total.squaredAngles += block.squaredAngles;
         total.matches += block.matches;
+        total.normals += block.normals;
     }
     return total;
 }
@@ -55,13 +61,21 @@ Pairing pairNearest(const Pattern& from, const KdTree& tree, const Pattern& to,
         sum.weight += 1;
         sum.squaredAngles += static_cast<double>(squared);
         ++sum.matches;
+        ++sum.normals;
     });
 }
 
+/** A pattern, and how many normals each of its directions stands for. */
+struct Cells {
+    Pattern pattern;
+    std::vector<std::size_t> normals;
+};
+
 /** Pairs each normal with all of the other pattern within 2.5 sigma. The sum of the pairs' weights
  *  is the correlation of the two densities; its maximum is where pairing and SVD stand still. */
-Pairing pairDensities(const Pattern& from, const KdTree& tree, const Pattern& to,
+Pairing pairDensities(const Pattern& from, const KdTree& tree, const Cells& cells,
                       const Eigen::Matrix3d& R, double sigma_rad) {
+    const Pattern& to = cells.pattern;
     const auto reach = static_cast<float>(2.5 * 2.5 * sigma_rad * sigma_rad);
     const auto scale = static_cast<float>(-0.5 / (sigma_rad * sigma_rad));
     return pairAll(to.directions.cols(), [&](Eigen::Index i, Pairing& sum) {
@@ -82,6 +96,7 @@ Pairing pairDensities(const Pattern& from, const KdTree& tree, const Pattern& to
         sum.squaredAngles +=
             own * static_cast<double>(weight * (mean / weight - turned).squaredNorm());
         ++sum.matches;
+        sum.normals += cells.normals[static_cast<std::size_t>(i)];
     });
 }
 
@@ -94,17 +109,20 @@ Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& moment) {
 }
 
 /** Fewer directions that stand for the pattern: the weighted centroid of each cell. */
-Pattern condensed(const Pattern& pattern, double cell_deg) {
+Cells condensed(const Pattern& pattern, double cell_deg) {
     const auto cells = scan::numberVoxels(pattern.directions, cell_deg * kDeg);
-    Pattern result;
-    result.directions = Eigen::Matrix3Xf::Zero(3, cells.voxels);
-    result.weights = Eigen::VectorXf::Zero(cells.voxels);
+    Cells result;
+    auto& [directions, weights, removed] = result.pattern;
+    directions = Eigen::Matrix3Xf::Zero(3, cells.voxels);
+    weights = Eigen::VectorXf::Zero(cells.voxels);
+    result.normals.assign(static_cast<std::size_t>(cells.voxels), 0);
     for (Eigen::Index i = 0; i < pattern.directions.cols(); ++i) {
         const Eigen::Index cell = cells.ofPoint[static_cast<std::size_t>(i)];
-        result.directions.col(cell) += pattern.weights[i] * pattern.directions.col(i);
-        result.weights[cell] += pattern.weights[i];
+        directions.col(cell) += pattern.weights[i] * pattern.directions.col(i);
+        weights[cell] += pattern.weights[i];
+        ++result.normals[static_cast<std::size_t>(cell)];
     }
-    result.directions.colwise().normalize();
+    directions.colwise().normalize();
     return result;
 }
 
@@ -125,8 +143,9 @@ void settle(const Pattern& to, const Eigen::Matrix3d& predicted,
     const Eigen::AngleAxisd found(predicted.transpose() * estimate.rotation);
     Eigen::Vector3d correction = found.angle() * found.axis();
     const double prior = options.prior_sigma_deg * kDeg * options.prior_sigma_deg * kDeg;
-    const double noise = estimate.residual_rad * estimate.residual_rad /
-                         static_cast<double>(std::max<std::size_t>(estimate.matches, 1));
+    const double residual = std::max(estimate.residual_rad, kLeastResidual_rad);
+    const double noise =
+        residual * residual / static_cast<double>(std::max<std::size_t>(estimate.matches, 1));
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = axes.eigenvectors().col(k);
         const bool observed = axes.eigenvalues()[k] >= options.min_observability;
@@ -178,16 +197,17 @@ RotationEstimate registerPatterns(const Pattern& fromAll, const Pattern& toAll,
         return estimate;
     }
     const bool correlate = options.kernel_deg > 0;
-    const Pattern from = correlate ? condensed(fromAll, options.cell_deg) : fromAll;
-    const Pattern to = correlate ? condensed(toAll, options.cell_deg) : toAll;
+    const Cells fromCells = correlate ? condensed(fromAll, options.cell_deg) : Cells{fromAll, {}};
+    const Cells toCells = correlate ? condensed(toAll, options.cell_deg) : Cells{toAll, {}};
+    const Pattern &from = fromCells.pattern, &to = toCells.pattern;
     const KdTree tree(from.directions);
 
     double kernel_deg = options.kernel_deg;
     Pairing pairs;
     while (estimate.iterations < options.max_iterations) {
-        pairs = correlate ? pairDensities(from, tree, to, estimate.rotation, kernel_deg * kDeg)
+        pairs = correlate ? pairDensities(from, tree, toCells, estimate.rotation, kernel_deg * kDeg)
                           : pairNearest(from, tree, to, estimate.rotation);
-        if (pairs.matches < options.min_normals) break;
+        if (pairs.normals < options.min_normals) break;
         ++estimate.iterations;
         const Eigen::Matrix3d next = rotationOf(pairs.moment);
         const double step = Eigen::AngleAxisd(estimate.rotation.transpose() * next).angle();
@@ -197,7 +217,7 @@ RotationEstimate registerPatterns(const Pattern& fromAll, const Pattern& toAll,
         kernel_deg = std::max(kernel_deg / 2, options.last_kernel_deg);
     }
     estimate.matches = pairs.matches;
-    if (pairs.matches < options.min_normals) {
+    if (pairs.normals < options.min_normals) {
         estimate.rotation = predicted;
         estimate.covariance = prior * Eigen::Matrix3d::Identity();
         estimate.unobservedAxes = Eigen::Matrix3d::Identity();

@@ -11,6 +11,10 @@
 
 namespace delio::translation {
 namespace {
+/** Lines are never taken to lie nearer to each other than this: the same scan twice leaves no
+ *  residual at all, but a covariance has to be one. */
+constexpr double kLeastResidual_m = 1e-3;
+
 struct Match {
     std::uint32_t from = 0;
     float distance = -1;  //!< of the midpoints; negative: none
@@ -46,7 +50,8 @@ Eigen::Matrix3d crossProductMatrix(const Eigen::Vector3d& v) {
 }
 
 Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d& t,
-              const std::vector<Match>& matches, const LineRegistrationOptions& options) {
+              const std::vector<Match>& matches, bool withParallel,
+              const LineRegistrationOptions& options) {
     double distances = 0, count = 0;
     for (const auto& match : matches)
         if (match.distance >= 0) {
@@ -63,12 +68,11 @@ Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d&
         const auto closest =
             closestPoints(to.midpoints.col(s).cast<double>() + t, us,
                           from.midpoints.col(f).cast<double>(), ut, options.min_angle_deg);
-        if (closest.parallel && !options.centroids) continue;
+        if (closest.parallel && !withParallel) continue;
         const Eigen::Vector3d d = closest.onTarget - closest.onSource;
         const Eigen::Vector3d normal = us.cross(ut);
         // Skew lines see the direction of their common normal: that of the surface which both lie
-        // on. (Nearly) parallel ones see everything but their own direction; they are only used
-        // with centroids.
+        // on. (Nearly) parallel ones see everything but their own direction.
         const Eigen::Matrix3d seen =
             closest.parallel ? Eigen::Matrix3d(Eigen::Matrix3d::Identity() - ut * ut.transpose())
                              : Eigen::Matrix3d(normal * normal.transpose() / normal.squaredNorm());
@@ -103,7 +107,8 @@ void settle(const Sums& sums, const Eigen::Vector3d& predicted,
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(sums.seen / pairs);
     estimate.observability = axes.eigenvalues();
     estimate.residual_m = std::sqrt(sums.squared / pairs);
-    const double noise = sums.squared / (pairs * pairs);
+    const double residual = std::max(estimate.residual_m, kLeastResidual_m);
+    const double noise = residual * residual / pairs;
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = axes.eigenvectors().col(k);
         const bool observed = axes.eigenvalues()[k] >= options.min_observability;
@@ -182,7 +187,10 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
     Sums sums;
     while (estimate.iterations < options.max_iterations) {
         const auto matches = nearestMidpoints(tree, to, estimate.translation, options.max_distance);
-        sums = sumPairs(from, to, estimate.translation, matches, options);
+        sums = sumPairs(from, to, estimate.translation, matches, options.centroids, options);
+        // Hardly any skew pair where there are pairs enough: the same lines twice, and in place.
+        if (sums.pairs < options.min_matches)
+            sums = sumPairs(from, to, estimate.translation, matches, true, options);
         if (sums.pairs < options.min_matches) break;
         ++estimate.iterations;
         const Eigen::Vector3d step = options.centroids
