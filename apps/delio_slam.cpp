@@ -105,9 +105,10 @@ int slamRawlog(const Request& request, SlamRun& run) {
                     (request.start > 0 ? " after --start " + std::to_string(request.start) : ""));
     }
     const bool anyUsed = std::any_of(run.reports.begin(), run.reports.end(),
-                                     [](const auto& r) { return r.odometry.counts.points > 0; });
+                                     [](const auto& r) { return !r.odometry.predicted; });
     if (!anyUsed && run.fault.empty())
-        run.fault = "no scan of '" + request.input + "' could be used: none has any points";
+        run.fault = "no scan of '" + request.input +
+                    "' could be used: " + run.reports.front().odometry.reason;
     run.complete = run.fault.empty() && !cli::interrupted();
     run.optimise(*slam);
     run.write(*slam, options, request.withMap && anyUsed);

@@ -44,7 +44,8 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
         ++kept;
     }
     cloud.points.conservativeResize(3, kept);
-    if (scan.rings.empty()) cloud.rings = ringsOf(cloud.points);
+    cloud.rings =
+        scan.rings.empty() ? ringsOf(cloud.points) : ringsFromTop(cloud.points, cloud.rings);
     return cloud;
 }
 }  // namespace delio::scan

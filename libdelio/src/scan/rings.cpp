@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 
 namespace delio::scan {
 namespace {
@@ -60,6 +62,28 @@ std::vector<std::uint16_t> ringsByElevation(const Eigen::Matrix3Xf& points) {
     return rings;
 }
 }  // namespace
+
+std::vector<std::uint16_t> ringsFromTop(const Eigen::Matrix3Xf& points,
+                                        const std::vector<std::uint16_t>& rings) {
+    struct Mean {
+        double sum = 0, count = 0;
+    };
+    std::map<std::uint16_t, Mean> means;
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        auto& mean = means[rings[i]];
+        mean.sum += static_cast<double>(elevationOf(points.col(static_cast<Eigen::Index>(i))));
+        mean.count += 1;
+    }
+    std::multimap<double, std::uint16_t, std::greater<>> fromTop;
+    for (const auto& [ring, mean] : means) fromTop.emplace(mean.sum / mean.count, ring);
+    std::map<std::uint16_t, std::uint16_t> numbers;
+    for (const auto& [elevation, ring] : fromTop)
+        numbers[ring] = static_cast<std::uint16_t>(numbers.size());
+    std::vector<std::uint16_t> result;
+    result.reserve(rings.size());
+    for (const auto ring : rings) result.push_back(numbers[ring]);
+    return result;
+}
 
 std::vector<std::uint16_t> ringsOf(const Eigen::Matrix3Xf& points) {
     auto rings = ringsByOrder(points);

@@ -9,4 +9,9 @@ namespace delio::scan {
  *  falls back by more than half a turn. Where that does not give rings of one elevation each (the
  *  order is another one), points are put into 64 equal steps of elevation. */
 std::vector<std::uint16_t> ringsOf(const Eigen::Matrix3Xf& points);
+
+/** The same rings numbered from the highest mean elevation (0) down, so that consecutive numbers
+ *  are neighbours: Velodyne numbers its lasers in the order in which they fire. */
+std::vector<std::uint16_t> ringsFromTop(const Eigen::Matrix3Xf& points,
+                                        const std::vector<std::uint16_t>& rings);
 }  // namespace delio::scan
