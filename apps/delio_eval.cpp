@@ -196,6 +196,7 @@ std::vector<ReportRow> rowsOf(const std::string& reference, const std::vector<Es
         const auto files = sharedFiles(reference, path);
         sets.insert(files);
         std::vector<ReportRow> own;
+        own.reserve(files.size());
         for (const auto& file : files)
             own.push_back(rowOf(name, (fs::path(reference) / file).string(),
                                 (fs::path(path) / file).string(), settings));

@@ -53,6 +53,7 @@ void addGround(Mesh& mesh, const Road& road, double begin_s, double end_s) {
     std::vector<double> right = {kRoadHalf_m, 8.7, 7.1, 5.53, Road::kKerb_m, 4.4,
                                  3.42,        3.3, 2.2, 1.1,  0.07};
     std::vector<double> across;
+    across.reserve(2 * right.size());
     for (const double side : right) across.push_back(-side);
     across.insert(across.end(), right.rbegin(), right.rend());
     addSheet(

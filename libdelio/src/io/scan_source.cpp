@@ -73,7 +73,7 @@ CObservation::Ptr ScanSource::nextObservation() {
     while (true) {
         while (pending_.empty())
             if (!readEntry()) return {};
-        const auto observation = pending_.front();
+        auto observation = pending_.front();
         pending_.pop_front();
         if (label_.empty()) label_ = observation->sensorLabel;
         if (observation->sensorLabel == label_) {
