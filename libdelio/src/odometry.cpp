@@ -52,8 +52,12 @@ std::shared_ptr<const Features> Odometry::extract(const Scan& scan, FeatureCount
     });
     features->pattern = timed(times_ms[kOutliers],
                               [&] { return rotation::removeOutliers(normals, options_.outliers); });
+    // Another draw for every scan: of two scans made from nearly one place, the same draw gives
+    // nearly the same lines, each of which then pairs with itself and holds the vehicle at rest.
+    auto lineOptions = options_.lines;
+    lineOptions.seed += scans_;
     features->lines = timed(times_ms[kLines], [&] {
-        return translation::drawLines(cloud.points, cloud.rings, options_.lines);
+        return translation::drawLines(cloud.points, cloud.rings, lineOptions);
     });
     counts.points = static_cast<std::size_t>(cloud.points.cols());
     counts.notFinite = cloud.notFinite;
@@ -89,6 +93,7 @@ Registration Odometry::align(const Features& from, const Features& to,
 OdometryResult Odometry::process(const Scan& scan) {
     OdometryResult result;
     result.features = extract(scan, result.counts, result.times_ms);
+    ++scans_;
     const auto& features = *result.features;
     const bool usable = result.counts.pattern > 0 && result.counts.lines > 0;
     if (reference_) {

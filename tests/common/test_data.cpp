@@ -13,6 +13,8 @@ fs::path dataFolder() {
     return set ? fs::path(set) : fs::path(DELIO_DEFAULT_DATA);
 }
 
+fs::path profileFolder() { return DELIO_PROFILES; }
+
 bool haveData(const std::string& part) { return fs::exists(dataFolder() / part); }
 
 bool dataIsRequired() {

@@ -9,6 +9,9 @@ namespace delio::test {
 /** Where the real data lies: DELIO_DATA, or ../shared/data beside the project. */
 std::filesystem::path dataFolder();
 
+/** share/config of the source tree. */
+std::filesystem::path profileFolder();
+
 /** True if the data is there. Otherwise the caller skips, or fails under DELIO_REQUIRE_DATA=1. */
 bool haveData(const std::string& part);
 bool dataIsRequired();

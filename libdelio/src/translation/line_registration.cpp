@@ -50,8 +50,7 @@ Eigen::Matrix3d crossProductMatrix(const Eigen::Vector3d& v) {
 }
 
 Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d& t,
-              const std::vector<Match>& matches, bool withParallel,
-              const LineRegistrationOptions& options) {
+              const std::vector<Match>& matches, const LineRegistrationOptions& options) {
     double distances = 0, count = 0;
     for (const auto& match : matches)
         if (match.distance >= 0) {
@@ -68,11 +67,12 @@ Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d&
         const auto closest =
             closestPoints(to.midpoints.col(s).cast<double>() + t, us,
                           from.midpoints.col(f).cast<double>(), ut, options.min_angle_deg);
-        if (closest.parallel && !withParallel) continue;
+        if (closest.parallel && !options.centroids) continue;
         const Eigen::Vector3d d = closest.onTarget - closest.onSource;
         const Eigen::Vector3d normal = us.cross(ut);
         // Skew lines see the direction of their common normal: that of the surface which both lie
-        // on. (Nearly) parallel ones see everything but their own direction.
+        // on. (Nearly) parallel ones see everything but their own direction; they are only used
+        // with centroids.
         const Eigen::Matrix3d seen =
             closest.parallel ? Eigen::Matrix3d(Eigen::Matrix3d::Identity() - ut * ut.transpose())
                              : Eigen::Matrix3d(normal * normal.transpose() / normal.squaredNorm());
@@ -187,10 +187,7 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
     Sums sums;
     while (estimate.iterations < options.max_iterations) {
         const auto matches = nearestMidpoints(tree, to, estimate.translation, options.max_distance);
-        sums = sumPairs(from, to, estimate.translation, matches, options.centroids, options);
-        // Hardly any skew pair where there are pairs enough: the same lines twice, and in place.
-        if (sums.pairs < options.min_matches)
-            sums = sumPairs(from, to, estimate.translation, matches, true, options);
+        sums = sumPairs(from, to, estimate.translation, matches, options);
         if (sums.pairs < options.min_matches) break;
         ++estimate.iterations;
         const Eigen::Vector3d step = options.centroids

@@ -1,0 +1,62 @@
+#pragma once
+#include <mrpt/poses/CPose3D.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "delio/scan/scan.h"
+
+namespace delio::test {
+/** Numbers that are the same wherever the test runs, which std's distributions are not. */
+class Noise {
+ public:
+    explicit Noise(std::uint32_t seed = 7) : engine_(seed) {}
+    double uniform() { return static_cast<double>(engine_()) / 2147483648.0 - 1; }  //!< [-1, 1)
+    double normal();  //!< nearly normal, variance 1, never beyond 6
+    Eigen::Vector3d normals();
+    Eigen::Vector3d direction();  //!< anywhere on the unit sphere
+
+ private:
+    std::mt19937 engine_;
+};
+
+Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double degrees);
+double degreesBetween(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
+double degreesBetween(const mrpt::poses::CPose3D& a, const mrpt::poses::CPose3D& b);
+
+/** A block with its faces along the axes; rays meet it from outside or from inside. */
+struct Block {
+    Eigen::Vector3d low, high;
+};
+using Scene = std::vector<Block>;
+
+/** Ground, walls, and blocks of several sizes about the origin, none of them repeated; free within
+ *  5 m of the x axis between -5 and 20 m. The ground is at z = -1.8. */
+Scene yard();
+/** A closed room of 21 m by 15 m with a few cupboards: floor, ceiling and walls in equal parts. */
+Scene room();
+/** A ground and two parallel walls along x, without an end. */
+Scene corridor();
+
+struct Sensor {
+    unsigned rings = 32;
+    unsigned columns = 720;
+    double lowest_deg = -24;
+    double highest_deg = 8;
+    double noise_m = 0;  //!< of the range
+};
+
+/** What the sensor sees at `pose`: ring after ring, the uppermost first, each once round
+ *  (counter-clockwise from azimuth 0). Rays that meet nothing give no point. */
+struct RingScan {
+    Eigen::Matrix3Xf points;
+    std::vector<std::uint16_t> rings;
+};
+RingScan ringScan(const Scene& scene, const mrpt::poses::CPose3D& pose, const Sensor& sensor,
+                  Noise& noise);
+
+/** As a rawlog gives it, without its rings. */
+Scan scanOf(const Eigen::Matrix3Xf& points);
+}  // namespace delio::test

@@ -1,0 +1,107 @@
+#include "delio/scan/preprocess.h"
+
+#include <gtest/gtest.h>
+#include <mrpt/core/bits_math.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using scan::preprocess;
+using scan::PreprocessOptions;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+double elevation(const Eigen::Vector3d& p) { return std::atan2(p.z(), p.head<2>().norm()); }
+
+TEST(Preprocess, WhatIsNotFiniteIsDroppedAndCounted) {
+    Eigen::Matrix3Xf points(3, 7);
+    points << 10, kNaN, 0, 0, kInf, 0, 20,  //
+        1, 5, kNaN, 5, 5, -kInf, 2,         //
+        -1, 5, 5, kNaN, 5, 5, 3;
+    const auto cloud = preprocess(test::scanOf(points), {});
+    EXPECT_EQ(cloud.notFinite, 5U);
+    EXPECT_EQ(cloud.outOfRange, 0U);
+    ASSERT_EQ(cloud.points.cols(), 2);
+    EXPECT_EQ(cloud.points.col(0), points.col(0));  // in the sensor's order, to the bit
+    EXPECT_EQ(cloud.points.col(1), points.col(6));
+    EXPECT_EQ(cloud.rings.size(), 2U);
+}
+
+TEST(Preprocess, WhatIsOutOfRangeIsDroppedAndCounted) {
+    PreprocessOptions options;
+    options.min_range = 2;
+    options.max_range = 5;
+    Eigen::Matrix3Xf points(3, 8);
+    points << 2, 1.99F, 3, 3, 0, 0, -4, 1e30F,  //
+        0, 0, 4, 4, 0, 0, 0, 1e30F,             //
+        0, 0, 0, 0.2F, 0, -4.5F, 0, 0;
+    const auto cloud = preprocess(test::scanOf(points), options);
+    EXPECT_EQ(cloud.outOfRange, 4U);  // 1.99 m, 5.004 m, the origin, and 1.4e30 m
+    EXPECT_EQ(cloud.notFinite, 0U);
+    ASSERT_EQ(cloud.points.cols(), 4);
+    EXPECT_EQ(cloud.points.col(1), points.col(2));
+    EXPECT_EQ(cloud.points.col(2), points.col(5));
+}
+
+TEST(Preprocess, VerticalCorrectionRaisesTheElevationAndNothingElse) {
+    test::Noise noise;
+    Eigen::Matrix3Xf points(3, 500);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        Eigen::Vector3d ray = noise.direction();
+        ray.z() /= 2;  // a LiDAR does not look along its axis
+        points.col(i) = ((40 + 35 * noise.uniform()) * ray.normalized()).cast<float>();
+    }
+    for (const double degrees : {0.205, -1.5}) {
+        PreprocessOptions options;
+        options.vertical_correction_deg = degrees;
+        const auto cloud = preprocess(test::scanOf(points), options);
+        ASSERT_EQ(cloud.points.cols(), points.cols());
+        for (Eigen::Index i = 0; i < points.cols(); ++i) {
+            const Eigen::Vector3d before = points.col(i).cast<double>(),
+                                  after = cloud.points.col(i).cast<double>();
+            // Floats have 7 digits.
+            EXPECT_NEAR(mrpt::RAD2DEG(elevation(after) - elevation(before)), degrees, 3e-5);
+            EXPECT_NEAR(after.norm() / before.norm(), 1, 1e-6);
+            EXPECT_NEAR(std::atan2(after.y(), after.x()), std::atan2(before.y(), before.x()), 1e-6);
+        }
+    }
+}
+
+TEST(Preprocess, APointAboveTheSensorHasNoAzimuthToKeep) {
+    PreprocessOptions options;
+    options.vertical_correction_deg = 0.205;
+    const auto cloud = preprocess(test::scanOf(Eigen::Vector3f(0, 0, 10)), options);
+    ASSERT_EQ(cloud.points.cols(), 1);
+    EXPECT_TRUE(cloud.points.allFinite());
+}
+
+TEST(Preprocess, RingsThatTheSourceKnowsStayWithTheirPoints) {
+    Eigen::Matrix3Xf points(3, 4);
+    points << 10, kNaN, 0.1F, 20, 1, 5, 0, 2, -1, 5, 0, 3;
+    Scan scan = test::scanOf(points);
+    scan.rings = {7, 8, 9, 63};
+    EXPECT_EQ(preprocess(scan, {}).rings, (std::vector<std::uint16_t>{7, 63}));
+}
+
+TEST(Preprocess, RingsAreFoundWhereTheSourceDoesNotKnow) {
+    test::Noise noise;
+    const auto made = test::ringScan(test::yard(), {}, {}, noise);
+    const auto cloud = preprocess(test::scanOf(made.points), {});
+    ASSERT_EQ(cloud.points.cols(), made.points.cols());  // nothing is near or far in the yard
+    EXPECT_EQ(cloud.rings, made.rings);
+}
+
+TEST(Preprocess, AnEmptyScanStaysEmpty) {
+    const auto cloud = preprocess(test::scanOf({}), {});
+    EXPECT_EQ(cloud.points.cols(), 0);
+    EXPECT_TRUE(cloud.rings.empty());
+    const auto none = preprocess(test::scanOf(Eigen::Vector3f(kNaN, 0, 0)), {});
+    EXPECT_EQ(none.points.cols(), 0);
+    EXPECT_EQ(none.notFinite, 1U);
+}
+}  // namespace
