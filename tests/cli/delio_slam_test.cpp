@@ -434,18 +434,18 @@ TEST_F(DelioSlam, OneScanIsADrive) {
 }
 
 TEST_F(DelioSlam, AStandingVehicleHasNoRelativeErrors) {
-    writeDrive(rawlog_, std::vector<Floats>(3, test::toyScans(1)[0]));
+    writeDrive(rawlog_, test::toyScans(3, 0.002));
     const std::string still = "1 0 0 0 0 1 0 0 0 0 1 0\n";
     writeText(folder_ / "d.poses.txt", still + still + still);
     const auto run = slam();
     EXPECT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(run.out.find("nan"), std::string::npos) << run.out;
     EXPECT_EQ(readText(out_ / "summary.yaml").find("nan"), std::string::npos);
-    EXPECT_LT(summary()["metrics"]["end_error_m"].as<double>(), 0.01);
+    EXPECT_LT(summary()["metrics"]["end_error_m"].as<double>(), 0.1);
 }
 
 TEST_F(DelioSlam, GroundTruth) {
-    writeDrive(8);
+    writeDrive(6);
     const fs::path truth = folder_ / "truth.txt";
     const std::string poses = readText(folder_ / "d.poses.txt");
     const auto with = [&](const std::string& text, const Words& more = {}) {
@@ -453,7 +453,7 @@ TEST_F(DelioSlam, GroundTruth) {
         return slam(Words{"--ground-truth", truth, "--force"} + more);
     };
     std::string ofVehicle, tum;
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 6; ++i) {
         ofVehicle += "1 0 0 " + std::to_string(i) + " 0 1 0 0 0 0 1 0\n";
         tum += std::to_string(0.1 * i) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
     }
@@ -472,13 +472,13 @@ TEST_F(DelioSlam, GroundTruth) {
     // What shows only later costs the evaluation, not the drive's results.
     for (const auto& run : {with(ofVehicle), with(poses, {"--ground-truth-frame", "vehicle"})}) {
         test::expectFailure(run, 1, {"--ground-truth-frame"});
-        EXPECT_EQ(rows("trajectory_kitti.txt"), 8U);
+        EXPECT_EQ(rows("trajectory_kitti.txt"), 6U);
         EXPECT_FALSE(summary().has("metrics"));
         EXPECT_TRUE(summary().has("fault"));
     }
     const std::string short_ = poses.substr(0, poses.find('\n') + 1);
-    test::expectFailure(with(short_), 1, {"1 rows", "scan 7"});
-    EXPECT_EQ(rows("trajectory_kitti.txt"), 8U);
+    test::expectFailure(with(short_), 1, {"1 rows", "scan 5"});
+    EXPECT_EQ(rows("trajectory_kitti.txt"), 6U);
     // The poses beside the rawlog were not asked for: a warning.
     writeText(folder_ / "d.poses.txt", short_);
     const auto beside = slam({"--force"});
