@@ -81,7 +81,7 @@ class DelioSlam : public testing::Test {
     /** Options that make a run short: few starts of the wide search. */
     static Words quick() {
         return {"--no-map", "--set", "line_registration.search_radius=1", "--set",
-                "line_cloud.kept=2"};
+                "line_cloud.kept=1"};
     }
     test::CommandResult slam(const Words& more = {}) const { return slamOf(rawlog_, more); }
     test::CommandResult slamOf(const fs::path& input, const Words& more = {}) const {
