@@ -34,9 +34,10 @@ struct Request {
 
 std::string textOf(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
+    in.peek();  // fails for a folder
+    if (!in) throw Error("cannot read '" + path + "': no such file, or not readable");
     std::ostringstream text;
     text << in.rdbuf();
-    if (!in) throw Error("cannot read '" + path + "': no such file, or not readable");
     return text.str();
 }
 
@@ -49,13 +50,29 @@ Options optionsFor(const Request& request, const std::optional<io::DriveMeta>& m
     return options;
 }
 
-/** The folder is made at once, so that an unwritable one is found before the work is done. */
-void prepareFolder(const std::string& folder, bool force) {
+/** The folder is made at once, so that an unwritable one is found before the work is done; one that
+ *  was made for nothing is taken away again. */
+class OutputFolder {
+ public:
+    OutputFolder(const std::string& folder, bool force);
+    ~OutputFolder() {
+        std::error_code ignored;
+        if (made_) fs::remove(folder_, ignored);  // only an empty one
+    }
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+ private:
+    std::string folder_;
+    bool made_ = false;
+};
+
+OutputFolder::OutputFolder(const std::string& folder, bool force) : folder_(folder) {
     std::error_code fault;
     if (fs::exists(folder) && !fs::is_directory(folder))
         throw Error("'" + folder + "' exists and is no folder; choose another name");
     if (fs::exists(folder) && !fs::is_empty(folder, fault)) cli::refuseExisting(folder, force);
-    fs::create_directories(folder, fault);
+    made_ = fs::create_directories(folder, fault);
     const fs::path probe = fs::path(folder) / ".partial-probe";
     const bool writable = !fault && std::ofstream(probe).put('x').good();
     fs::remove(probe, fault);
@@ -99,6 +116,7 @@ int slamRawlog(const Request& request, SlamRun& run) {
     std::optional<Slam> slam;
     process(request, source, slam, options, run);
     if (!slam) {
+        if (cli::interrupted()) return cli::kExitInterrupted;
         if (!run.fault.empty()) throw Error(run.fault);
         throw Error("'" + request.input + "' holds no LiDAR scans" +
                     (request.label.empty() ? "" : " of sensor '" + request.label + "'") +
@@ -130,7 +148,7 @@ int optimiseGraph(const Request& request, SlamRun& run) {
 int main(int argc, char** argv) {
     TCLAP::CmdLine cmd("delio-slam: LiDAR odometry, pose graph and map of a rawlog", ' ', kVersion);
     using Text = TCLAP::ValueArg<std::string>;
-    using Number = TCLAP::ValueArg<unsigned>;
+    using Number = TCLAP::ValueArg<cli::Count>;
     Text input("i", "input", "Rawlog to read, or a posegraph.g2o to optimise again", true, "",
                "IN.rawlog", cmd);
     Text output("o", "output", "Folder for the results", true, "", "OUTDIR", cmd);
@@ -139,13 +157,13 @@ int main(int argc, char** argv) {
                 cmd);
     TCLAP::MultiArg<std::string> set("", "set", "One option; may be repeated", false,
                                      "section.key=value", cmd);
-    Number start("", "start", "First scan, from 0", false, 0, "N", cmd);
-    Number count("", "count", "How many scans to use at most; 0: all", false, 0, "N", cmd);
-    Number every("", "every", "Use every N-th scan only", false, 1, "N", cmd);
+    Number start("", "start", "First scan, from 0", false, {}, "N", cmd);
+    Number count("", "count", "How many scans to use at most; 0: all", false, {}, "N", cmd);
+    Number every("", "every", "Use every N-th scan only", false, {1}, "N", cmd);
     Text label("", "sensor-label", "Sensor to use; default: that of the first scan", false, "", "L",
                cmd);
     Text images("", "images", "Folder of the rawlog's external files", false, "", "DIR", cmd);
-    Number threads("", "threads", "Threads to use; 0: all", false, 0, "N", cmd);
+    Number threads("", "threads", "Threads to use; 0: all", false, {}, "N", cmd);
     Text truth("", "ground-truth", "True poses; default: IN.poses.txt if it is there", false, "",
                "POSES.txt", cmd);
     std::vector<std::string> frames = {"cam0", "vehicle"};
@@ -171,13 +189,14 @@ int main(int argc, char** argv) {
         request.assignments = set.getValue();
         request.start = start.getValue();
         request.count = count.getValue();
-        request.every = std::max(1U, every.getValue());
+        request.every = every.getValue();
         request.withMap = !noMap.getValue();
         request.withGraph = !noGraph.getValue();
         request.verbose = verbose.getValue();
         try {
             if (config.isSet()) request.configText = textOf(config.getValue());
             optionsFor(request, {});
+            if (request.every == 0) throw Error("--every has to be 1 or more");
         } catch (const Error& e) {
             cli::inform(e.what());
             return cli::kExitBadCommandLine;
@@ -186,8 +205,9 @@ int main(int argc, char** argv) {
             threads.getValue() > 0 ? threads.getValue() : std::thread::hardware_concurrency();
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, wanted);
         if (!fs::is_regular_file(request.input))
-            throw Error("cannot read '" + request.input + "': no such file");
-        prepareFolder(request.output, force.getValue());
+            throw Error("cannot read '" + request.input +
+                        "': " + (fs::exists(request.input) ? "it is no file" : "no such file"));
+        const OutputFolder folder(request.output, force.getValue());
         SlamRun run(request.output, request.profile, std::vector<std::string>(argv, argv + argc));
         if (fs::path(request.input).extension() == ".g2o") return optimiseGraph(request, run);
         return slamRawlog(request, run);

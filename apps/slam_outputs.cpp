@@ -37,6 +37,20 @@ double peakMemory_mb() {
     return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+const char* const kFilesOfMap[] = {"map.simplemap", "map.ply", "map.3Dscene", "map.png"};
+
+/** A string as YAML has it: MRPT's writer leaves out the quotes, without which a file's name or a
+ *  message may mean something else. */
+std::string yamlText(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') result += '\\';
+        const auto code = static_cast<unsigned char>(c);
+        result += code < 0x20 ? format("\\x%02X", code) : std::string(1, c);
+    }
+    return result + "\"";
+}
+
 /** Axes that were not observed, each as "x y z". */
 std::string axesText(const Eigen::Matrix3Xd& axes) {
     std::string text;
@@ -82,9 +96,15 @@ void SlamRun::readSideFiles(const std::string& rawlog, const std::string& truth,
         return;
     }
     truth_ = io::readTrajectory(truth.empty() ? beside : truth);
+    truthWasAskedFor_ = !truth.empty();
 }
 
 void SlamRun::addScan(const Scan& scan, const ScanReport& report, double read_ms) {
+    if (stampsRise_ && !reports.empty() && scan.stamp_s <= reports.back().stamp_s) {
+        stampsRise_ = false;
+        warn(format("scan %zu is not later than the one before: trajectory_tum.txt is left out",
+                    scan.index));
+    }
     reports.push_back(report);
     reports.back().odometry.features.reset();  // Slam keeps what registration needs
     sensorPoses_.push_back(scan.sensorPose);
@@ -109,13 +129,22 @@ void SlamRun::optimise(Slam& slam) {
 
 void SlamRun::write(const Slam& slam, const Options& options, bool withMap) {
     final_ = slam.trajectory();
-    if (truth_) evaluate(final_);
+    if (!stampsRise_) final_.stamps_s.clear();
+    try {
+        if (truth_) evaluate(final_);
+    } catch (const Error& e) {
+        // The drive's results are good all the same.
+        if (!truthWasAskedFor_)
+            warn(std::string(e.what()) + "; no evaluation");
+        else if (fault.empty())
+            fault = e.what();
+    }
     writeTrajectories(slam.odometry(), final_);
     writeGraph(slam.poseGraph());
     writeScans();
     writeConfig(options);
     mrpt::system::CTicTac clock;
-    for (const char* name : {"map.simplemap", "map.ply", "map.3Dscene", "map.png"}) forget(name);
+    for (const char* name : kFilesOfMap) forget(name);
     if (withMap) writeMap(slam, final_);
     const auto scene = map::trajectoryScene(final_.poses, truthInPicture_);
     map::savePicture(*scene, map::topView(), path("trajectory.png"));
@@ -132,6 +161,8 @@ void SlamRun::optimiseAndWrite(graph::PoseGraph& graph, const Options& options) 
     writeTrajectories(before, final_);
     writeGraph(graph);
     writeConfig(options);
+    for (const char* name : kFilesOfMap) forget(name);
+    forget("scans.csv");
     const auto scene = map::trajectoryScene(final_.poses);
     map::savePicture(*scene, map::topView(), path("trajectory.png"));
     writeSummary(options);
@@ -151,15 +182,14 @@ void SlamRun::evaluate(const io::Trajectory& vehicle) {
     io::Trajectory truth = *truth_;
     if (truth.stamps_s.empty()) {
         // Rows of KITTI's poses belong to the scans of the rawlog, of which not all may be used.
-        if (reports.back().index >= truth.poses.size()) {
-            warn(format("the true poses have %zu rows but scan %zu was used: no evaluation",
-                        truth.poses.size(), reports.back().index));
-            return;
-        }
+        if (reports.back().index >= truth.poses.size())
+            throw Error(format("the true poses have %zu rows but scan %zu was used",
+                               truth.poses.size(), reports.back().index));
         truth.poses.clear();
         for (const auto& report : reports) truth.poses.push_back(truth_->poses[report.index]);
     }
     const auto pairs = evaluation::associate(truth, estimate);
+    if (pairs.reference.size() < 2) throw Error("fewer than two scans have a true pose");
     if (evaluation::findFrameMismatch(pairs.reference, pairs.estimate) !=
         evaluation::FrameMismatch::none)
         throw Error(std::string("the true poses do not look like poses of ") +
@@ -261,13 +291,13 @@ void SlamRun::writeSummary(const Options& options) const {
     using mrpt::containers::yaml;
     const auto scans = static_cast<double>(std::max<std::size_t>(reports.size(), 1));
     yaml summary = yaml::Map();
-    summary["version"] = kVersion;
+    summary["version"] = yamlText(kVersion);
     std::string command;
     for (const auto& word : command_) command += (command.empty() ? "" : " ") + word;
-    summary["command"] = command;
-    summary["profile"] = profile_;
+    summary["command"] = yamlText(command);
+    summary["profile"] = yamlText(profile_);
     summary["complete"] = complete;
-    if (!fault.empty()) summary["fault"] = fault;
+    if (!fault.empty()) summary["fault"] = yamlText(fault);
     summary["scans"] = reports.empty() ? final_.poses.size() : reports.size();
     summary["predicted"] = predictedScans();
     summary["path_m"] = path_m();
@@ -294,22 +324,25 @@ void SlamRun::writeSummary(const Options& options) const {
     yaml warnings = yaml::Sequence();
     // Otherwise an empty list is printed as nothing, which is no YAML that MRPT reads.
     warnings.node().printInShortFormat = warnings_.empty();
-    for (const auto& warning : warnings_) warnings.push_back(warning);
+    for (const auto& warning : warnings_) warnings.push_back(yamlText(warning));
     summary["warnings"] = warnings;
     if (metrics_) {
         const auto& row = metrics_->row;
         yaml metrics = yaml::Map();
-        metrics["length_m"] = row.length_m;
+        const auto put = [&](const char* name, double value) {
+            if (std::isfinite(value)) metrics[name] = value;  // what a short drive cannot tell
+        };
+        put("length_m", row.length_m);
         metrics["segments"] = row.kitti.segments;
-        metrics["t_percent"] = row.kitti.t_percent;
-        metrics["r_deg_per_100m"] = row.kitti.r_deg_per_100m;
-        metrics["ape_m"] = row.ape_m;
-        metrics["end_error_m"] = metrics_->end_m;
-        metrics["end_error_percent"] = 100 * metrics_->end_m / row.length_m;
-        metrics["scan_translation_median_m"] = metrics_->perScan.translation_m.median;
-        metrics["scan_translation_p95_m"] = metrics_->perScan.translation_m.p95;
-        metrics["scan_rotation_median_deg"] = metrics_->perScan.rotation_deg.median;
-        metrics["scan_rotation_p95_deg"] = metrics_->perScan.rotation_deg.p95;
+        put("t_percent", row.kitti.t_percent);
+        put("r_deg_per_100m", row.kitti.r_deg_per_100m);
+        put("ape_m", row.ape_m);
+        put("end_error_m", metrics_->end_m);
+        put("end_error_percent", 100 * metrics_->end_m / row.length_m);
+        put("scan_translation_median_m", metrics_->perScan.translation_m.median);
+        put("scan_translation_p95_m", metrics_->perScan.translation_m.p95);
+        put("scan_rotation_median_deg", metrics_->perScan.rotation_deg.median);
+        put("scan_rotation_p95_deg", metrics_->perScan.rotation_deg.p95);
         summary["metrics"] = metrics;
     }
     io::replaceTextFile(path("summary.yaml"), [&](std::ostream& out) {
@@ -336,8 +369,9 @@ void SlamRun::printTable(std::ostream& out) const {
             row("KITTI translation", format("%.3f %%", m.row.kitti.t_percent));
             row("KITTI rotation", format("%.3f deg/100 m", m.row.kitti.r_deg_per_100m));
         }
-        row("end error", format("%.3f m, %.2f %% of %.1f m", m.end_m,
-                                100 * m.end_m / m.row.length_m, m.row.length_m));
+        const std::string share =
+            m.row.length_m > 0 ? format(", %.2f %%", 100 * m.end_m / m.row.length_m) : "";
+        row("end error", format("%.3f m%s of %.1f m", m.end_m, share.c_str(), m.row.length_m));
         row("APE (aligned)", format("%.3f m", m.row.ape_m));
         row("translation per scan",
             format("%.4f m median, %.4f m 95 %%", m.perScan.translation_m.median,

@@ -31,7 +31,7 @@ class SlamRun {
     void printTable(std::ostream& out) const;
 
     std::vector<ScanReport> reports;
-    std::string fault;      //!< what ended the run early
+    std::string fault;      //!< what ended the run early, or what was asked for and is missing
     bool complete = false;  //!< every scan was processed
 
  private:
@@ -61,7 +61,7 @@ class SlamRun {
     std::vector<double> read_ms_;
     io::Calibration calibration_;
     std::optional<io::Trajectory> truth_;
-    bool truthIsCam0_ = true;
+    bool truthIsCam0_ = true, truthWasAskedFor_ = false, stampsRise_ = true;
     std::optional<Metrics> metrics_;
     graph::OptimisationResult optimisation_;
     double optimise_ms_ = 0, map_ms_ = 0;

@@ -41,9 +41,10 @@ int main(int argc, char** argv) {
     TCLAP::ValueArg<std::string> output("o", "output", "Rawlog to write", true, "", "OUT.rawlog",
                                         cmd);
     TCLAP::SwitchArg embed("", "embed", "Keep the points in the rawlog, not in OUT_Images/", cmd);
-    TCLAP::ValueArg<unsigned> start("", "start", "First scan to take, from 0", false, 0, "N", cmd);
-    TCLAP::ValueArg<unsigned> count("", "count", "How many scans to take; 0: all", false, 0, "N",
-                                    cmd);
+    TCLAP::ValueArg<cli::Count> start("", "start", "First scan to take, from 0", false, {}, "N",
+                                      cmd);
+    TCLAP::ValueArg<cli::Count> count("", "count", "How many scans to take; 0: all", false, {}, "N",
+                                      cmd);
     TCLAP::ValueArg<std::string> label("", "label", "Sensor label in the rawlog", false, "velodyne",
                                        "LABEL", cmd);
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);

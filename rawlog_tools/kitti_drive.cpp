@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 using mrpt::poses::CPose3D;
 
 namespace {
-/** KITTI numbers its files; where one is missing (raw drive 0009 has a gap) its row stays in
- *  times.txt, so rows are found by the number. */
+/** KITTI numbers its files; where one is missing (raw drive 0009 has a gap) its row stays, so rows
+ *  are found by the number. */
 std::size_t numberOf(const fs::path& file) {
     const std::string stem = file.stem().string();
     if (stem.empty() || stem.size() > 18 || stem.find_first_not_of("0123456789") != stem.npos)
@@ -47,8 +47,19 @@ std::string textOf(const fs::path& file) {
 std::vector<std::string> linesOf(const fs::path& file) {
     std::istringstream text(textOf(file));
     std::vector<std::string> lines;
-    for (std::string line; std::getline(text, line);)
-        if (line.find_first_not_of(" \t\r") != line.npos) lines.push_back(line);
+    for (std::string line; std::getline(text, line);) lines.push_back(line);
+    return lines;
+}
+
+/** The lines that readTimes() and readTrajectory() make rows of. */
+std::vector<std::string> numberLinesOf(const fs::path& file) {
+    auto lines = linesOf(file);
+    lines.erase(std::remove_if(lines.begin(), lines.end(),
+                               [](const std::string& line) {
+                                   return line[0] == '#' ||
+                                          line.find_first_not_of(" \t\r,") == line.npos;
+                               }),
+                lines.end());
     return lines;
 }
 
@@ -61,12 +72,19 @@ std::vector<Row> rowsOf(const std::vector<fs::path>& scans, const std::vector<Ro
         const std::size_t number = numberOf(scan);
         if (number >= rows.size())
             throw Error("'" + file.string() + "' has " + std::to_string(rows.size()) +
-                        " rows but scan " + scan.filename().string() +
-                        " needs one; shorten the drive with --count " +
-                        std::to_string(chosen.size()) + " or complete the file");
+                        " rows but scan " + scan.filename().string() + " needs one; " +
+                        (chosen.empty() ? ""
+                                        : "shorten the drive with --count " +
+                                              std::to_string(chosen.size()) + " or ") +
+                        "complete the file");
         chosen.push_back(rows[number]);
     }
     return chosen;
+}
+
+/** The folder by all its names, also where it is given as `.` or `00/`. */
+fs::path wholePath(const fs::path& folder) {
+    return fs::absolute(folder / "").lexically_normal().parent_path();
 }
 
 void useNominalTimes(KittiDrive& drive, const std::string& missing) {
@@ -81,7 +99,7 @@ void readOdometrySequence(const fs::path& folder, KittiDrive& drive) {
     const fs::path times = folder / "times.txt";
     if (fs::exists(times)) {
         drive.times_s = rowsOf(drive.scans, io::readTimes(times.string()), times);
-        drive.timeRows = rowsOf(drive.scans, linesOf(times), times);
+        drive.timeRows = rowsOf(drive.scans, numberLinesOf(times), times);
     } else {
         useNominalTimes(drive, "'" + times.string() + "'");
     }
@@ -93,12 +111,12 @@ void readOdometrySequence(const fs::path& folder, KittiDrive& drive) {
         drive.calibText = textOf(calib);
     }
     // KITTI's own layout has dataset/sequences/NN and dataset/poses/NN.txt.
-    const fs::path whole = fs::absolute(folder / "").parent_path();
+    const fs::path whole = wholePath(folder);
     for (const auto& poses : {folder / "poses.txt", whole.parent_path().parent_path() / "poses" /
                                                         (whole.filename().string() + ".txt")}) {
         if (!fs::exists(poses)) continue;
         io::readTrajectory(poses.string());  // for its checks; the rows travel as they are
-        drive.poseRows = rowsOf(drive.scans, linesOf(poses), poses);
+        drive.poseRows = rowsOf(drive.scans, numberLinesOf(poses), poses);
         break;
     }
 }
@@ -178,6 +196,7 @@ void readRawDrive(const fs::path& folder, KittiDrive& drive) {
     drive.meta.source = "kitti-raw";
     const fs::path times = folder / "velodyne_points" / "timestamps.txt";
     if (fs::exists(times)) {
+        // Where a scan is missing its line is empty (raw drive 0009).
         const auto lines = rowsOf(drive.scans, linesOf(times), times);
         drive.meta.epoch_s = stampOf(lines.front(), times);
         for (const auto& line : lines)
@@ -186,7 +205,7 @@ void readRawDrive(const fs::path& folder, KittiDrive& drive) {
         drive.meta.epoch_s = io::kDriveEpoch_s;
         useNominalTimes(drive, "'" + times.string() + "'");
     }
-    const fs::path date = fs::absolute(folder / "").parent_path().parent_path();
+    const fs::path date = wholePath(folder).parent_path();
     const fs::path veloToCam = date / "calib_velo_to_cam.txt";
     const fs::path camToCam = date / "calib_cam_to_cam.txt";
     const fs::path imuToVelo = date / "calib_imu_to_velo.txt";

@@ -9,6 +9,7 @@
 #include "cli.h"
 #include "delio/error.h"
 #include "delio/io/drive_meta.h"
+#include "delio/io/output_file.h"
 #include "delio/io/scan_source.h"
 #include "delio/version.h"
 
@@ -32,6 +33,20 @@ void writeScan(const mrpt::maps::CPointsMap& points, const fs::path& file) {
     out.write(reinterpret_cast<const char*>(xyzi.data()),
               static_cast<std::streamsize>(xyzi.size() * sizeof(float)));
     if (!out.flush()) throw Error("cannot write '" + file.string() + "': is the disk full?");
+}
+
+// Of a sequence; only these are touched.
+const char* const kNames[] = {"velodyne", "times.txt", "calib.txt", "poses.txt"};
+
+/** Of a folder that is there already (--force) all else stays: it may hold more than a sequence. */
+void putInPlace(const fs::path& partial, const fs::path& target) {
+    std::error_code fault;
+    fs::create_directory(target, fault);
+    for (const char* name : kNames) {
+        if (!fault) fs::remove_all(target / name, fault);
+        if (!fault && fs::exists(partial / name)) fs::rename(partial / name, target / name, fault);
+    }
+    if (fault) throw Error("cannot write '" + target.string() + "': " + fault.message());
 }
 
 /** Removes the half-written sequence unless it was given its name. */
@@ -59,8 +74,11 @@ int main(int argc, char** argv) {
 
     return cli::run(cmd, argc, argv, verbose, [&] {
         cli::catchInterrupts();
-        const fs::path target = fs::absolute(fs::path(output.getValue()) / "").parent_path();
+        const fs::path target =
+            fs::absolute(fs::path(output.getValue()) / "").lexically_normal().parent_path();
         cli::refuseExisting(target.string(), force.getValue());
+        if (fs::exists(target) && !fs::is_directory(target))
+            throw Error("'" + target.string() + "' exists and is no folder; choose another name");
         const auto meta = io::readDriveMeta(input.getValue());
         io::ScanSource source(input.getValue(), label.getValue(), images.getValue(),
                               meta ? meta->epoch_s : 0);
@@ -88,15 +106,14 @@ int main(int argc, char** argv) {
         if (count == 0) throw Error("'" + input.getValue() + "' holds no LiDAR scans");
         for (const auto& other : source.otherLabels())
             cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
-        std::ofstream(partial.path / "times.txt") << times;
-        for (const std::string name : {"times.txt", "calib.txt", "poses.txt"}) {
+        io::replaceTextFile((partial.path / "times.txt").string(),
+                            [&](std::ostream& out) { out << times; });
+        for (const std::string name : kNames) {
             const fs::path side = io::sidecarPath(input.getValue(), "." + name);
-            if (fs::exists(side))
+            if (fs::is_regular_file(side))
                 fs::copy_file(side, partial.path / name, fs::copy_options::overwrite_existing);
         }
-        fs::remove_all(target, fault);
-        fs::rename(partial.path, target, fault);
-        if (fault) throw Error("cannot write '" + target.string() + "': " + fault.message());
+        putInPlace(partial.path, target);
         cli::inform("wrote " + std::to_string(count) + " scans to '" + target.string() + "'");
         return cli::kExitSuccess;
     });

@@ -30,14 +30,28 @@ class OneLineOutput : public TCLAP::StdOutput {
     void version(TCLAP::CmdLineInterface& cmd) override {
         std::cout << program_invocation_short_name << " " << cmd.getVersion() << std::endl;
     }
-    void failure(TCLAP::CmdLineInterface&, TCLAP::ArgException& e) override {
+    void failure(TCLAP::CmdLineInterface& cmd, TCLAP::ArgException& e) override {
         failed = true;
-        const bool named = e.argId().find_first_not_of(' ') != std::string::npos;
-        say(e.error() + (named ? " (" + e.argId() + ")" : "") + "; see --help");
+        std::string which = e.argId();
+        if (which.find_first_not_of(' ') == std::string::npos) {  // something required is missing
+            which.clear();
+            for (TCLAP::Arg* arg : cmd.getArgList())
+                if (arg->isRequired() && !arg->isSet())
+                    which += (which.empty() ? "--" : ", --") + arg->getName();
+        }
+        say(e.error() + (which.empty() ? "" : " (" + which + ")") + "; see --help");
     }
     bool failed = false;
 };
 }  // namespace
+
+std::istream& operator>>(std::istream& in, Count& count) {
+    if ((in >> std::ws).peek() == '-')
+        in.setstate(std::ios::failbit);
+    else
+        in >> count.value;
+    return in;
+}
 
 int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, TCLAP::SwitchArg& verbose,
         const std::function<int()>& body) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <iosfwd>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,14 @@ constexpr int kExitSuccess = 0;
 constexpr int kExitFailedRun = 1;
 constexpr int kExitBadCommandLine = 2;
 constexpr int kExitInterrupted = 130;
+
+/** How many of something, on the command line. TCLAP reads `-1` into an unsigned as 4294967295:
+ * here it is refused. */
+struct Count {
+    unsigned value = 0;
+    operator unsigned() const { return value; }
+};
+std::istream& operator>>(std::istream& in, Count& count);
 
 /** Runs a tool: parses the command line into `cmd` (whose arguments the caller has added), then
  *  calls `body`, and turns every ending into the contract's exit code and one line on stderr:

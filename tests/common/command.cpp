@@ -1,11 +1,15 @@
 #include "command.h"
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <regex>
+#include <sstream>
 
 #include "test_data.h"
 
@@ -15,7 +19,8 @@ std::string toolPath(const std::string& tool) {
     return std::filesystem::exists(own) ? own.string() : tool;
 }
 
-CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments) {
+CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments,
+                      const std::string& interruptAt) {
     const std::string program = toolPath(tool);
     const TemporaryFolder folder;
     const std::string out = folder / "out", err = folder / "err";
@@ -36,7 +41,17 @@ CommandResult runTool(const std::string& tool, const std::vector<std::string>& a
         _exit(127);
     }
     int status = 0;
-    waitpid(child, &status, 0);
+    if (!interruptAt.empty()) {
+        while (waitpid(child, &status, WNOHANG) == 0) {
+            if (std::filesystem::exists(err) &&
+                readText(err).find(interruptAt) != std::string::npos) {
+                kill(child, SIGINT);
+                break;
+            }
+            usleep(2000);
+        }
+    }
+    waitpid(child, &status, 0);  // does nothing where it has ended above
     CommandResult result;
     result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     result.out = readText(out);
@@ -46,5 +61,23 @@ CommandResult runTool(const std::string& tool, const std::vector<std::string>& a
 
 bool isOneLine(const std::string& err) {
     return !err.empty() && err.back() == '\n' && std::count(err.begin(), err.end(), '\n') == 1;
+}
+
+std::string errorOf(const CommandResult& result) {
+    static const std::regex progress("[a-z0-9-]+: (warning: .*|[a-z]+ [0-9]+(/[0-9]+)?)");
+    std::istringstream lines(result.err);
+    std::string rest;
+    for (std::string line; std::getline(lines, line);)
+        if (!std::regex_match(line, progress)) rest += line + "\n";
+    return rest;
+}
+
+void expectFailure(const CommandResult& result, int exitCode,
+                   const std::vector<std::string>& words) {
+    EXPECT_EQ(result.exitCode, exitCode) << result.err;
+    const std::string error = errorOf(result);
+    EXPECT_TRUE(isOneLine(error)) << error;
+    for (const auto& word : words)
+        EXPECT_NE(error.find(word), std::string::npos) << word << "\n" << error;
 }
 }  // namespace delio::test

@@ -12,9 +12,19 @@ struct CommandResult {
 /** Where one of the project's tools lies; any other name as it is. */
 std::string toolPath(const std::string& tool);
 
-/** Runs one of the project's tools (by its name) or any program of PATH, without a shell. */
-CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments);
+/** Runs one of the project's tools (by its name) or any program of PATH, without a shell.
+ *  `interruptAt`: as soon as stderr holds this text, Ctrl-C (SIGINT) is sent; empty: never. */
+CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments,
+                      const std::string& interruptAt = "");
 
 /** True if `err` is one plain line: what the contract asks of every error. */
 bool isOneLine(const std::string& err);
+
+/** What stderr holds besides lines of progress and of warnings. */
+std::string errorOf(const CommandResult& result);
+
+/** A failed run as the contract has it: its exit code, and one line (besides progress and warnings)
+ *  that holds all `words`. */
+void expectFailure(const CommandResult& result, int exitCode,
+                   const std::vector<std::string>& words);
 }  // namespace delio::test

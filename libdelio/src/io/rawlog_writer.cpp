@@ -50,6 +50,8 @@ RawlogWriter::RawlogWriter(const std::string& path, std::string label, bool embe
     const fs::path target(path);
     if (target.extension() != ".rawlog")
         throw Error("'" + path + "' does not end in .rawlog; name the output OUT.rawlog");
+    if (fs::is_directory(path))
+        throw Error("'" + path + "' is a folder; choose another name for the rawlog");
     images_ = sidecarPath(path, "_Images");
     const std::string partial =
         (target.parent_path() / (".partial-" + target.stem().string())).string();
@@ -121,6 +123,7 @@ void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
     writeText(".times.txt", timesText);
     writeText(".calib.txt", calibText);
     writeText(".poses.txt", posesText);
+    writeText(".faults.tsv", "");
     writeDriveMeta(meta, path_);
     std::error_code fault;
     fs::remove_all(images_, fault);

@@ -97,9 +97,10 @@ bool ScanSource::readEntry() {
         if (in_.getPosition() == before && before > 0) return false;
         throw Error("'" + path_ + "' " +
                     (before == 0 ? "is not a rawlog, or damaged at its very beginning"
-                                 : "is cut off or damaged after scan " +
-                                       std::to_string(static_cast<long>(count_) - 1) + " (byte " +
-                                       std::to_string(before) + ")"));
+                                 : "is cut off or damaged " +
+                                       (count_ == 0 ? "before its first scan"
+                                                    : "after scan " + std::to_string(count_ - 1)) +
+                                       " (byte " + std::to_string(before) + ")"));
     }
     const auto accept = [&](const CObservation::Ptr& observation) {
         if (observation && isScan(*observation)) pending_.push_back(observation);
