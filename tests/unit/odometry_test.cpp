@@ -31,15 +31,16 @@ std::vector<CPose3D> drive(std::size_t count) {
     return poses;
 }
 
-Scan scanAt(const CPose3D& pose, std::uint32_t seed) {
+Scan scanAt(const CPose3D& pose, std::uint32_t seed, const test::Scene& scene = test::yard()) {
     test::Noise noise(seed);
-    return test::scanOf(test::ringScan(test::yard(), pose, {32, 450, -24, 8, 0.01}, noise).points);
+    return test::scanOf(test::ringScan(scene, pose, {32, 450, -24, 8, 0.01}, noise).points);
 }
 
-std::vector<Scan> scansOf(const std::vector<CPose3D>& poses) {
+std::vector<Scan> scansOf(const std::vector<CPose3D>& poses,
+                          const test::Scene& scene = test::yard()) {
     std::vector<Scan> scans;
     for (const auto& pose : poses)
-        scans.push_back(scanAt(pose, static_cast<std::uint32_t>(scans.size())));
+        scans.push_back(scanAt(pose, static_cast<std::uint32_t>(scans.size()), scene));
     return scans;
 }
 
@@ -125,7 +126,7 @@ TEST(Odometry, AVehicleThatStartsFromRestIsFollowed) {
     std::vector<CPose3D> truth(2, poseOf(0, 0, 0, 30, 0, 0));
     for (const double step : {0.03, 0.06, 0.12, 0.2, 0.3})
         truth.push_back(truth.back() + poseOf(step, 0, 0, 0, 0, 0));
-    const auto results = resultsOf(scansOf(truth));
+    const auto results = resultsOf(scansOf(truth, test::room()));
     for (std::size_t i = 1; i < truth.size(); ++i)
         expectPose(results[i].increment.pose, truth[i] - truth[i - 1], kMetres, kDegrees);
 }
