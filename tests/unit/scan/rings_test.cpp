@@ -102,4 +102,12 @@ TEST(Rings, FewPointsAreFine) {
     two << 10, 10, 0, 0, 1, -1;
     EXPECT_EQ(ringsOf(two), (Rings{0, 63}));
 }
+
+TEST(Rings, AreNumberedFromTheTop) {
+    Eigen::Matrix3Xf points(3, 4);
+    points << 10, 10, 10, 10, 0, 0, 0, 0, -1, 2, 0, 2.1F;
+    EXPECT_EQ(delio::scan::ringsFromTop(points, {0, 1, 7, 1}),
+              (std::vector<std::uint16_t>{2, 0, 1, 0}));
+    EXPECT_TRUE(delio::scan::ringsFromTop({}, {}).empty());
+}
 }  // namespace
