@@ -29,7 +29,7 @@ std::vector<Scan> scansOf(const std::vector<CPose3D>& poses, const CPose3D& sens
     std::vector<Scan> scans;
     for (const auto& pose : poses) {
         test::Noise noise(static_cast<std::uint32_t>(scans.size()));
-        auto made = test::ringScan(test::yard(), pose, {28, 400, -24, 8, 0.01}, noise);
+        auto made = test::ringScan(test::yard(), pose, {24, 360, -24, 8, 0.01}, noise);
         scans.push_back(test::scanOf(made.points));
         scans.back().index = 10 * scans.size();
         scans.back().stamp_s = 0.1 * static_cast<double>(scans.size());
@@ -163,7 +163,7 @@ TEST(Slam, WithoutTheGraphTheTrajectoryIsTheOdometrys) {
 TEST(Slam, SkipEdgesAreAsManyAsTheOptionSays) {
     const auto scans = scansOf(drive(5), {});
     const std::size_t expected[] = {4, 4 + 3, 4 + 3 + 2, 4 + 3 + 2 + 1, 4 + 3 + 2 + 1};
-    for (const unsigned skip : {0U, 2U, 9U}) {
+    for (const unsigned skip : {1U, 9U}) {
         const auto slam = run(scans, withSkipEdges(skip), true);
         EXPECT_EQ(slam.poseGraph().edges().size(), expected[std::min(skip, 4U)]) << skip;
         for (std::size_t from = 0; from < 5; ++from)

@@ -68,7 +68,7 @@ TEST(PatternRegistration, FindsRotationsAboutEachAxisFromWrongStarts) {
     test::Noise noise;
     const auto normals = blobs(threeAxes(), 1500, 3, noise);
     for (int axis = 0; axis < 3; ++axis)
-        for (const double degrees : {-3.0, 0.4, 3.0}) {
+        for (const double degrees : {-3.0, 1.5}) {
             const Eigen::Matrix3d truth = rotationAbout(Eigen::Vector3d::Unit(axis), degrees);
             const auto from = patternOf(seenAgain(normals, 0.3, noise));
             const auto to = patternOf(truth.transpose() * seenAgain(normals, 0.3, noise));

@@ -167,13 +167,11 @@ TEST(LineRegistration, CentroidsGetThereWithManySmallSteps) {
 TEST(LineRegistration, TheSearchNeedsNoPrediction) {
     LineRegistrationOptions options;
     options.search_radius = 2;
-    const auto from = linesAt(test::room(), {0, 0, 0});
-    for (const Eigen::Vector3d& truth :
-         {Eigen::Vector3d(1.3, 0.75, 0), Eigen::Vector3d(0.02, 0, 0)}) {
-        const auto found = searchTranslation(from, linesAt(test::room(), truth), options);
-        EXPECT_TRUE(found.valid);
-        EXPECT_LT((found.translation - truth).norm(), 0.01) << found.translation.transpose();
-    }
+    const Eigen::Vector3d truth(1.3, 0.75, 0);
+    const auto found =
+        searchTranslation(linesAt(test::room(), {0, 0, 0}), linesAt(test::room(), truth), options);
+    EXPECT_TRUE(found.valid);
+    EXPECT_LT((found.translation - truth).norm(), 0.01) << found.translation.transpose();
 }
 
 TEST(LineRegistration, AlongACorridorThePredictionStays) {
