@@ -101,7 +101,8 @@ OdometryResult Odometry::process(const Scan& scan) {
         if (prediction_.hasMotion()) guess = sinceReference_ + prediction_.predict();
         result.registration = align(*reference_, features, guess, result.times_ms);
         result.reason = result.registration.predictedReason;
-    }
+    } else if (scans_ > 1)
+        result.reason = "no usable scan before it";  // what was driven since then is not known
     if (!usable) result.reason = result.counts.points == 0 ? "no points" : "no surfaces";
     result.predicted = !result.reason.empty();
     if (reference_) {

@@ -190,6 +190,8 @@ TEST_P(BadScan, AtTheStartIsNoReference) {
     EXPECT_EQ(results[0].reason, GetParam().second);
     EXPECT_EQ(results[0].increment.pose, CPose3D());
     EXPECT_EQ(results[1].increment.pose, CPose3D());
+    EXPECT_TRUE(results[1].predicted);  // no motion, but not a silent one
+    EXPECT_EQ(results[1].reason, "no usable scan before it");
     expectPose(results[2].increment.pose, truth[1] - truth[0], kMetres, kDegrees);
     expectPose(results[3].increment.pose, truth[2] - truth[1], kMetres, kDegrees);
     EXPECT_FALSE(results[2].predicted);

@@ -90,7 +90,7 @@ class Odometry {
 
     OdometryOptions options_;
     LinearPrediction prediction_;
-    unsigned scans_ = 0;
+    unsigned scans_ = 0;                         //!< processed
     std::shared_ptr<const Features> reference_;  //!< the last usable scan
     mrpt::poses::CPose3D sinceReference_;        //!< maps the latest frame to that of reference_
 };

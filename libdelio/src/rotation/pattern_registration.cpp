@@ -180,7 +180,7 @@ std::vector<OptionField> PatternRegistrationOptions::fields() {
         {"min_normals", &min_normals, "normals that each pattern needs; fewer: predicted", 3, 1e6},
         {"min_observability", &min_observability,
          "0 to 1; an axis that the pattern fixes less keeps the prediction", 0, 1},
-        {"prior_sigma_deg", &prior_sigma_deg, "deg; the motion model's error on such an axis", 0,
+        {"prior_sigma_deg", &prior_sigma_deg, "deg; the motion model's error on such an axis", 1e-6,
          180}};
 }
 

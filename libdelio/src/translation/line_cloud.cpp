@@ -61,7 +61,8 @@ std::vector<OptionField> LineCloudOptions::fields() {
             {"drawn", &drawn, "random lines drawn in each bin", 1, 10000},
             {"kept", &kept, "shortest lines kept of those", 1, 10000},
             {"max_length", &max_length, "m; longer lines are not kept", 0.01, 1000},
-            {"seed", &seed, "seed of the draw", 0, 4294967295.0}};
+            {"seed", &seed, "seed of the draw; scan i of a drive is drawn with seed + i", 0,
+             4294967295.0}};
 }
 
 LineCloud drawLines(const Eigen::Matrix3Xf& points, const std::vector<std::uint16_t>& rings,

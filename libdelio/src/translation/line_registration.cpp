@@ -160,7 +160,8 @@ std::vector<OptionField> LineRegistrationOptions::fields() {
         {"min_matches", &min_matches, "pairs that are needed; fewer: predicted", 3, 1e6},
         {"min_observability", &min_observability,
          "0 to 1; a direction that the lines fix less keeps the prediction", 0, 1},
-        {"prior_sigma", &prior_sigma, "m; the motion model's error along such a direction", 0, 100},
+        {"prior_sigma", &prior_sigma, "m; the motion model's error along such a direction", 1e-6,
+         100},
         {"search_radius", &search_radius,
          "m; starts for the first pair of a drive lie in this horizontal disc", 0, 50},
         {"search_step", &search_step, "m; distance between those starts", 0.1, 50}};
