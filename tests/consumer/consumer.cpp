@@ -1,6 +1,7 @@
-// Two scans of the inside of a box, half a metre apart, through the installed library.
+// Two scans of the inside of a box, the sensor turned by 5 deg, through the installed library.
 #include <mrpt/maps/CSimplePointsMap.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -8,22 +9,22 @@
 #include "delio/profile.h"
 
 namespace {
-/** 32 rings of a LiDAR at (x, 1, 0) in a box of 30 m x 16 m, floor 1.7 m below, roof 6 m above. */
-delio::Scan scanFrom(double x) {
+/** 32 rings of a LiDAR, turned by `yaw`, in a box: walls 15 m, 15 m, 7 m and 9 m away, floor 1.7 m
+ *  below, roof 6 m above. */
+delio::Scan scanAt(double yaw) {
     auto points = mrpt::maps::CSimplePointsMap::Create();
     delio::Scan scan;
     for (int ring = 0; ring < 32; ++ring)
         for (int column = 0; column < 1000; ++column) {
             const double elevation = (10 - 1.1 * ring) * M_PI / 180;
             const double azimuth = 2 * M_PI * column / 1000;
-            const double dx = std::cos(elevation) * std::cos(azimuth);
-            const double dy = std::cos(elevation) * std::sin(azimuth);
-            const double dz = std::sin(elevation);
-            const double range =
-                std::min({(dx > 0 ? 15 - x : 15 + x) / std::abs(dx),
-                          (dy > 0 ? 7 : 9) / std::abs(dy), (dz > 0 ? 6 : 1.7) / std::abs(dz)});
-            points->insertPoint(static_cast<float>(range * dx), static_cast<float>(range * dy),
-                                static_cast<float>(range * dz));
+            const double flat = std::cos(elevation), up = std::sin(elevation);
+            const double x = flat * std::cos(azimuth + yaw), y = flat * std::sin(azimuth + yaw);
+            const double range = std::min({15 / std::abs(x), (y > 0 ? 7 : 9) / std::abs(y),
+                                           (up > 0 ? 6 : 1.7) / std::abs(up)});
+            points->insertPoint(static_cast<float>(range * flat * std::cos(azimuth)),
+                                static_cast<float>(range * flat * std::sin(azimuth)),
+                                static_cast<float>(range * up));
             scan.rings.push_back(static_cast<std::uint16_t>(ring));
         }
     scan.points = points;
@@ -32,12 +33,14 @@ delio::Scan scanFrom(double x) {
 }  // namespace
 
 int main() {
+    constexpr double kYaw = 5 * M_PI / 180;
     delio::Odometry odometry(delio::Options::ofProfile("paper").odometry);
-    odometry.process(scanFrom(0));
-    const auto result = odometry.process(scanFrom(0.5));
-    std::printf("installed library: moved %.3f %.3f %.3f m\n", result.increment.pose.x(),
-                result.increment.pose.y(), result.increment.pose.z());
-    const bool right = !result.predicted && std::abs(result.increment.pose.x() - 0.5) < 0.02 &&
-                       std::abs(result.increment.pose.y()) < 0.02;
+    odometry.process(scanAt(0));
+    const auto result = odometry.process(scanAt(kYaw));
+    const auto& pose = result.increment.pose;
+    std::printf("installed library: turned %.3f deg, moved %.3f m\n", pose.yaw() * 180 / M_PI,
+                pose.norm());
+    const bool right =
+        !result.predicted && std::abs(pose.yaw() - kYaw) < 0.2 * M_PI / 180 && pose.norm() < 0.02;
     return right ? 0 : 1;
 }
