@@ -254,9 +254,8 @@ void SlamRun::writeScans() const {
             out << report.index << format(",%.7f,", report.stamp_s) << counts.points << ","
                 << counts.notFinite << format(",%.3f", read_ms_[i]);
             for (const double ms : report.odometry.times_ms) out << format(",%.3f", ms);
-            // No mean shift yet: no modes.
             out << format(",%.3f,", report.graph_ms) << counts.normals << "," << counts.pattern
-                << ",0," << counts.lines << "," << translation.matches
+                << "," << counts.modes << "," << counts.lines << "," << translation.matches
                 << format(",%.9g", translation.residual_m);
             for (int k = 0; k < 3; ++k) out << format(",%.9g", rotation.observability[k]);
             for (int k = 0; k < 3; ++k) out << format(",%.9g", translation.observability[k]);

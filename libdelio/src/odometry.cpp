@@ -47,11 +47,19 @@ std::shared_ptr<const Features> Odometry::extract(const Scan& scan, FeatureCount
     auto features = std::make_shared<Features>();
     const auto cloud =
         timed(times_ms[kPreprocess], [&] { return scan::preprocess(scan, options_.preprocess); });
-    const auto normals = timed(times_ms[kNormals], [&] {
+    const auto raw = timed(times_ms[kNormals], [&] {
         return rotation::estimateNormals(cloud.points, options_.normals);
     });
+    const auto normals = timed(
+        times_ms[kBilateral], [&] { return rotation::filterBilaterally(raw, options_.bilateral); });
     features->pattern = timed(times_ms[kOutliers],
                               [&] { return rotation::removeOutliers(normals, options_.outliers); });
+    if (rotation::needsModes(features->pattern, options_.meanShift))
+        features->pattern = timed(times_ms[kMeanShift], [&] {
+            const auto modes = rotation::seekModes(normals.directions, options_.meanShift);
+            counts.modes = modes.size();
+            return rotation::patternOfModes(normals, modes, options_.meanShift, options_.outliers);
+        });
     // Another draw for every scan: of two scans made from nearly one place, the same draw gives
     // nearly the same lines, each of which then pairs with itself and holds the vehicle at rest.
     auto lineOptions = options_.lines;

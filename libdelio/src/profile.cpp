@@ -52,7 +52,9 @@ std::vector<std::string> Options::profileNames() {
 std::vector<std::pair<std::string, StageOptions*>> Options::stages() {
     return {{"scan", &odometry.preprocess},
             {"normals", &odometry.normals},
+            {"bilateral_filter", &odometry.bilateral},
             {"outlier_removal", &odometry.outliers},
+            {"mean_shift", &odometry.meanShift},
             {"pattern_registration", &odometry.pattern},
             {"line_cloud", &odometry.lines},
             {"line_registration", &odometry.lineRegistration},

@@ -6,6 +6,8 @@
 
 #include "delio/increment.h"
 #include "delio/prediction.h"
+#include "delio/rotation/bilateral_filter.h"
+#include "delio/rotation/mean_shift.h"
 #include "delio/rotation/normals.h"
 #include "delio/rotation/outlier_removal.h"
 #include "delio/rotation/pattern_registration.h"
@@ -19,7 +21,9 @@ namespace delio {
 struct OdometryOptions {
     scan::PreprocessOptions preprocess;
     rotation::NormalsOptions normals;
+    rotation::BilateralFilterOptions bilateral;
     rotation::OutlierRemovalOptions outliers;
+    rotation::MeanShiftOptions meanShift;
     rotation::PatternRegistrationOptions pattern;
     translation::LineCloudOptions lines;
     translation::LineRegistrationOptions lineRegistration;
@@ -27,9 +31,20 @@ struct OdometryOptions {
 };
 
 /** Stages that time is measured of, in the order in which a scan goes through them. */
-enum Stage { kPreprocess, kNormals, kOutliers, kLines, kRotation, kTranslation, kStages };
-constexpr std::array<const char*, kStages> kStageNames = {"preprocess", "normals",  "outliers",
-                                                          "lines",      "rotation", "translation"};
+enum Stage {
+    kPreprocess,
+    kNormals,
+    kBilateral,
+    kOutliers,
+    kMeanShift,
+    kLines,
+    kRotation,
+    kTranslation,
+    kStages
+};
+constexpr std::array<const char*, kStages> kStageNames = {"preprocess", "normals",    "bilateral",
+                                                          "outliers",   "mean_shift", "lines",
+                                                          "rotation",   "translation"};
 using StageTimes = std::array<double, kStages>;  //!< milliseconds
 
 /** What is kept of a scan to register others with; sensor's frame. */
@@ -43,7 +58,8 @@ struct FeatureCounts {
     std::size_t points = 0;     //!< used, after preprocessing
     std::size_t notFinite = 0;  //!< dropped: a coordinate was NaN or infinite
     std::size_t normals = 0;    //!< of surfaces
-    std::size_t pattern = 0;    //!< normals left in the pattern
+    std::size_t pattern = 0;    //!< normals, or cells of modes, left in the pattern
+    std::size_t modes = 0;      //!< that mean shift found; 0 where it was not needed
     std::size_t lines = 0;
 };
 

@@ -80,17 +80,21 @@ SurfaceNormals estimateNormals(const Eigen::Matrix3Xf& points, const NormalsOpti
     SurfaceNormals result;
     result.neighbourhoods = found.size();
     result.directions.resize(3, thinned.cols());
+    result.points.resize(3, thinned.cols());
     result.planarity.resize(thinned.cols());
     Eigen::Index kept = 0;
-    for (const auto& neighbourhood : found) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const auto& neighbourhood = found[i];
         result.lines += neighbourhood.shape == Shape::kLine;
         result.rough += neighbourhood.shape == Shape::kRough;
         if (neighbourhood.shape != Shape::kPlane) continue;
         result.directions.col(kept) = neighbourhood.normal;
         result.planarity[kept] = neighbourhood.planarity;
+        result.points.col(kept) = thinned.col(static_cast<Eigen::Index>(i));
         ++kept;
     }
     result.directions.conservativeResize(3, kept);
+    result.points.conservativeResize(3, kept);
     result.planarity.conservativeResize(kept);
     return result;
 }

@@ -31,6 +31,7 @@ Eigen::VectorXf meanNeighbourDistances(const Eigen::Matrix3Xf& directions, std::
 
 void keepOnly(const std::vector<Eigen::Index>& kept, Pattern& pattern) {
     pattern.removed += static_cast<std::size_t>(pattern.directions.cols()) - kept.size();
+    pattern.normals = kept.size();
     pattern.directions = pattern.directions(Eigen::all, kept).eval();
     pattern.weights = pattern.weights(kept).eval();
 }
@@ -45,10 +46,24 @@ std::vector<OptionField> OutlierRemovalOptions::fields() {
         {"alpha", &alpha, "standard deviations above the mean that still belong", 0, 100}};
 }
 
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Pattern& pattern) {
+    Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+    double weights = 0;
+    for (Eigen::Index i = 0; i < pattern.directions.cols(); ++i) {
+        const Eigen::Vector3d n = pattern.directions.col(i).cast<double>();
+        mean += static_cast<double>(pattern.weights[i]) *
+                (Eigen::Matrix3d::Identity() - n * n.transpose());
+        weights += static_cast<double>(pattern.weights[i]);
+    }
+    if (weights > 0) mean /= weights;
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(mean);
+}
+
 Pattern removeOutliers(const SurfaceNormals& normals, const OutlierRemovalOptions& options) {
     Pattern pattern;
     pattern.directions = normals.directions;
     pattern.weights = normals.planarity;
+    pattern.normals = static_cast<std::size_t>(normals.directions.cols());
     for (unsigned round = 0; round < options.rounds && pattern.directions.cols() > 1; ++round) {
         const double step =
             options.rounds > 1 ? static_cast<double>(round) / (options.rounds - 1) : 0;

@@ -24,7 +24,7 @@ struct Pairing {
     double weight = 0;
     double squaredAngles = 0;
     std::size_t matches = 0;
-    std::size_t normals = 0;  //!< that the matches stand for
+    double matched = 0;  //!< weight of `to` that has a partner
 };
 
 /** Sums over the normals of `to`. They are made per block of fixed size and added in order: the
@@ -44,7 +44,7 @@ Pairing pairAll(Eigen::Index count, const PairOne& pairOne) {
         total.weight += block.weight;
         total.squaredAngles += block.squaredAngles;
         total.matches += block.matches;
-        total.normals += block.normals;
+        total.matched += block.matched;
     }
     return total;
 }
@@ -61,21 +61,14 @@ Pairing pairNearest(const Pattern& from, const KdTree& tree, const Pattern& to,
         sum.weight += 1;
         sum.squaredAngles += static_cast<double>(squared);
         ++sum.matches;
-        ++sum.normals;
+        sum.matched += static_cast<double>(to.weights[i]);
     });
 }
 
-/** A pattern, and how many normals each of its directions stands for. */
-struct Cells {
-    Pattern pattern;
-    std::vector<std::size_t> normals;
-};
-
 /** Pairs each normal with all of the other pattern within 2.5 sigma. The sum of the pairs' weights
  *  is the correlation of the two densities; its maximum is where pairing and SVD stand still. */
-Pairing pairDensities(const Pattern& from, const KdTree& tree, const Cells& cells,
+Pairing pairDensities(const Pattern& from, const KdTree& tree, const Pattern& to,
                       const Eigen::Matrix3d& R, double sigma_rad) {
-    const Pattern& to = cells.pattern;
     const auto reach = static_cast<float>(2.5 * 2.5 * sigma_rad * sigma_rad);
     const auto scale = static_cast<float>(-0.5 / (sigma_rad * sigma_rad));
     return pairAll(to.directions.cols(), [&](Eigen::Index i, Pairing& sum) {
@@ -96,7 +89,7 @@ Pairing pairDensities(const Pattern& from, const KdTree& tree, const Cells& cell
         sum.squaredAngles +=
             own * static_cast<double>(weight * (mean / weight - turned).squaredNorm());
         ++sum.matches;
-        sum.normals += cells.normals[static_cast<std::size_t>(i)];
+        sum.matched += own;
     });
 }
 
@@ -108,44 +101,68 @@ Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& moment) {
     return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
 }
 
-/** Fewer directions that stand for the pattern: the weighted centroid of each cell. */
-Cells condensed(const Pattern& pattern, double cell_deg) {
+/** Fewer directions that stand for the pattern: the weighted centroid of each cell. Cells a quarter
+ *  as wide as the kernel change the correlation by about 1 %. */
+Pattern condensed(const Pattern& pattern, double kernel_deg,
+                  const PatternRegistrationOptions& options) {
+    const double cell_deg = std::max(options.cell_deg, kernel_deg / 4);
     const auto cells = scan::numberVoxels(pattern.directions, cell_deg * kDeg);
-    Cells result;
-    auto& [directions, weights, removed] = result.pattern;
-    directions = Eigen::Matrix3Xf::Zero(3, cells.voxels);
-    weights = Eigen::VectorXf::Zero(cells.voxels);
-    result.normals.assign(static_cast<std::size_t>(cells.voxels), 0);
+    Pattern result;
+    result.normals = pattern.normals;
+    result.directions = Eigen::Matrix3Xf::Zero(3, cells.voxels);
+    result.weights = Eigen::VectorXf::Zero(cells.voxels);
     for (Eigen::Index i = 0; i < pattern.directions.cols(); ++i) {
         const Eigen::Index cell = cells.ofPoint[static_cast<std::size_t>(i)];
-        directions.col(cell) += pattern.weights[i] * pattern.directions.col(i);
-        weights[cell] += pattern.weights[i];
-        ++result.normals[static_cast<std::size_t>(cell)];
+        result.directions.col(cell) += pattern.weights[i] * pattern.directions.col(i);
+        result.weights[cell] += pattern.weights[i];
     }
-    directions.colwise().normalize();
+    result.directions.colwise().normalize();
     return result;
 }
 
-/** Moves the estimate back to the prediction about the axes that the pattern does not fix, and
- *  gives the covariance: noise over geometry on the others, the motion model's on those. */
+/** Pairs and turns until the rotation stands still. Not valid where too few normals of `to` find a
+ *  partner. */
+void iterate(const Pattern& from, const Pattern& to, double kernel_deg,
+             const PatternRegistrationOptions& options, RotationEstimate& estimate) {
+    const KdTree tree(from.directions);
+    // The weight that stands for min_normals, less what rounding takes.
+    const double enough = (1 - 1e-6) * options.min_normals * static_cast<double>(to.weights.sum()) /
+                          static_cast<double>(to.normals);
+    double step = M_PI;
+    while (estimate.iterations < options.max_iterations && step > options.converged_deg * kDeg) {
+        const Pairing pairs =
+            kernel_deg > 0 ? pairDensities(from, tree, to, estimate.rotation, kernel_deg * kDeg)
+                           : pairNearest(from, tree, to, estimate.rotation);
+        estimate.valid = pairs.matched >= enough;
+        if (!estimate.valid) return;
+        ++estimate.iterations;
+        estimate.matches = pairs.matches;
+        estimate.residual_rad = std::sqrt(pairs.squaredAngles / pairs.weight);
+        const Eigen::Matrix3d next = rotationOf(pairs.moment);
+        step = Eigen::AngleAxisd(estimate.rotation.transpose() * next).angle();
+        estimate.rotation = next;
+    }
+}
+
+/** Moves the estimate back to the prediction about the axes that the pattern does not fix, or about
+ *  all where it is not valid, and gives the covariance: noise over geometry on the others, the
+ *  motion model's on those. */
 void settle(const Pattern& to, const Eigen::Matrix3d& predicted,
             const PatternRegistrationOptions& options, RotationEstimate& estimate) {
-    Eigen::Matrix3d geometry = Eigen::Matrix3d::Zero();
-    for (Eigen::Index i = 0; i < to.directions.cols(); ++i) {
-        const Eigen::Vector3d n = to.directions.col(i).cast<double>();
-        geometry +=
-            static_cast<double>(to.weights[i]) * (Eigen::Matrix3d::Identity() - n * n.transpose());
+    const double prior = options.prior_sigma_deg * kDeg * options.prior_sigma_deg * kDeg;
+    if (!estimate.valid) {
+        estimate.rotation = predicted;
+        estimate.covariance = prior * Eigen::Matrix3d::Identity();
+        estimate.unobservedAxes = Eigen::Matrix3d::Identity();
+        return;
     }
-    geometry /= static_cast<double>(to.weights.sum());
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(geometry);
+    const auto axes = axesOf(to);
     estimate.observability = axes.eigenvalues();
+    const double residual = std::max(estimate.residual_rad, kLeastResidual_rad);
+    const double noise = residual * residual / static_cast<double>(estimate.matches);
 
     const Eigen::AngleAxisd found(predicted.transpose() * estimate.rotation);
     Eigen::Vector3d correction = found.angle() * found.axis();
-    const double prior = options.prior_sigma_deg * kDeg * options.prior_sigma_deg * kDeg;
-    const double residual = std::max(estimate.residual_rad, kLeastResidual_rad);
-    const double noise =
-        residual * residual / static_cast<double>(std::max<std::size_t>(estimate.matches, 1));
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = axes.eigenvectors().col(k);
         const bool observed = axes.eigenvalues()[k] >= options.min_observability;
@@ -159,11 +176,8 @@ void settle(const Pattern& to, const Eigen::Matrix3d& predicted,
     }
     if (estimate.unobservedAxes.cols() == 0) return;
     const double angle = correction.norm();
-    if (angle > 0)
-        estimate.rotation =
-            predicted * Eigen::AngleAxisd(angle, correction / angle).toRotationMatrix();
-    else
-        estimate.rotation = predicted;
+    estimate.rotation = predicted;
+    if (angle > 0) estimate.rotation *= Eigen::AngleAxisd(angle, correction / angle).matrix();
 }
 }  // namespace
 
@@ -184,47 +198,22 @@ std::vector<OptionField> PatternRegistrationOptions::fields() {
          180}};
 }
 
-RotationEstimate registerPatterns(const Pattern& fromAll, const Pattern& toAll,
+RotationEstimate registerPatterns(const Pattern& from, const Pattern& to,
                                   const Eigen::Matrix3d& predicted,
                                   const PatternRegistrationOptions& options) {
     RotationEstimate estimate;
     estimate.rotation = predicted;
-    const double prior = options.prior_sigma_deg * kDeg * options.prior_sigma_deg * kDeg;
-    if (std::min(fromAll.directions.cols(), toAll.directions.cols()) <
-        static_cast<Eigen::Index>(options.min_normals)) {
-        estimate.covariance = prior * Eigen::Matrix3d::Identity();
-        estimate.unobservedAxes = Eigen::Matrix3d::Identity();
-        return estimate;
-    }
-    const bool correlate = options.kernel_deg > 0;
-    const Cells fromCells = correlate ? condensed(fromAll, options.cell_deg) : Cells{fromAll, {}};
-    const Cells toCells = correlate ? condensed(toAll, options.cell_deg) : Cells{toAll, {}};
-    const Pattern &from = fromCells.pattern, &to = toCells.pattern;
-    const KdTree tree(from.directions);
-
-    double kernel_deg = options.kernel_deg;
-    Pairing pairs;
-    while (estimate.iterations < options.max_iterations) {
-        pairs = correlate ? pairDensities(from, tree, toCells, estimate.rotation, kernel_deg * kDeg)
-                          : pairNearest(from, tree, to, estimate.rotation);
-        if (pairs.normals < options.min_normals) break;
-        ++estimate.iterations;
-        const Eigen::Matrix3d next = rotationOf(pairs.moment);
-        const double step = Eigen::AngleAxisd(estimate.rotation.transpose() * next).angle();
-        estimate.rotation = next;
-        if (step > options.converged_deg * kDeg) continue;
-        if (!correlate || kernel_deg <= options.last_kernel_deg) break;
-        kernel_deg = std::max(kernel_deg / 2, options.last_kernel_deg);
-    }
-    estimate.matches = pairs.matches;
-    if (pairs.normals < options.min_normals) {
-        estimate.rotation = predicted;
-        estimate.covariance = prior * Eigen::Matrix3d::Identity();
-        estimate.unobservedAxes = Eigen::Matrix3d::Identity();
-        return estimate;
-    }
-    estimate.valid = true;
-    estimate.residual_rad = std::sqrt(pairs.squaredAngles / pairs.weight);
+    const bool enough = std::min(from.normals, to.normals) >= options.min_normals;
+    if (enough && options.kernel_deg > 0) {
+        estimate.valid = true;
+        for (double kernel_deg = options.kernel_deg; estimate.valid; kernel_deg /= 2) {
+            kernel_deg = std::max(kernel_deg, options.last_kernel_deg);
+            iterate(condensed(from, kernel_deg, options), condensed(to, kernel_deg, options),
+                    kernel_deg, options, estimate);
+            if (kernel_deg <= options.last_kernel_deg) break;
+        }
+    } else if (enough)
+        iterate(from, to, 0, options, estimate);
     settle(to, predicted, options, estimate);
     return estimate;
 }

@@ -12,7 +12,7 @@ namespace delio::rotation {
  *  ring) or no plane at all are dropped. */
 struct NormalsOptions : public StageOptions {
     double voxel_size = 0.4;
-    unsigned neighbours = 12;
+    unsigned neighbours = 10;
     double max_radius = 1.5;
     double min_breadth = 0.1;
     double max_thickness = 0.15;
@@ -24,6 +24,7 @@ struct NormalsOptions : public StageOptions {
 struct SurfaceNormals {
     Eigen::Matrix3Xf directions;     //!< unit vectors, turned towards the sensor (the origin)
     Eigen::VectorXf planarity;       //!< 0 (barely a plane) to 1, one per direction
+    Eigen::Matrix3Xf points;         //!< metres; where each normal was found
     std::size_t neighbourhoods = 0;  //!< examined
     std::size_t lines = 0;           //!< dropped: one ring, or an edge
     std::size_t rough = 0;           //!< dropped: no plane

@@ -1,4 +1,6 @@
 #pragma once
+#include <Eigen/Eigenvalues>
+
 #include "delio/rotation/normals.h"
 #include "delio/stage_options.h"
 
@@ -19,8 +21,13 @@ struct OutlierRemovalOptions : public StageOptions {
 struct Pattern {
     Eigen::Matrix3Xf directions;  //!< unit vectors
     Eigen::VectorXf weights;      //!< one per direction, from the planarity
+    std::size_t normals = 0;      //!< that the directions stand for
     std::size_t removed = 0;      //!< normals that were outliers
 };
+
+/** How well a pattern fixes a rotation: eigenvalues (rising, 0 to 1) and eigenvectors of the mean
+ * of w (I - n n'). Ground alone gives (0, 1, 1), with the vertical first. */
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Pattern& pattern);
 
 /** In each round, the mean distance on the sphere to the k nearest normals is computed for every
  *  normal; those where it exceeds the mean of all by more than alpha standard deviations are

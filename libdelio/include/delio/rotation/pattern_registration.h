@@ -12,8 +12,8 @@ namespace delio::rotation {
  *  the angle between them that narrows from `kernel_deg` to `last_kernel_deg`. */
 struct PatternRegistrationOptions : public StageOptions {
     double kernel_deg = 8;
-    double last_kernel_deg = 2;
-    double cell_deg = 1.0;
+    double last_kernel_deg = 0.7;
+    double cell_deg = 0.5;
     unsigned max_iterations = 60;
     double converged_deg = 0.001;
     unsigned min_normals = 50;
