@@ -40,9 +40,12 @@ double degreesBetween(const CPose3D& a, const CPose3D& b) {
 Eigen::Vector3d translationOf(const CPose3D& pose) { return {pose.x(), pose.y(), pose.z()}; }
 
 void print(const char* what, std::vector<double> errors, const char* unit) {
+    double sum = 0;
+    for (const double error : errors) sum += error;
+    const double mean = sum / static_cast<double>(errors.size());
     const auto spread = evaluation::spreadOf(std::move(errors));
-    std::printf("  %-34s median %8.4f   95 %% %8.4f   max %8.4f %s\n", what, spread.median,
-                spread.p95, spread.max, unit);
+    std::printf("  %-34s median %8.4f   95 %% %8.4f   max %8.4f   mean %8.4f %s\n", what,
+                spread.median, spread.p95, spread.max, mean, unit);
 }
 
 /** Errors of one drive, one entry a registered scan. */

@@ -159,7 +159,8 @@ void settle(const Pattern& to, const Eigen::Matrix3d& predicted,
     const auto axes = axesOf(to);
     estimate.observability = axes.eigenvalues();
     const double residual = std::max(estimate.residual_rad, kLeastResidual_rad);
-    const double noise = residual * residual / static_cast<double>(estimate.matches);
+    const double noise =
+        residual * residual / (options.independent_share * static_cast<double>(to.normals));
 
     const Eigen::AngleAxisd found(predicted.transpose() * estimate.rotation);
     Eigen::Vector3d correction = found.angle() * found.axis();
@@ -194,6 +195,10 @@ std::vector<OptionField> PatternRegistrationOptions::fields() {
         {"min_normals", &min_normals, "normals that each pattern needs; fewer: predicted", 3, 1e6},
         {"min_observability", &min_observability,
          "0 to 1; an axis that the pattern fixes less keeps the prediction", 0, 1},
+        {"independent_share", &independent_share,
+         "share of the normals that count as independent in the covariance: neighbours share "
+         "points",
+         1e-6, 1},
         {"prior_sigma_deg", &prior_sigma_deg, "deg; the motion model's error on such an axis", 1e-6,
          180}};
 }

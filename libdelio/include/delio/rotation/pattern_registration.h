@@ -18,6 +18,7 @@ struct PatternRegistrationOptions : public StageOptions {
     double converged_deg = 0.001;
     unsigned min_normals = 50;
     double min_observability = 0.01;
+    double independent_share = 0.05;
     double prior_sigma_deg = 1.0;
 
  protected:
