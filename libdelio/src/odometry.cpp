@@ -75,21 +75,20 @@ std::shared_ptr<const Features> Odometry::extract(const Scan& scan, FeatureCount
     return features;
 }
 
-Registration Odometry::align(const Features& from, const Features& to,
-                             const std::optional<CPose3D>& guess, StageTimes& times_ms) const {
-    const CPose3D predicted = guess.value_or(CPose3D());
+Registration Odometry::align(const Features& from, const Features& to, const CPose3D& guess,
+                             bool search, StageTimes& times_ms) const {
     Registration result;
     result.rotation = timed(times_ms[kRotation], [&] {
-        return rotation::registerPatterns(
-            from.pattern, to.pattern, predicted.getRotationMatrix().asEigen(), options_.pattern);
+        return rotation::registerPatterns(from.pattern, to.pattern,
+                                          guess.getRotationMatrix().asEigen(), options_.pattern);
     });
     result.translation = timed(times_ms[kTranslation], [&] {
         const auto unrotated = translation::rotated(to.lines, result.rotation.rotation);
-        const Eigen::Vector3d t(predicted.x(), predicted.y(), predicted.z());
-        return guess
-                   ? translation::registerLines(from.lines, unrotated, t, options_.lineRegistration)
-                   : translation::searchTranslation(from.lines, unrotated,
-                                                    options_.lineRegistration);
+        const Eigen::Vector3d t(guess.x(), guess.y(), guess.z());
+        return search ? translation::searchTranslation(from.lines, unrotated, t,
+                                                       options_.lineRegistration)
+                      : translation::registerLines(from.lines, unrotated, t,
+                                                   options_.lineRegistration);
     });
     result.increment = incrementOf(result.rotation, result.translation);
     if (!result.rotation.valid) result.predictedReason = "too few normals";
@@ -105,9 +104,8 @@ OdometryResult Odometry::process(const Scan& scan) {
     const auto& features = *result.features;
     const bool usable = result.counts.pattern > 0 && result.counts.lines > 0;
     if (reference_) {
-        std::optional<CPose3D> guess;
-        if (prediction_.hasMotion()) guess = sinceReference_ + prediction_.predict();
-        result.registration = align(*reference_, features, guess, result.times_ms);
+        const CPose3D guess = sinceReference_ + prediction_.predict();
+        result.registration = align(*reference_, features, guess, lost_, result.times_ms);
         result.reason = result.registration.predictedReason;
     } else if (scans_ > 1)
         result.reason = "no usable scan before it";  // what was driven since then is not known
@@ -120,6 +118,7 @@ OdometryResult Odometry::process(const Scan& scan) {
         if (!result.predicted || prediction_.hasMotion())
             prediction_.observe(result.increment.pose);
         sinceReference_ = sinceReference_ + result.increment.pose;
+        lost_ = result.predicted;
     }
     if (usable) {
         reference_ = result.features;

@@ -68,7 +68,7 @@ void Slam::addSkipEdges(const Recent& latest) {
                               (poses[latest.node] + latest.sensorPose);
         StageTimes unused{};
         const Registration registration =
-            odometry_.align(*earlier.features, *latest.features, guess, unused);
+            odometry_.align(*earlier.features, *latest.features, guess, false, unused);
         // Where a scan did not register there is nothing to learn beyond the prediction.
         if (!registration.predictedReason.empty()) continue;
         graph_.addEdge({earlier.node, latest.node,

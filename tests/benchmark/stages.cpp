@@ -15,6 +15,7 @@
 #include "delio/io/trajectory.h"
 #include "delio/odometry.h"
 #include "delio/profile.h"
+#include "delio/translation/coupled_registration.h"
 
 namespace {
 using namespace delio;
@@ -51,6 +52,7 @@ void print(const char* what, std::vector<double> errors, const char* unit) {
 /** Errors of one drive, one entry a registered scan. */
 struct Errors {
     std::vector<double> rotation, predictedRotation, translation, givenRotation;
+    std::vector<double> coupledRotation, coupledTranslation;
     std::vector<double> rotationNes, translationNes;  //!< normalised squared errors, 3 each
     double iterations = 0;                            //!< of the pattern's registration
     double along = 0, givenAlong = 0, path = 0;       //!< signed, along the true motion
@@ -82,6 +84,17 @@ void compare(const CPose3D& truth, const CPose3D& predicted, const OdometryResul
         errors.givenAlong += given.dot(t.normalized());
         errors.path += t.norm();
     }
+    // Rotation and translation together, from the same lines.
+    Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
+    start.linear() = predicted.getRotationMatrix().asEigen();
+    start.translation() = translationOf(predicted);
+    const auto coupled = translation::registerCoupled(before.lines, result.features->lines, start,
+                                                      options.lineRegistration)
+                             .pose;
+    errors.coupledTranslation.push_back((coupled.translation() - t).norm());
+    errors.coupledRotation.push_back(
+        degreesBetween(truth, CPose3D(coupled.linear(), coupled.translation())));
+
     const Eigen::Matrix<double, 6, 6> covariance = result.increment.covariance.asEigen();
     const Eigen::Matrix3d F = found.getRotationMatrix().asEigen();
     const Eigen::AngleAxisd off(F.transpose() * R);
@@ -124,6 +137,8 @@ void run(const std::string& rawlog, Options options) {
     print("rotation, of the prediction", errors.predictedRotation, "deg");
     print("translation", errors.translation, "m");
     print("translation, true rotation given", errors.givenRotation, "m");
+    print("coupled: rotation", errors.coupledRotation, "deg");
+    print("         translation", errors.coupledTranslation, "m");
     std::printf("  along the motion %+.3f %%, with true rotation %+.3f %% of the path\n",
                 100 * errors.along / errors.path, 100 * errors.givenAlong / errors.path);
     print("normalised squared error, rotation", errors.rotationNes, "(3 expected)");

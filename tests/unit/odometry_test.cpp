@@ -243,8 +243,8 @@ TEST(Odometry, AlignsAnyTwoScans) {
     const auto last = odometry.process(scans[4]).features,
                first = odometry.process(scans[2]).features;
     StageTimes times{};
-    const auto found =
-        odometry.align(*last, *first, (truth[2] - truth[4]) + poseOf(0.2, 0.1, 0, 1, 0, 0), times);
+    const auto found = odometry.align(
+        *last, *first, (truth[2] - truth[4]) + poseOf(0.2, 0.1, 0, 1, 0, 0), false, times);
     EXPECT_EQ(found.predictedReason, "");
     expectPose(found.increment.pose, truth[2] - truth[4], kMetres, kDegrees);
     expectCovariance(found.increment);

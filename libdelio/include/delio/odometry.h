@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "delio/increment.h"
@@ -94,11 +93,10 @@ class Odometry {
 
     OdometryResult process(const Scan& scan);
 
-    /** Registers any two scans; `guess` maps frame `to` to frame `from`; without one, translations
-     *  of a few metres are searched. */
-    Registration align(const Features& from, const Features& to,
-                       const std::optional<mrpt::poses::CPose3D>& guess,
-                       StageTimes& times_ms) const;
+    /** Registers any two scans; `guess` maps frame `to` to frame `from`. With `search`,
+     *  translations of a few metres about a guess that is little more than that are tried. */
+    Registration align(const Features& from, const Features& to, const mrpt::poses::CPose3D& guess,
+                       bool search, StageTimes& times_ms) const;
 
  private:
     std::shared_ptr<const Features> extract(const Scan& scan, FeatureCounts& counts,
@@ -109,5 +107,6 @@ class Odometry {
     unsigned scans_ = 0;                         //!< processed
     std::shared_ptr<const Features> reference_;  //!< the last usable scan
     mrpt::poses::CPose3D sinceReference_;        //!< maps the latest frame to that of reference_
+    bool lost_ = true;  //!< where the next scan will be is not known to better than metres
 };
 }  // namespace delio

@@ -1,13 +1,11 @@
 #include "delio/translation/line_registration.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "../kd_tree.h"
+#include "line_matches.h"
 
 namespace delio::translation {
 namespace {
@@ -15,24 +13,9 @@ namespace {
  *  residual at all, but a covariance has to be one. */
 constexpr double kLeastResidual_m = 1e-3;
 
-struct Match {
-    std::uint32_t from = 0;
-    float distance = -1;  //!< of the midpoints; negative: none
-};
-
-std::vector<Match> nearestMidpoints(const KdTree& tree, const LineCloud& to,
-                                    const Eigen::Vector3d& t, double farthest) {
-    std::vector<Match> matches(static_cast<std::size_t>(to.midpoints.cols()));
-    tbb::parallel_for(std::size_t{0}, matches.size(), [&](std::size_t i) {
-        const Eigen::Vector3f moved =
-            to.midpoints.col(static_cast<Eigen::Index>(i)) + t.cast<float>();
-        float squared = 0;
-        if (tree.nearest(moved, 1, &matches[i].from, &squared) == 1 &&
-            squared <= static_cast<float>(farthest * farthest))
-            matches[i].distance = std::sqrt(squared);
-    });
-    return matches;
-}
+/** Which directions are seen is judged where the iteration ends; on the way there, where pairs are
+ *  still wrong, so many times less will do. */
+constexpr double kPatience = 4;
 
 /** Of all pairs' closest points: d = X_from - X_to, and the projection onto what the pair sees. */
 struct Sums {
@@ -51,13 +34,7 @@ Eigen::Matrix3d crossProductMatrix(const Eigen::Vector3d& v) {
 
 Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d& t,
               const std::vector<Match>& matches, const LineRegistrationOptions& options) {
-    double distances = 0, count = 0;
-    for (const auto& match : matches)
-        if (match.distance >= 0) {
-            distances += static_cast<double>(match.distance);
-            count += 1;
-        }
-    const double mean = distances / std::max(count, 1.0);
+    const double mean = meanDistance(matches);
     Sums sums;
     for (std::size_t i = 0; i < matches.size(); ++i) {
         if (matches[i].distance < 0 || static_cast<double>(matches[i].distance) > mean) continue;
@@ -108,7 +85,7 @@ void settle(const Sums& sums, const Eigen::Vector3d& predicted,
     estimate.observability = axes.eigenvalues();
     estimate.residual_m = std::sqrt(sums.squared / pairs);
     const double residual = std::max(estimate.residual_m, kLeastResidual_m);
-    const double noise = residual * residual / pairs;
+    const double noise = residual * residual / (options.independent_share * pairs);
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = axes.eigenvectors().col(k);
         const bool observed = axes.eigenvalues()[k] >= options.min_observability;
@@ -145,6 +122,18 @@ double meanLineDistance(const LineCloud& from, const KdTree& tree, const LineClo
     }
     return sum / static_cast<double>(std::max<std::size_t>(matches.size(), 1));
 }
+
+/** The search looks at every fourth line: enough to tell where the basin is. */
+constexpr unsigned kCoarseStep = 4;
+
+LineCloud everyNth(const LineCloud& lines, Eigen::Index n) {
+    const auto columns = Eigen::seqN(0, (lines.midpoints.cols() + n - 1) / n, n);
+    LineCloud some;
+    some.midpoints = lines.midpoints(Eigen::all, columns);
+    some.directions = lines.directions(Eigen::all, columns);
+    some.lengths = lines.lengths(columns);
+    return some;
+}
 }  // namespace
 
 std::vector<OptionField> LineRegistrationOptions::fields() {
@@ -160,6 +149,9 @@ std::vector<OptionField> LineRegistrationOptions::fields() {
         {"min_matches", &min_matches, "pairs that are needed; fewer: predicted", 3, 1e6},
         {"min_observability", &min_observability,
          "0 to 1; a direction that the lines fix less keeps the prediction", 0, 1},
+        {"independent_share", &independent_share,
+         "share of the pairs that count as independent in the covariance: lines share surfaces",
+         1e-6, 1},
         {"prior_sigma", &prior_sigma, "m; the motion model's error along such a direction", 1e-6,
          100},
         {"search_radius", &search_radius,
@@ -193,7 +185,7 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
         ++estimate.iterations;
         const Eigen::Vector3d step = options.centroids
                                          ? Eigen::Vector3d(sums.d / static_cast<double>(sums.pairs))
-                                         : solveSeen(sums, options.min_observability);
+                                         : solveSeen(sums, options.min_observability / kPatience);
         estimate.translation += step;
         if (step.norm() < options.converged) break;
     }
@@ -211,21 +203,25 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
 }
 
 TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to,
+                                      const Eigen::Vector3d& centre,
                                       const LineRegistrationOptions& options) {
-    constexpr unsigned kCoarseIterations = 10;
-    LineRegistrationOptions coarse = options;
-    coarse.max_iterations = std::min(options.max_iterations, kCoarseIterations);
-    const KdTree tree(from.midpoints);
-    Eigen::Vector3d best = Eigen::Vector3d::Zero();
-    double bestDistance = std::numeric_limits<double>::infinity();
     const int steps = static_cast<int>(options.search_radius / options.search_step);
+    if (steps == 0) return registerLines(from, to, centre, options);
+    LineRegistrationOptions coarse = options;
+    coarse.max_iterations = std::min(options.max_iterations, 10U);
+    coarse.min_matches = (options.min_matches + kCoarseStep - 1) / kCoarseStep;
+    const LineCloud some = everyNth(to, kCoarseStep);
+    const KdTree tree(from.midpoints);
+    Eigen::Vector3d best = centre;
+    double bestDistance = std::numeric_limits<double>::infinity();
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y) {
-            const Eigen::Vector3d start(x * options.search_step, y * options.search_step, 0);
-            if (start.norm() > options.search_radius) continue;
-            const auto estimate = registerLines(from, to, start, coarse);
+            const Eigen::Vector3d offset(x * options.search_step, y * options.search_step, 0);
+            if (offset.norm() > options.search_radius) continue;
+            const auto estimate = registerLines(from, some, centre + offset, coarse);
             if (!estimate.valid) continue;
-            const double distance = meanLineDistance(from, tree, to, estimate.translation, options);
+            const double distance =
+                meanLineDistance(from, tree, some, estimate.translation, options);
             if (distance >= bestDistance) continue;
             best = estimate.translation;
             bestDistance = distance;

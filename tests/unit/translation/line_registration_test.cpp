@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "delio/translation/coupled_registration.h"
 #include "ring_scan.h"
 
 namespace {
@@ -169,9 +170,42 @@ TEST(LineRegistration, TheSearchNeedsNoPrediction) {
     options.search_radius = 2;
     const Eigen::Vector3d truth(1.3, 0.75, 0);
     const auto found =
-        searchTranslation(linesAt(test::room(), {0, 0, 0}), linesAt(test::room(), truth), options);
+        searchTranslation(linesAt(test::room(), {0, 0, 0}), linesAt(test::room(), truth),
+                          Eigen::Vector3d::Zero(), options);
     EXPECT_TRUE(found.valid);
     EXPECT_LT((found.translation - truth).norm(), 0.01) << found.translation.transpose();
+}
+
+TEST(LineRegistration, TheSearchForgivesAPredictionThatIsTwoMetresOff) {
+    LineRegistrationOptions options;
+    const Eigen::Vector3d truth(0.8, -0.3, 0.02);
+    const auto from = linesAt(test::yard(), {0, 0, 0}), to = linesAt(test::yard(), truth);
+    for (double azimuth = 0; azimuth < 6; azimuth += 1) {
+        const Eigen::Vector3d off(2 * std::cos(azimuth), 2 * std::sin(azimuth), 0.1);
+        const auto found = searchTranslation(from, to, truth + off, options);
+        EXPECT_TRUE(found.valid);
+        EXPECT_LT((found.translation - truth).norm(), 0.03) << off.transpose();
+    }
+}
+
+TEST(CoupledRegistration, FindsAKnownPose) {
+    Eigen::Isometry3d truth = Eigen::Isometry3d::Identity();
+    truth.translation() = Eigen::Vector3d(0.3, 0.1, 0);
+    const auto from = linesAt(test::room(), {0, 0, 0});
+    const auto unturned = linesAt(test::room(), truth.translation());
+    truth.linear() = test::rotationAbout({0, 0, 1}, 1);
+    const auto to = translation::rotated(unturned, truth.linear().transpose());
+    LineRegistrationOptions options;
+    options.max_iterations = 200;
+    const auto found = translation::registerCoupled(from, to, truth, options);
+    EXPECT_TRUE(found.valid);
+    EXPECT_LT((found.pose.translation() - truth.translation()).norm(), 0.05);
+    EXPECT_LT(test::degreesBetween(found.pose.linear(), truth.linear()), 0.3);
+    EXPECT_TRUE((found.pose.linear() * found.pose.linear().transpose()).isIdentity(1e-9));
+    options.min_matches = 1000000;
+    const auto none = translation::registerCoupled(from, to, truth, options);
+    EXPECT_FALSE(none.valid);
+    EXPECT_TRUE(none.pose.isApprox(truth));
 }
 
 TEST(LineRegistration, AlongACorridorThePredictionStays) {
@@ -179,9 +213,8 @@ TEST(LineRegistration, AlongACorridorThePredictionStays) {
     const auto to = linesAt(test::corridor(), {1, 0.2, 0.05});
     const Eigen::Vector3d predicted(0.6, 0, 0);
     LineRegistrationOptions options;
-    options.prior_sigma = 0.3;
     // Lines from a wall to the ground lean over their edge: some 0.0075 is seen where nothing is.
-    options.min_observability = 0.02;
+    options.prior_sigma = 0.3;
     const auto found = registerLines(from, to, predicted, options);
     EXPECT_TRUE(found.valid);
     ASSERT_EQ(found.unobservedAxes.cols(), 1);
@@ -215,7 +248,7 @@ TEST(LineRegistration, WithTooFewLinesThePredictionStays) {
             EXPECT_EQ(found.translation, predicted);
             EXPECT_EQ(found.unobservedAxes.cols(), 3);
             EXPECT_EQ(found.covariance, Eigen::Matrix3d(0.25 * Eigen::Matrix3d::Identity()));
-            const auto searched = searchTranslation(from, to, options);
+            const auto searched = searchTranslation(from, to, Eigen::Vector3d::Zero(), options);
             EXPECT_FALSE(searched.valid);
             EXPECT_EQ(searched.translation, Eigen::Vector3d(0, 0, 0));
         }

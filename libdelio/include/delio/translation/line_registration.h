@@ -20,7 +20,8 @@ struct LineRegistrationOptions : public StageOptions {
     unsigned max_iterations = 40;
     double converged = 0.001;
     unsigned min_matches = 100;
-    double min_observability = 0.005;
+    double min_observability = 0.02;
+    double independent_share = 0.25;
     double prior_sigma = 0.5;
     double search_radius = 3;
     double search_step = 1;
@@ -53,11 +54,13 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
                                   const Eigen::Vector3d& predicted,
                                   const LineRegistrationOptions& options);
 
-/** The same where nothing is known of the motion (a drive's first pair): registered from starts all
- *  over a horizontal disc of `search_radius`, and the result taken whose lines lie nearest to each
- *  other. From a start at rest alone, the rings that the sensor draws on the ground would hold the
- *  estimate there: they look the same wherever the sensor stands. */
+/** The same where little is known of the motion (a drive's first pair, or after scans were lost):
+ *  registered from starts all over a horizontal disc of `search_radius` about `centre`, and the
+ * result taken whose lines lie nearest to each other. From a start at rest alone, the rings that
+ * the sensor draws on the ground would hold the estimate there: they look the same wherever the
+ * sensor stands. */
 TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to,
+                                      const Eigen::Vector3d& centre,
                                       const LineRegistrationOptions& options);
 
 /** The closest points X_s, X_t of two infinite lines P + t u, the paper's formulas. Nothing is
