@@ -3,7 +3,6 @@
 #include <mrpt/io/lazy_load_path.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
-#include <mrpt/serialization/CArchive.h>
 
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "delio/io/decode_observation.h"
 #include "delio/io/drive_meta.h"
 #include "gz_input.h"
+#include "rawlog_archive.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -85,12 +85,11 @@ bool ScanSource::readEntry() {
     const auto before = in_->getPosition();
     mrpt::serialization::CSerializable::Ptr object;
     try {
-        auto archive = mrpt::serialization::archiveFrom(*in_);
-        object = archive.ReadObject();
+        object = RawlogArchive(*in_).ReadObject();
     } catch (const std::exception&) {
         ended_ = true;
         // Nothing was left to read: the end of the rawlog. Otherwise something is only half there,
-        // or is damaged: then it may claim any size, up to more than there is memory for.
+        // or is damaged and perhaps claims more than there is memory for.
         if (in_->getPosition() == before && before > 0 && in_->endedWell()) return false;
         throw Error("'" + path_ + "' " +
                     (before == 0 ? "is not a rawlog, or damaged at its very beginning"

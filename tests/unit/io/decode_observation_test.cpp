@@ -199,6 +199,7 @@ TEST(VelodynePackets, RangesOutOfBoundsAndUnknownBlocksAreLeftOut) {
     const std::size_t all = points();
     bytes[1] = 0;  // the header of the first block
     EXPECT_EQ(points(), all - 32);
+    scan.minRange = 0;
     bytes[104] = bytes[105] = 0;  // the range of the second block's first return
     EXPECT_EQ(points(), all - 33);
     scan.minRange = 6.5;
