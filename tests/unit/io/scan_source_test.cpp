@@ -282,6 +282,25 @@ TEST(ScanSource, CompressedFloatsAreCountedAsTheyUnpack) {
     }
 }
 
+/** All that can be unpacked is there, and yet the end is not what gzip wrote. */
+TEST(ScanSource, AChecksumThatIsWrongOrCutOffIsNoEndOfTheRawlog) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "a.rawlog";
+    writeRawlog<mrpt::io::CFileGZOutputStream>(path, {cloudObservation(0), cloudObservation(1)});
+    const std::string whole = test::readText(path);
+    for (std::size_t i = 1; i <= 8; ++i) {
+        std::string damaged = whole;
+        damaged[whole.size() - i] = static_cast<char>(damaged[whole.size() - i] ^ 1);
+        for (const auto& bytes : {damaged, whole.substr(0, whole.size() - i)}) {
+            test::writeText(path, bytes);
+            io::ScanSource source(path);
+            std::size_t scans = 0;
+            EXPECT_NE(faultOf(source, scans).find("after scan 1"), std::string::npos) << i;
+            EXPECT_EQ(scans, 2U);
+        }
+    }
+}
+
 /** The count of a cloud's points is looked at before there is room made for them. */
 TEST(ScanSource, ACloudThatClaimsTooManyPoints) {
     const test::TemporaryFolder folder;

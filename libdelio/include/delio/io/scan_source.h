@@ -27,10 +27,10 @@ class ScanSource {
     ~ScanSource();
 
     /** The next scan of the label, or nothing at the end of the rawlog. Throws Error where the
-     *  rawlog is cut off or damaged (a wrong checksum of compressed data and objects that claim
-     * more memory than there is among it), holds something that is no MRPT object, or an external
-     * file is missing or cut off (its message names the folders tried); after that the source is at
-     * its end. */
+     *  rawlog is cut off or damaged (compressed data with a wrong checksum, objects that claim
+     *  more memory than there is), holds something that is no MRPT object or cannot be decoded, or
+     *  an external file is missing or cut off (its message names the folders tried); after that
+     *  the source is at its end. */
     std::optional<Scan> next();
 
     /** Passes over the next scan without reading its points; false at the end. */
