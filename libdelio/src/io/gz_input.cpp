@@ -17,7 +17,8 @@ GzInput::GzInput(const std::string& path) : file_(nullptr) {
         file_ = gzopen(path.c_str(), "rb");
     }
     if (!file_) throw Error("cannot read '" + path + "': no such file, or not readable");
-    constexpr unsigned kBuffer = 1U << 18;
+    // Where data is damaged zlib loses what it unpacked into the buffer: not more than needed.
+    constexpr unsigned kBuffer = 1U << 15;
     gzbuffer(file_, kBuffer);
 }
 
