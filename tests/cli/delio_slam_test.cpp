@@ -509,12 +509,10 @@ TEST_F(DelioSlam, AMalformedMetaIsRefused) {
     writeDrive(1);
     for (const char* text : {"- 1\n", "vertical_corection_deg: 0.205\n", "some words\n",
                              "vertical_correction_deg: much\n", "vertical_correction_deg: 100\n",
-                             "epoch_unix_s: .nan\n", ""}) {
+                             "epoch_unix_s: .nan\n", "a: [1\n", ""}) {
         writeText(folder_ / "d.meta.yaml", text);
         expectRefused(slam(), 1, {"d.meta.yaml"});
     }
-    writeText(folder_ / "d.meta.yaml", "a: [1\n");  // the YAML library has lines of its own
-    EXPECT_EQ(slam().exitCode, 1);
     writeText(folder_ / "d.meta.yaml", "vertical_correction_deg: 0.205\n");
     EXPECT_EQ(slam().exitCode, 0);
     EXPECT_EQ(summary()["vertical_correction_deg"].as<double>(), 0.205);

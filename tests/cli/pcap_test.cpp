@@ -6,6 +6,7 @@
 #include "command.h"
 #include "delio/io/trajectory.h"
 #include "test_data.h"
+#include "toy_drive.h"
 
 namespace {
 using namespace delio;
@@ -45,5 +46,12 @@ TEST(Pcap, GrabbedByMrptAndRead) {
     const auto trajectory = io::readTrajectory(out + "/trajectory_kitti.txt");
     ASSERT_EQ(trajectory.poses.size(), 3U);
     for (const auto& pose : trajectory.poses) EXPECT_LT(pose.norm(), 0.01);
+    // Half of a VLP-16's returns would be 6900 a scan.
+    const auto rows = test::linesOf(test::readText(out + "/scans.csv"));
+    ASSERT_EQ(rows.size(), 4U);
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        const auto points = rows[i].find(',', rows[i].find(',') + 1) + 1;
+        EXPECT_GT(std::stoi(rows[i].substr(points)), 13000) << rows[i];
+    }
 }
 }  // namespace

@@ -1,20 +1,54 @@
 #include "delio/io/drive_meta.h"
 
-#include <mrpt/containers/yaml.h>
-
-#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <ostream>
+#include <sstream>
 
 #include "delio/error.h"
 #include "delio/io/output_file.h"
+#include "flat_yaml.h"
 
 namespace delio::io {
 namespace {
-const char* const kKeys[] = {"sensor_model",       "source",
-                             "motion_compensated", "vertical_correction_deg",
-                             "epoch_unix_s",       "generator"};
+void take(const std::string& key, const std::string& text, double& value) {
+    const char* const end = text.data() + text.size();
+    const auto result = std::from_chars(text.data() + (text[0] == '+' ? 1 : 0), end, value);
+    if (result.ec != std::errc() || result.ptr != end)
+        throw Error(key + " has to be a number, not '" + text + "'");
+}
+
+void take(const std::string& key, const std::string& text, bool& value) {
+    if (text != "true" && text != "false")
+        throw Error(key + " has to be true or false, not '" + text + "'");
+    value = text == "true";
+}
+
+/** A name with a slip would leave the default in place without a word: it is refused. */
+void take(const std::string& key, const std::string& text, DriveMeta& meta) {
+    if (key == "sensor_model")
+        meta.sensorModel = text;
+    else if (key == "source")
+        meta.source = text;
+    else if (key == "motion_compensated")
+        take(key, text, meta.motionCompensated);
+    else if (key == "vertical_correction_deg")
+        take(key, text, meta.verticalCorrectionDeg);
+    else if (key == "epoch_unix_s")
+        take(key, text, meta.epoch_s);
+    else if (key == "generator")
+        meta.generator = text;
+    else
+        throw Error("the key '" + key + "' is not known");
+}
+
+/** The digits that give the same double back. */
+std::string digitsOf(double value) {
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof(text), value).ptr};
+}
 }  // namespace
 
 std::string sidecarPath(const std::string& rawlogPath, const std::string& extension) {
@@ -26,22 +60,11 @@ std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath) {
     const std::string path = sidecarPath(rawlogPath, ".meta.yaml");
     if (!std::filesystem::exists(path)) return {};
     try {
-        const auto yaml = mrpt::containers::yaml::FromFile(path);
-        if (!yaml.isMap()) throw Error("it holds no 'key: value' lines");
-        // A name with a slip would leave the default in place without a word.
-        for (const auto& [key, value] : yaml.asMap())
-            if (std::find(std::begin(kKeys), std::end(kKeys), key.as<std::string>()) ==
-                std::end(kKeys))
-                throw Error("the key '" + key.as<std::string>() + "' is not known");
+        std::ifstream in(path, std::ios::binary);
+        std::ostringstream text;
+        if (!(text << in.rdbuf())) throw Error("it is empty, or not readable");
         DriveMeta meta;
-        meta.sensorModel = yaml.getOrDefault<std::string>("sensor_model", meta.sensorModel);
-        meta.source = yaml.getOrDefault<std::string>("source", meta.source);
-        meta.motionCompensated =
-            yaml.getOrDefault<bool>("motion_compensated", meta.motionCompensated);
-        meta.verticalCorrectionDeg =
-            yaml.getOrDefault<double>("vertical_correction_deg", meta.verticalCorrectionDeg);
-        meta.epoch_s = yaml.getOrDefault<double>("epoch_unix_s", meta.epoch_s);
-        meta.generator = yaml.getOrDefault<std::string>("generator", meta.generator);
+        for (const auto& [key, value] : readFlatYaml(text.str())) take(key, value, meta);
         // Written so that a NaN fails as well.
         if (!(std::abs(meta.verticalCorrectionDeg) <= 5))
             throw Error("vertical_correction_deg has to be from -5 to 5");
@@ -54,17 +77,14 @@ std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath) {
 }
 
 void writeDriveMeta(const DriveMeta& meta, const std::string& rawlogPath) {
-    mrpt::containers::yaml yaml = mrpt::containers::yaml::Map();
-    yaml["sensor_model"] = meta.sensorModel;
-    yaml["source"] = meta.source;
-    yaml["motion_compensated"] = meta.motionCompensated;
-    yaml["vertical_correction_deg"] = meta.verticalCorrectionDeg;
-    yaml["epoch_unix_s"] = meta.epoch_s;
-    yaml["generator"] = meta.generator;
     replaceTextFile(sidecarPath(rawlogPath, ".meta.yaml"), [&](std::ostream& out) {
         out << "# What this drive is; delio-slam reads it beside the rawlog.\n";
-        yaml.printAsYAML(out);
-        out << "\n";
+        out << "sensor_model: " << quotedForYaml(meta.sensorModel) << "\n"
+            << "source: " << quotedForYaml(meta.source) << "\n"
+            << "motion_compensated: " << (meta.motionCompensated ? "true" : "false") << "\n"
+            << "vertical_correction_deg: " << digitsOf(meta.verticalCorrectionDeg) << "\n"
+            << "epoch_unix_s: " << digitsOf(meta.epoch_s) << "\n"
+            << "generator: " << quotedForYaml(meta.generator) << "\n";
     });
 }
 }  // namespace delio::io

@@ -3,16 +3,16 @@
 #include <mrpt/io/lazy_load_path.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
-#include <mrpt/serialization/CArchive.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include "delio/error.h"
 #include "delio/io/decode_observation.h"
 #include "delio/io/drive_meta.h"
+#include "gz_input.h"
+#include "rawlog_archive.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -20,11 +20,6 @@ using mrpt::obs::CObservation;
 using mrpt::obs::CObservationPointCloud;
 
 namespace {
-bool startsLikeGzip(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return in.get() == 0x1F && in.get() == 0x8B;
-}
-
 double secondsSince(double epoch_s, const mrpt::Clock::time_point& stamp) {
     // In MRPT's ticks of 100 ns, so that the digits of times.txt come back.
     const double wholeEpoch = std::floor(epoch_s);
@@ -39,15 +34,15 @@ ScanSource::ScanSource(const std::string& rawlogPath, std::string label, std::st
       label_(std::move(label)),
       imagesFolder_(std::move(imagesFolder)),
       epoch_s_(epoch_s),
-      compressed_(startsLikeGzip(rawlogPath)) {
-    if (!fs::is_regular_file(path_) || !in_.open(path_))
-        throw Error("cannot read '" + path_ + "': no such file, or not readable");
-    if (in_.getTotalBytesCount() == 0) throw Error("'" + path_ + "' is empty: not a rawlog");
+      in_(std::make_unique<GzInput>(path_)) {
+    if (in_->getTotalBytesCount() == 0) throw Error("'" + path_ + "' is empty: not a rawlog");
 }
 
+ScanSource::~ScanSource() = default;
+
 std::optional<double> ScanSource::fraction() const {
-    if (compressed_) return {};
-    return static_cast<double>(in_.getPosition()) / static_cast<double>(in_.getTotalBytesCount());
+    if (in_->compressed()) return {};
+    return static_cast<double>(in_->getPosition()) / static_cast<double>(in_->getTotalBytesCount());
 }
 
 std::optional<Scan> ScanSource::next() {
@@ -57,9 +52,10 @@ std::optional<Scan> ScanSource::next() {
     try {
         loadExternal(*observation);
         scan = decodeObservation(*observation);
-    } catch (const Error& e) {
+    } catch (const std::exception& e) {
         ended_ = true;
-        throw Error("scan " + std::to_string(count_ - 1) + " of '" + path_ + "': " + e.what());
+        throw Error("scan " + std::to_string(count_ - 1) + " of '" + path_ +
+                    "': " + plainMessage(e));
     }
     scan.index = count_ - 1;
     scan.stamp_s = secondsSince(epoch_s_, observation->timestamp);
@@ -86,15 +82,15 @@ CObservation::Ptr ScanSource::nextObservation() {
 
 bool ScanSource::readEntry() {
     if (ended_) return false;
-    const auto before = in_.getPosition();
+    const auto before = in_->getPosition();
     mrpt::serialization::CSerializable::Ptr object;
     try {
-        auto archive = mrpt::serialization::archiveFrom(in_);
-        object = archive.ReadObject();
+        object = RawlogArchive(*in_).ReadObject();
     } catch (const std::exception&) {
         ended_ = true;
-        // Nothing was left to read: the end of the rawlog. Otherwise something is only half there.
-        if (in_.getPosition() == before && before > 0) return false;
+        // Nothing was left to read: the end of the rawlog. Otherwise something is only half there,
+        // or is damaged and perhaps claims more than there is memory for.
+        if (in_->getPosition() == before && before > 0 && in_->endedWell()) return false;
         throw Error("'" + path_ + "' " +
                     (before == 0 ? "is not a rawlog, or damaged at its very beginning"
                                  : "is cut off or damaged " +
@@ -126,12 +122,17 @@ void ScanSource::loadExternal(const CObservation& observation) const {
         const fs::path file = name.is_absolute() ? name : folder / name;
         tried += (tried.empty() ? "'" : ", '") + file.parent_path().string() + "'";
         if (!fs::exists(file)) continue;
-        // KITTI's format has no header: only its size can tell that it was cut off.
-        if (file.extension() == ".bin" && fs::file_size(file) % (4 * sizeof(float)) != 0)
-            throw Error("'" + file.string() + "' is cut off: its size is no multiple of 16 bytes");
         mrpt::io::setLazyLoadPathBase(folder.string());
         try {
+            // MRPT does not see that compressed data is damaged or cut off, and KITTI's format has
+            // no header: only its size can tell.
+            const auto size = unpackedSize(file.string());
+            if (file.extension() == ".bin" && size % (4 * sizeof(float)) != 0)
+                throw Error("'" + file.string() +
+                            "' is cut off: its size is no multiple of 16 bytes");
             observation.load();
+        } catch (const Error&) {
+            throw;
         } catch (const std::exception&) {
             throw Error("cannot read its points from '" + file.string() + "'");
         }

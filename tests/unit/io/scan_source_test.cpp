@@ -9,12 +9,17 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/obs/CObservationRotatingScan.h>
+#include <mrpt/obs/CObservationVelodyneScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
+#include <sys/resource.h>
 
 #include <fstream>
+#include <random>
 
 #include "delio/error.h"
+#include "memory_limit.h"
 #include "test_data.h"
 
 namespace {
@@ -185,6 +190,192 @@ TEST(ScanSource, WhatCameBeforeACutComesOutThenOneError) {
         std::size_t scans = 0;
         EXPECT_EQ(faultOf(source, scans), "");
         EXPECT_EQ(scans, 2U);
+    }
+}
+
+TEST(ScanSource, LabelsAndFractionOfPlainAndCompressedRawlogs) {
+    const test::TemporaryFolder folder;
+    std::vector<mrpt::serialization::CSerializable::Ptr> objects;
+    for (int scan = 0; scan < 6; ++scan)
+        objects.push_back(cloudObservation(scan, scan % 3 == 1 ? "second" : "first"));
+    writeRawlog(folder / "plain.rawlog", objects);
+    writeRawlog<mrpt::io::CFileGZOutputStream>(folder / "gz.rawlog", objects);
+    for (const std::string name : {"plain.rawlog", "gz.rawlog"}) {
+        io::ScanSource source(folder / name, "second", "", 1000);
+        EXPECT_EQ(source.fraction(), name == "gz.rawlog" ? std::nullopt : std::optional(0.0));
+        for (const int of : {1, 4}) {
+            const auto scan = source.next();
+            ASSERT_TRUE(scan);
+            EXPECT_EQ(scan->points->getPointsBufferRef_x()[0], static_cast<float>(of));
+            EXPECT_NEAR(scan->stamp_s, 0.1 * of, 5.1e-8);
+            if (name == "gz.rawlog")
+                EXPECT_FALSE(source.fraction());
+            else
+                EXPECT_NEAR(source.fraction().value(), (of + 1) / 6.0, 0.01);
+        }
+        EXPECT_FALSE(source.next());
+        EXPECT_EQ(source.otherLabels(), std::set<std::string>{"first"});
+    }
+}
+
+/** To MRPT's tick of 100 ns, however large the epoch's own digits are. */
+TEST(ScanSource, TimesAreCountedFromAnEpochThatIsNoWholeSecond) {
+    const test::TemporaryFolder folder;
+    std::vector<mrpt::serialization::CSerializable::Ptr> objects;
+    for (int scan = 0; scan < 20; ++scan) {
+        const auto observation = cloudObservation(scan, "lidar", 1);
+        // 951199 us after the second is tick 9511990.
+        observation->timestamp =
+            mrpt::Clock::fromDouble(1317042145) + mrpt::Clock::duration(9511990 + 1033217 * scan);
+        objects.push_back(observation);
+    }
+    writeRawlog(folder / "a.rawlog", objects);
+    io::ScanSource source(folder / "a.rawlog", "", "", 1317042145.951199);
+    for (int scan = 0; scan < 20; ++scan)
+        EXPECT_NEAR(source.next()->stamp_s, 1033217e-7 * scan, 2.5e-7 / 2);
+}
+
+TEST(ScanSource, ExternalCloudsThatMrptSerialised) {
+    const test::TemporaryFolder folder;
+    const auto observation = CObservationPointCloud::Create();
+    observation->sensorLabel = "lidar";
+    observation->setAsExternalStorage(
+        "0.gz", CObservationPointCloud::ExternalStorageFormat::MRPT_Serialization);
+    writeRawlog(folder / "a.rawlog", {observation});
+    std::filesystem::create_directory(folder / "a_Images");
+    const std::string file = folder / "a_Images/0.gz";
+    writeRawlog<mrpt::io::CFileGZOutputStream>(file, {cloudObservation(3)->pointcloud});
+    const auto scan = io::ScanSource(folder / "a.rawlog").next();
+    ASSERT_TRUE(scan);
+    ASSERT_EQ(scan->points->size(), 50U);
+    EXPECT_EQ(scan->points->getPointsBufferRef_y()[49], 49);
+
+    const std::string whole = test::readText(file);
+    for (std::size_t i = 10; i < whole.size(); i += 7) {
+        std::string damaged = whole;
+        damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
+        for (const auto& bytes : {damaged, whole.substr(0, i)}) {
+            test::writeText(file, bytes);
+            io::ScanSource source(folder / "a.rawlog");
+            std::size_t scans = 0;
+            EXPECT_NE(faultOf(source, scans).find("0.gz"), std::string::npos) << "byte " << i;
+        }
+    }
+}
+
+/** KITTI's floats, gzipped as CPointsMap::saveToKittiVelodyneFile() does. */
+TEST(ScanSource, CompressedFloatsAreCountedAsTheyUnpack) {
+    const test::TemporaryFolder folder;
+    const auto observation = CObservationPointCloud::Create();
+    observation->setAsExternalStorage("0.bin",
+                                      CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+    writeRawlog(folder / "a.rawlog", {observation});
+    std::filesystem::create_directory(folder / "a_Images");
+    const std::vector<float> xyzi(8, 1.0F);
+    for (const std::size_t bytes : {32U, 31U}) {
+        mrpt::io::CFileGZOutputStream(folder / "a_Images/0.bin").Write(xyzi.data(), bytes);
+        io::ScanSource source(folder / "a.rawlog");
+        std::size_t scans = 0;
+        const std::string fault = faultOf(source, scans);
+        EXPECT_EQ(scans, bytes / 32);
+        EXPECT_EQ(fault.find("multiple of 16") != std::string::npos, bytes == 31) << fault;
+    }
+}
+
+/** All that can be unpacked is there, and yet the end is not what gzip wrote. */
+TEST(ScanSource, AChecksumThatIsWrongOrCutOffIsNoEndOfTheRawlog) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "a.rawlog";
+    writeRawlog<mrpt::io::CFileGZOutputStream>(path, {cloudObservation(0), cloudObservation(1)});
+    const std::string whole = test::readText(path);
+    for (std::size_t i = 1; i <= 8; ++i) {
+        std::size_t scans = 0;
+        test::writeText(path, whole.substr(0, whole.size() - i));
+        io::ScanSource cut(path);
+        EXPECT_NE(faultOf(cut, scans).find("after scan 1"), std::string::npos) << i;
+        EXPECT_EQ(scans, 2U);
+
+        // zlib keeps back the last of what it unpacked when the checksum is wrong.
+        std::string damaged = whole;
+        damaged[whole.size() - i] = static_cast<char>(damaged[whole.size() - i] ^ 1);
+        test::writeText(path, damaged);
+        io::ScanSource source(path);
+        EXPECT_NE(faultOf(source, scans), "") << i;
+    }
+}
+
+/** The count of a cloud's points is looked at before there is room made for them. */
+TEST(ScanSource, ACloudThatClaimsTooManyPoints) {
+    const test::TemporaryFolder folder;
+    rusage before{}, after{};
+    for (const bool compressed : {false, true}) {
+        const std::string path = folder / "a.rawlog";
+        writeRawlog(path, {cloudObservation(0), cloudObservation(1)});
+        std::string bytes = test::readText(path);
+        const std::string name = "mrpt::maps::CPointsMapXYZI";
+        const auto count = bytes.rfind(name) + name.size() + 1;
+        ASSERT_EQ(bytes[count], 50);
+        bytes[count + 3] = 0x08;  // 2 GB
+        test::writeText(path, bytes);
+        if (compressed) mrpt::io::CFileGZOutputStream(path).Write(bytes.data(), bytes.size());
+        io::ScanSource source(path);
+        std::size_t scans = 0;
+        getrusage(RUSAGE_SELF, &before);
+        EXPECT_NE(faultOf(source, scans).find("after scan 0"), std::string::npos);
+        getrusage(RUSAGE_SELF, &after);
+        EXPECT_EQ(scans, 1U);
+        EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 200'000) << "kB";
+    }
+}
+
+/** A bit of a rawlog is turned: whatever it hits, there is at most one Error, no crash and no
+ *  object larger than memory is. */
+TEST(ScanSource, DamagedBytes) {
+    const test::TemporaryFolder folder;
+    const auto image = mrpt::obs::CObservationRotatingScan::Create();
+    image->sensorLabel = "lidar";
+    image->rowCount = 16;
+    image->rangeResolution = 0.01;
+    image->rangeImage.setZero(16, 2);
+    const auto frame = mrpt::obs::CSensoryFrame::Create();
+    frame->insert(cloudObservation(1));
+    std::vector<mrpt::serialization::CSerializable::Ptr> objects = {cloudObservation(0), image,
+                                                                    frame, cloudObservation(2)};
+    const test::MemoryLimit limit(256);
+    if (limit.works()) {  // an object of 1206 bytes for each that its count claims
+        const auto packets = mrpt::obs::CObservationVelodyneScan::Create();
+        packets->sensorLabel = "lidar";
+        packets->calibration = mrpt::obs::VelodyneCalibration::LoadDefaultCalibration("VLP16");
+        packets->scan_packets.resize(1);
+        objects.push_back(packets);
+    }
+    writeRawlog(folder / "plain.rawlog", objects);
+    writeRawlog<mrpt::io::CFileGZOutputStream>(folder / "gz.rawlog", objects);
+    std::mt19937 random(5);
+    for (const std::string name : {"plain.rawlog", "gz.rawlog"}) {
+        // What is unpacked from damaged data may ask for any size.
+        if (name == "gz.rawlog" && !limit.works()) continue;
+        const std::string whole = test::readText(folder / name);
+        std::size_t faults = 0;
+        for (int trial = 0; trial < 600; ++trial) {
+            std::string bytes = whole;
+            // Behind gzip's ten bytes of header, which may be anything.
+            const std::size_t at =
+                name == "gz.rawlog" ? 10 + random() % (bytes.size() - 10) : random() % bytes.size();
+            bytes[at] = static_cast<char>(bytes[at] ^ (limit.works() ? 1 << random() % 8 : 1));
+            test::writeText(folder / "damaged.rawlog", bytes);
+            io::ScanSource source(folder / "damaged.rawlog");
+            std::size_t scans = 0;
+            const std::string fault = faultOf(source, scans);
+            faults += !fault.empty();
+            EXPECT_LE(scans, objects.size());
+            EXPECT_EQ(fault.find('\n'), std::string::npos) << fault;
+            // A match of zeros may lie elsewhere in what was unpacked: that is no damage.
+            if (name == "gz.rawlog" && fault.empty()) {
+                EXPECT_EQ(scans, objects.size());
+            }
+        }
+        EXPECT_GT(faults, name == "gz.rawlog" ? 500U : 20U) << name;
     }
 }
 

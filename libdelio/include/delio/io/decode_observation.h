@@ -10,7 +10,8 @@ bool isScan(const mrpt::obs::CObservation& observation);
 
 /** Fills `points`, `rings` and `sensorPose` of a scan; points are in the sensor's frame. Clouds
  *  must be in memory already (not externally stored). An observation without points gives an
- *  empty cloud. Throws Error for one that cannot be decoded: a rotating scan whose model's
- *  elevation angles are unknown. */
+ *  empty cloud. Throws Error for one that cannot be decoded: Velodyne packets without their
+ *  calibration or of an unknown count of lasers, a rotating scan whose images disagree in size or
+ *  whose elevation angles are unknown. */
 Scan decodeObservation(const mrpt::obs::CObservation& observation);
 }  // namespace delio::io

@@ -16,7 +16,11 @@ struct DriveMeta {
 /** `DRIVE.rawlog` and `.meta.yaml` give `DRIVE.meta.yaml`. */
 std::string sidecarPath(const std::string& rawlogPath, const std::string& extension);
 
-/** The meta.yaml beside a rawlog; nothing if there is none; Error if it cannot be understood. */
+/** The meta.yaml beside a rawlog, a `key: value` a line; nothing if there is none. Throws Error,
+ *  which names the file, for an unknown key, one that is there twice, a value that is not of its
+ *  key's kind or is out of range, or anything else that cannot be understood. */
 std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath);
+/** Writes all of it: what readDriveMeta() gives back equals `meta`. Throws Error where the file
+ *  cannot be written. */
 void writeDriveMeta(const DriveMeta& meta, const std::string& rawlogPath);
 }  // namespace delio::io

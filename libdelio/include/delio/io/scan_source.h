@@ -1,9 +1,9 @@
 #pragma once
-#include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/obs/CObservation.h>
 
 #include <cstddef>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,6 +11,8 @@
 #include "delio/scan/scan.h"
 
 namespace delio::io {
+class GzInput;
+
 /** Gives the LiDAR scans of a rawlog one at a time, whatever class they were recorded as (see
  *  isScan()), bare or inside CSensoryFrames, embedded or in external files. Memory does not grow
  *  with the length of the rawlog. */
@@ -22,11 +24,13 @@ class ScanSource {
      *  Throws Error if the file cannot be opened. */
     explicit ScanSource(const std::string& rawlogPath, std::string label = "",
                         std::string imagesFolder = "", double epoch_s = 0);
+    ~ScanSource();
 
     /** The next scan of the label, or nothing at the end of the rawlog. Throws Error where the
-     *  rawlog is cut off or damaged, holds something that is no MRPT object, or an external file is
-     *  missing or cut off (its message names the folders tried); after that the source is at its
-     *  end. */
+     *  rawlog is cut off or damaged (compressed data with a wrong checksum, objects that claim
+     *  more memory than there is), holds something that is no MRPT object or cannot be decoded, or
+     *  an external file is missing or cut off (its message names the folders tried); after that
+     *  the source is at its end. */
     std::optional<Scan> next();
 
     /** Passes over the next scan without reading its points; false at the end. */
@@ -46,10 +50,9 @@ class ScanSource {
 
     std::string path_, label_, imagesFolder_;
     double epoch_s_;
-    bool compressed_;
     bool ended_ = false;
     std::size_t count_ = 0;
-    mrpt::io::CFileGZInputStream in_;
+    std::unique_ptr<GzInput> in_;
     std::deque<mrpt::obs::CObservation::Ptr> pending_;
     std::set<std::string> otherLabels_;
 };

@@ -1,0 +1,126 @@
+#include "rotating_scan.h"
+
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/obs/VelodyneCalibration.h>
+
+#include <cmath>
+#include <string>
+
+#include "delio/error.h"
+#include "velodyne_packets.h"
+
+namespace delio::io {
+using mrpt::maps::CPointsMapXYZI;
+using mrpt::obs::CObservationRotatingScan;
+using mrpt::obs::VelodyneCalibration;
+
+namespace {
+template <typename Image>
+std::string sizeOf(const Image& image) {
+    return std::to_string(image.rows()) + " x " + std::to_string(image.cols());
+}
+
+void checkSizes(const CObservationRotatingScan& scan) {
+    if (scan.rangeImage.rows() != scan.rowCount)
+        throw Error("a rotating scan of " + std::to_string(scan.rowCount) +
+                    " rows whose range image has " + std::to_string(scan.rangeImage.rows()));
+    const std::string range = sizeOf(scan.rangeImage), intensity = sizeOf(scan.intensityImage);
+    if (scan.intensityImage.size() != 0 && intensity != range)
+        throw Error("a rotating scan whose intensity image (" + intensity +
+                    ") is not of the size of its range image (" + range + ")");
+}
+
+/** MRPT 2.5.8 cannot read its own table of 64 lasers. */
+const VelodyneCalibration& calibrationOf(const CObservationRotatingScan& scan) {
+    if (scan.rowCount != 16 && scan.rowCount != 32)
+        throw Error("a rotating scan of model '" + scan.lidarModel + "' with " +
+                    std::to_string(scan.rowCount) +
+                    " rows: its elevation angles are not known (those of 16 and 32 rows are)");
+    return VelodyneCalibration::LoadDefaultCalibration(scan.rowCount == 16 ? "VLP16" : "HDL32");
+}
+
+bool isOfVelodyne(const CObservationRotatingScan& scan) {
+    return scan.azimuthSpan > 0 && (scan.lidarModel == "VLP-16" || scan.lidarModel == "HDL-32E" ||
+                                    scan.lidarModel == "Unknown");
+}
+
+int lastUsedColumn(const CObservationRotatingScan& scan) {
+    for (int column = static_cast<int>(scan.rangeImage.cols()) - 1; column >= 0; --column)
+        for (int row = 0; row < scan.rangeImage.rows(); ++row)
+            if (scan.rangeImage(row, column) != 0) return column;
+    return 0;
+}
+
+/** How many columns make the azimuth's span. fromVelodyne() makes the image 384 columns wide for
+ *  each packet, modulo 65536, of which it fills 384 / rows, with dual returns half of that. */
+int columnsOfSpan(const CObservationRotatingScan& scan, bool dual) {
+    constexpr int kReturnsPerPacket = 384, kWrap = 65536, kMostWraps = 9;
+    const int columns = static_cast<int>(scan.rangeImage.cols());
+    if (!isOfVelodyne(scan)) return columns;
+    const int last = lastUsedColumn(scan);
+    for (int wide = columns; wide < columns + kMostWraps * kWrap; wide += kWrap) {
+        const int used = wide / scan.rowCount / (dual ? 2 : 1);
+        if (wide % kReturnsPerPacket == 0 && used > last) return used;
+    }
+    return columns;
+}
+
+/** Azimuths in radians, counter-clockwise from the front. */
+class Azimuths {
+ public:
+    explicit Azimuths(const CObservationRotatingScan& scan)
+        : velodyne_(isOfVelodyne(scan)),
+          start_(scan.startAzimuth),
+          // With dual returns, a VLP-16's columns come in pairs that share an azimuth.
+          paired_(velodyne_ && scan.rowCount == 16 && !scan.rangeOtherLayers.empty()),
+          perColumn_(scan.azimuthSpan / columnsOfSpan(scan, !scan.rangeOtherLayers.empty())),
+          times_(firingTimes(scan.rowCount)) {}
+
+    double at(int row, int column) const {
+        if (!velodyne_) return start_ + perColumn_ * column;
+        const double turned =
+            (paired_ ? column - column % 2 : column) + times_.share(static_cast<std::size_t>(row));
+        // Stored is Velodyne's clockwise azimuth, although the class says otherwise.
+        return -(start_ + perColumn_ * turned);
+    }
+
+ private:
+    bool velodyne_;
+    double start_;
+    bool paired_;
+    double perColumn_;
+    FiringTimes times_;
+};
+}  // namespace
+
+void decodeRotatingScan(const CObservationRotatingScan& observation, Scan& scan) {
+    if (observation.rangeImage.size() == 0) return;
+    checkSizes(observation);
+    const auto& lasers = calibrationOf(observation).laser_corrections;
+    const Azimuths azimuths(observation);
+    const bool withIntensity = observation.intensityImage.size() != 0;
+    auto bright = withIntensity ? CPointsMapXYZI::Create() : nullptr;
+    scan.points = bright;
+    if (!bright) scan.points = mrpt::maps::CSimplePointsMap::Create();
+    for (int row = 0; row < observation.rowCount; ++row) {
+        const auto& laser = lasers[static_cast<std::size_t>(row)];
+        for (int column = 0; column < observation.rangeImage.cols(); ++column) {
+            const auto units = observation.rangeImage(row, column);
+            const double range = units * observation.rangeResolution;
+            if (units == 0 || !(range >= observation.minRange && range <= observation.maxRange))
+                continue;
+            const double azimuth = azimuths.at(row, column);
+            const double flat = range * laser.cosVertCorrection;
+            scan.points->insertPointFast(static_cast<float>(flat * std::cos(azimuth)),
+                                         static_cast<float>(flat * std::sin(azimuth)),
+                                         static_cast<float>(range * laser.sinVertCorrection));
+            if (bright)
+                bright->setPointIntensity(
+                    bright->size() - 1,
+                    static_cast<float>(observation.intensityImage(row, column)) / 255.0F);
+            scan.rings.push_back(static_cast<std::uint16_t>(row));
+        }
+    }
+}
+}  // namespace delio::io

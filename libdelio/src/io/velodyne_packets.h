@@ -1,0 +1,38 @@
+#pragma once
+#include <mrpt/obs/CObservationVelodyneScan.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "delio/scan/scan.h"
+
+namespace delio::io {
+/** Microseconds from the first laser of a firing to `laser` (counted from 0), and from one firing
+ *  to the next, of the model with so many lasers: what a laser's azimuth lags behind depends on. */
+struct FiringTimes {
+    double laser_us = 0;
+    double cycle_us = 1;
+
+    double share(std::size_t laser) const {
+        return static_cast<double>(laser) * laser_us / cycle_us;
+    }
+};
+
+/** 16: VLP-16, 32: HDL-32E. The azimuth corrections of an HDL-64E hold its lag already, and any
+ *  other count is not known: no lag. */
+FiringTimes firingTimes(std::size_t lasers);
+
+/** Decodes Velodyne's data packets: all 32 returns of each of the 12 blocks. (MRPT 2.5.8's own
+ *  generatePointCloud() reads the first 16: half of a VLP-16's points, half of the rings of an
+ *  HDL-32E and HDL-64E; it leaves out azimuth corrections as well.)
+ *
+ *  Fills `points` (a CPointsMapXYZI: metres, sensor frame, x forward, y left, z up; intensity 0 to
+ *  1, in the order of the packets) and `rings` (laser number as in the calibration) of `scan`.
+ *  Returns nearer than `minRange` or farther than `maxRange` (metres) are left out, and so is a
+ *  second return that only repeats the first. Blocks with an unknown header are passed over.
+ *  Throws Error where the calibration is missing or is not of 16, 32 or 64 lasers. */
+void decodeVelodynePackets(
+    const std::vector<mrpt::obs::CObservationVelodyneScan::TVelodyneRawPacket>& packets,
+    const mrpt::obs::VelodyneCalibration& calibration, double minRange, double maxRange,
+    Scan& scan);
+}  // namespace delio::io
