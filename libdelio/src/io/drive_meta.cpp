@@ -1,15 +1,15 @@
 #include "delio/io/drive_meta.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <ostream>
-#include <sstream>
+#include <set>
 
 #include "delio/error.h"
 #include "delio/io/output_file.h"
-#include "flat_yaml.h"
 
 namespace delio::io {
 namespace {
@@ -44,6 +44,26 @@ void take(const std::string& key, const std::string& text, DriveMeta& meta) {
         throw Error("the key '" + key + "' is not known");
 }
 
+DriveMeta metaOf(const YAML::Node& node) {
+    if (!node.IsMap()) throw Error("it holds no 'key: value' lines");
+    DriveMeta meta;
+    std::set<std::string> keys;
+    for (const auto& entry : node) {
+        const auto key = entry.first.as<std::string>();
+        if (!keys.insert(key).second) throw Error("the key '" + key + "' is there twice");
+        if (!entry.second.IsScalar() && !entry.second.IsNull())
+            throw Error(key + " has to be a plain value");
+        // A "~" in quotes is text, a bare one nothing.
+        take(key, entry.second.IsNull() ? "" : entry.second.Scalar(), meta);
+    }
+    // Written so that a NaN fails as well.
+    if (!(std::abs(meta.verticalCorrectionDeg) <= 5))
+        throw Error("vertical_correction_deg has to be from -5 to 5");
+    if (!(meta.epoch_s >= 0 && meta.epoch_s < 1e10))
+        throw Error("epoch_unix_s has to be Unix seconds");
+    return meta;
+}
+
 /** The digits that give the same double back. */
 std::string digitsOf(double value) {
     char text[32];
@@ -60,31 +80,28 @@ std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath) {
     const std::string path = sidecarPath(rawlogPath, ".meta.yaml");
     if (!std::filesystem::exists(path)) return {};
     try {
-        std::ifstream in(path, std::ios::binary);
-        std::ostringstream text;
-        if (!(text << in.rdbuf())) throw Error("it is empty, or not readable");
-        DriveMeta meta;
-        for (const auto& [key, value] : readFlatYaml(text.str())) take(key, value, meta);
-        // Written so that a NaN fails as well.
-        if (!(std::abs(meta.verticalCorrectionDeg) <= 5))
-            throw Error("vertical_correction_deg has to be from -5 to 5");
-        if (!(meta.epoch_s >= 0 && meta.epoch_s < 1e10))
-            throw Error("epoch_unix_s has to be Unix seconds");
-        return meta;
+        return metaOf(YAML::LoadFile(path));
     } catch (const std::exception& e) {
         throw Error("cannot understand '" + path + "': " + plainMessage(e));
     }
 }
 
 void writeDriveMeta(const DriveMeta& meta, const std::string& rawlogPath) {
-    replaceTextFile(sidecarPath(rawlogPath, ".meta.yaml"), [&](std::ostream& out) {
-        out << "# What this drive is; delio-slam reads it beside the rawlog.\n";
-        out << "sensor_model: " << quotedForYaml(meta.sensorModel) << "\n"
-            << "source: " << quotedForYaml(meta.source) << "\n"
-            << "motion_compensated: " << (meta.motionCompensated ? "true" : "false") << "\n"
-            << "vertical_correction_deg: " << digitsOf(meta.verticalCorrectionDeg) << "\n"
-            << "epoch_unix_s: " << digitsOf(meta.epoch_s) << "\n"
-            << "generator: " << quotedForYaml(meta.generator) << "\n";
-    });
+    YAML::Emitter yaml;
+    const auto text = [&](const char* key, const std::string& value) {
+        yaml << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << value;
+    };
+    yaml << YAML::Comment("What this drive is; delio-slam reads it beside the rawlog.");
+    yaml << YAML::BeginMap;
+    text("sensor_model", meta.sensorModel);
+    text("source", meta.source);
+    yaml << YAML::Key << "motion_compensated" << YAML::Value << meta.motionCompensated;
+    yaml << YAML::Key << "vertical_correction_deg" << YAML::Value
+         << digitsOf(meta.verticalCorrectionDeg);
+    yaml << YAML::Key << "epoch_unix_s" << YAML::Value << digitsOf(meta.epoch_s);
+    text("generator", meta.generator);
+    yaml << YAML::EndMap;
+    replaceTextFile(sidecarPath(rawlogPath, ".meta.yaml"),
+                    [&](std::ostream& out) { out << yaml.c_str() << "\n"; });
 }
 }  // namespace delio::io
