@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../kd_tree.h"
@@ -46,6 +47,19 @@ std::vector<OptionField> OutlierRemovalOptions::fields() {
         {"alpha", &alpha, "standard deviations above the mean that still belong", 0, 100}};
 }
 
+double OutlierRemovalOptions::neighboursOf(unsigned round) const {
+    const double step = rounds > 1 ? static_cast<double>(round) / (rounds - 1) : 0;
+    return first_neighbours + step * (static_cast<double>(last_neighbours) - first_neighbours);
+}
+
+OutlierRemovalOptions OutlierRemovalOptions::firstRounds(unsigned count) const {
+    OutlierRemovalOptions first = *this;
+    first.rounds = std::min(count, rounds);
+    if (first.rounds > 0)
+        first.last_neighbours = static_cast<unsigned>(std::lround(neighboursOf(first.rounds - 1)));
+    return first;
+}
+
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Pattern& pattern) {
     Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
     double weights = 0;
@@ -65,11 +79,7 @@ Pattern removeOutliers(const SurfaceNormals& normals, const OutlierRemovalOption
     pattern.weights = normals.planarity;
     pattern.normals = static_cast<std::size_t>(normals.directions.cols());
     for (unsigned round = 0; round < options.rounds && pattern.directions.cols() > 1; ++round) {
-        const double step =
-            options.rounds > 1 ? static_cast<double>(round) / (options.rounds - 1) : 0;
-        const double neighbours =
-            options.first_neighbours +
-            step * (static_cast<double>(options.last_neighbours) - options.first_neighbours);
+        const double neighbours = options.neighboursOf(round);
         const Eigen::VectorXf means = meanNeighbourDistances(
             pattern.directions, static_cast<std::size_t>(std::lround(neighbours)));
         const float mean = means.mean();

@@ -13,6 +13,11 @@ struct OutlierRemovalOptions : public StageOptions {
     unsigned last_neighbours = 10;
     double alpha = 2.0;
 
+    /** Neighbours on the sphere that round `round` (from 0) looks at. */
+    double neighboursOf(unsigned round) const;
+    /** The same removal, ended after `count` rounds. */
+    OutlierRemovalOptions firstRounds(unsigned count) const;
+
  protected:
     std::vector<OptionField> fields() override;
 };

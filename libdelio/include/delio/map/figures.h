@@ -1,0 +1,29 @@
+#pragma once
+#include <mrpt/opengl/COpenGLScene.h>
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "delio/map/snapshot.h"
+#include "delio/translation/line_cloud.h"
+
+namespace delio::map {
+/** Patterns of normals (unit vectors), each on a unit sphere of its own, side by side from left to
+ *  right, coloured by their place on the sphere so that a pattern can be followed from one to the
+ *  next; a caption each. In the axes of the sensor: x away from the viewer of spherePicture(). */
+mrpt::opengl::COpenGLScene::Ptr sphereScene(const std::vector<Eigen::Matrix3Xf>& patterns,
+                                            const std::vector<std::string>& captions);
+
+/** The spheres of sphereScene() as a reader of the paper looks at them: from behind and above. */
+SnapshotOptions sphereView(std::size_t spheres);
+
+/** The lines of a scan, coloured by height. Metres, sensor's frame. */
+mrpt::opengl::COpenGLScene::Ptr lineScene(const translation::LineCloud& lines);
+
+/** The lines of two scans, those of `from` in blue, those of `to` moved by `t` in red, and in green
+ *  what joins the midpoints of a pair. */
+mrpt::opengl::COpenGLScene::Ptr matchScene(const translation::LineCloud& from,
+                                           const translation::LineCloud& to,
+                                           const Eigen::Vector3d& t);
+}  // namespace delio::map
