@@ -137,7 +137,8 @@ TEST_F(SynthRecording, IsDrivenOnTimeAndCrossesItselfOnOneHeight) {
     const std::string file = eight(0.01);
     const auto scene = test::sceneOf("urban", 4, 100000, file);
     const Drive drive(scene->road(), 100000, 4);
-    expectOnTime(drive, file, 0.06, 0.3);
+    // Where the eight changes sides, the heading bends from one scan to the next.
+    expectOnTime(drive, file, 0.06, 0.6);
     std::size_t compared = 0;
     for (const auto& meeting : meetings(drive, 0.1)) {
         const auto a = drive.lidarPose(meeting.early), b = drive.lidarPose(meeting.late);
