@@ -224,4 +224,17 @@ TEST_F(SynthRecording, WhatNoVehicleDrivesIsRefused) {
     expectRefused(sideways, "sideways");
     EXPECT_THROW(Recording(folder_ / "none.txt", test::kittiAxes()), Error);
 }
+
+TEST_F(SynthRecording, AHighwayDoesNotTurnSharply) {
+    io::Trajectory poses;
+    for (int i = 0; i < 40; ++i) {
+        const double angle = 0.05 * i, radius = 10;
+        poses.poses.push_back(mrpt::poses::CPose3D(radius * std::sin(angle),
+                                                   radius * (1 - std::cos(angle)), 0, angle, 0, 0));
+    }
+    const std::string file = folder_ / "sharp.txt";
+    io::writeKitti(io::lidarToCam0(poses, test::kittiAxes()), file);
+    EXPECT_NO_THROW(test::sceneOf("urban", 1, 40, file));
+    EXPECT_THROW(test::sceneOf("highway", 1, 40, file), Error);
+}
 }  // namespace
