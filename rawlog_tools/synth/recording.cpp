@@ -68,14 +68,14 @@ std::vector<PlanPose> readPlan(const std::string& file, const CPose3D& Tr) {
 
 /** By a parabola through seven poses, which leaves steady turns and accelerations as they are. */
 std::vector<PlanPose> smoothed(const std::vector<PlanPose>& plan) {
-    constexpr int kHalf = 3;
+    constexpr std::size_t kHalf = 3;
     constexpr double kWeight[] = {7.0 / 21, 6.0 / 21, 3.0 / 21, -2.0 / 21};
     auto result = plan;
     for (std::size_t i = kHalf; i + kHalf < plan.size(); ++i) {
         PlanPose sum;
-        for (int k = -kHalf; k <= kHalf; ++k) {
-            const PlanPose& p = plan[static_cast<std::size_t>(static_cast<int>(i) + k)];
-            const double weight = kWeight[std::abs(k)];
+        for (std::size_t k = 0; k <= 2 * kHalf; ++k) {
+            const PlanPose& p = plan[i + k - kHalf];
+            const double weight = kWeight[k > kHalf ? k - kHalf : kHalf - k];
             sum.x += weight * p.x;
             sum.y += weight * p.y;
             sum.yaw += weight * p.yaw;
