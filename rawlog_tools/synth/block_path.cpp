@@ -24,8 +24,9 @@ Corners drawCorners(std::uint64_t seed) {
     const auto about = [&](double x, double y) {
         return Vector2d(x + random.uniform(-3, 3), y + random.uniform(-3, 3));
     };
-    const double begin = -random.uniform(18, 26), length = random.uniform(66, 76);
-    const double left = random.uniform(54, 62), right = random.uniform(54, 62);
+    // Round one block are some 250 m: traffic needs so much to keep out of its own way.
+    const double begin = -random.uniform(18, 26), length = random.uniform(72, 80);
+    const double left = random.uniform(59, 66), right = random.uniform(59, 66);
     Corners corners;
     corners[kStart] = {begin, 0};
     corners[kEnd] = {begin + length, 0};
