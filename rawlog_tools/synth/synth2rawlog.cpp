@@ -14,9 +14,9 @@
 #include "delio/io/trajectory.h"
 #include "delio/version.h"
 #include "drive.h"
+#include "make_scene.h"
 #include "scanner.h"
 #include "tile_window.h"
-#include "urban_scene.h"
 
 namespace {
 using namespace delio;
@@ -73,14 +73,11 @@ std::string timeRow(std::size_t scan) {
     return row;
 }
 
-std::unique_ptr<Scene> makeUrban(const Request& request) {
-    const double longest_m = kMaxSpeed_m_s * kScanPeriod_s * static_cast<double>(request.scans);
-    Road road(urbanPath(request.seed, longest_m), request.seed);
-    return std::make_unique<UrbanScene>(std::move(road), request.seed);
-}
-
 int writeDrive(const Request& request, const Scene& scene) {
     const Drive drive(scene.road(), request.scans, request.seed);
+    if (drive.scans() < request.scans)
+        cli::warn("the trajectory ends after " + std::to_string(drive.scans()) + " of " +
+                  std::to_string(request.scans) + " scans; so does the drive");
     RayCaster caster;
     TileWindow window(scene, caster);
     const Scanner scanner(caster, request.sensor, request.noise_m, request.seed, request.threads);
@@ -121,6 +118,12 @@ std::string sensorOptions() {
     return names;
 }
 
+std::string sceneOptions() {
+    std::string names;
+    for (const auto& name : sceneNames()) names += (names.empty() ? "" : ", ") + name;
+    return names;
+}
+
 int badUsage(const std::string& what) {
     cli::inform(what + "; see --help");
     return cli::kExitBadCommandLine;
@@ -132,9 +135,16 @@ int main(int argc, char** argv) {
                        kVersion);
     TCLAP::ValueArg<std::string> output("o", "output", "Rawlog to write", true, "", "OUT.rawlog",
                                         cmd);
-    TCLAP::ValueArg<std::string> scene("", "scene", "Scene: urban", true, "", "NAME", cmd);
+    TCLAP::ValueArg<std::string> scene("", "scene", "Scene: " + sceneOptions(), true, "", "NAME",
+                                       cmd);
     TCLAP::ValueArg<int> scans("", "scans", "Number of scans, ten a second", true, 0, "N", cmd);
     TCLAP::ValueArg<int> seed("", "seed", "Another seed, another drive", false, 1, "S", cmd);
+    TCLAP::ValueArg<std::string> trajectory(
+        "", "trajectory",
+        "KITTI poses (cam0, 12 numbers a line, ten a second) to drive along: at scan i the vehicle "
+        "is where pose i is, seen from above; heights, pitch and roll are those of the made-up "
+        "ground. The drive ends where the poses end. For urban, rural and highway",
+        false, "", "POSES.txt", cmd);
     TCLAP::ValueArg<std::string> sensor("", "sensor", "Sensor: " + sensorOptions(), false, "hdl64e",
                                         "NAME", cmd);
     TCLAP::ValueArg<double> noise("", "noise", "Range noise, standard deviation in metres", false,
@@ -145,8 +155,15 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg verbose("", "verbose", "Say more", cmd);
 
     return cli::run(cmd, argc, argv, verbose, [&] {
-        if (scene.getValue() != "urban")
-            return badUsage("there is no scene '" + scene.getValue() + "'; there is: urban");
+        const auto names = sceneNames();
+        if (std::find(names.begin(), names.end(), scene.getValue()) == names.end())
+            return badUsage("there is no scene '" + scene.getValue() +
+                            "'; there are: " + sceneOptions());
+        if (trajectory.isSet() && trajectory.getValue().empty())
+            return badUsage("--trajectory needs the name of a file");
+        if (trajectory.isSet() && !takesTrajectory(scene.getValue()))
+            return badUsage("--trajectory does not go with --scene " + scene.getValue() +
+                            ", which has a path of its own");
         const auto model = findSensor(sensor.getValue());
         if (!model)
             return badUsage("there is no sensor '" + sensor.getValue() +
@@ -167,6 +184,8 @@ int main(int argc, char** argv) {
                         threads.getValue()};
         if (request.threads == 0)
             request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-        return writeDrive(request, *makeUrban(request));
+        const SceneRequest world{scene.getValue(), request.seed, request.scans,
+                                 trajectory.getValue(), lidarToCam0()};
+        return writeDrive(request, *makeScene(world));
     });
 }
