@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "pose_on_road.h"
 #include "random.h"
 
 namespace delio::synth {
@@ -33,42 +35,34 @@ std::vector<double> speedProfile(const Path& path, double cruise) {
 Drive::Drive(const Road& road, std::size_t scans, std::uint64_t seed) : road_(road) {
     Random random{seed, 0xD71};
     const auto speed = speedProfile(road.path(), random.uniform(9, kMaxSpeed_m_s));
-    double stepBegin_s = 0;
-    for (std::size_t i = 0; i + 1 < speed.size() && s_.size() < scans; ++i) {
+    const double end_s = kScanPeriod_s * static_cast<double>(scans);  // what the last sweep needs
+    double time_s = 0;
+    for (std::size_t i = 0; i + 1 < speed.size() && time_s <= end_s; ++i) {
         const double duration = 2 * kStep_m / (speed[i] + speed[i + 1]);
-        const double acceleration = (speed[i + 1] - speed[i]) / duration;
-        while (s_.size() < scans) {
-            const double t = kScanPeriod_s * static_cast<double>(s_.size()) - stepBegin_s;
-            if (t >= duration) break;
-            s_.push_back(kStep_m * static_cast<double>(i) + speed[i] * t +
-                         acceleration * t * t / 2);
-        }
-        stepBegin_s += duration;
+        legs_.push_back({time_s, kStep_m * static_cast<double>(i), speed[i],
+                         (speed[i + 1] - speed[i]) / duration});
+        time_s += duration;
     }
+    for (std::size_t i = 0; i < scans; ++i)
+        s_.push_back(stationAt(kScanPeriod_s * static_cast<double>(i)));
+}
+
+double Drive::stationAt(double time_s) const {
+    if (time_s <= 0) return 0;
+    const auto next = std::upper_bound(legs_.begin(), legs_.end(), time_s,
+                                       [](double t, const Leg& leg) { return t < leg.begin_s; });
+    const Leg& leg = *std::prev(next);
+    const double t = time_s - leg.begin_s;
+    return leg.station + leg.speed * t + leg.acceleration * t * t / 2;
 }
 
 Eigen::Isometry3d Drive::lidarPose(std::size_t scan) const {
-    constexpr double kHalfWheelbase = 1.35, kHalfTrack = 0.75;
-    const double s = s_[scan];
-    const auto wheel = [&](double along, double side) {
-        const double d = Road::kVehicleOffset_m + side;
-        const Eigen::Vector2d place = road_.point(s + along, d);
-        return Eigen::Vector3d(place.x(), place.y(), road_.height(place, d));
-    };
-    const Eigen::Vector3d fl = wheel(kHalfWheelbase, kHalfTrack);
-    const Eigen::Vector3d fr = wheel(kHalfWheelbase, -kHalfTrack);
-    const Eigen::Vector3d rl = wheel(-kHalfWheelbase, kHalfTrack);
-    const Eigen::Vector3d rr = wheel(-kHalfWheelbase, -kHalfTrack);
-    const Eigen::Vector3d forward = (fl + fr - rl - rr).normalized();
-    const Eigen::Vector3d up = forward.cross(fl + rl - fr - rr).normalized();
+    return lidarPoseAt(kScanPeriod_s * static_cast<double>(scan));
+}
 
-    const Station at = road_.path().at(s);
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear().col(0) = forward;
-    pose.linear().col(1) = up.cross(forward);
-    pose.linear().col(2) = up;
-    pose.translation() =
-        Eigen::Vector3d(at.x, at.y, (fl + fr + rl + rr).z() / 4) + kSensorHeight_m * up;
-    return pose;
+Eigen::Isometry3d Drive::lidarPoseAt(double time_s) const {
+    const double s = stationAt(time_s);
+    return poseOnRoad(road_, s, Road::kVehicleOffset_m, {1.35, 0.75}) *
+           Eigen::Translation3d(0, 0, kSensorHeight_m);
 }
 }  // namespace delio::synth
