@@ -11,7 +11,9 @@
 
 namespace delio::synth {
 struct ScannerOptions {
-    double noise_m = 0.02;  //!< of a range, standard deviation
+    /** Of a range, standard deviation. 0: a perfect instrument, which neither rounds azimuths nor
+     *  mixes the echoes of two surfaces. */
+    double noise_m = 0.01;
     double ringBias_m = 0;  //!< of the lasers' own constant errors, standard deviation
     std::uint64_t seed = 1;
     int threads = 1;
@@ -40,19 +42,24 @@ class Scanner {
 
  private:
     using Views = std::vector<TrafficCaster::View>;
+    /** What sets one laser apart, and its firings of a scan. */
+    struct Ring {
+        std::size_t number;
+        double elevation_rad, offset_rad;  //!< offset of its azimuths from the columns'
+        double gain, bias_m;
+        std::vector<Hit> hits;
+    };
     ScanPoints scanRing(const Sweep& sweep, const Views& views, std::size_t scan,
-                        std::size_t ring) const;
+                        std::size_t number) const;
+    Ring makeRing(std::size_t number) const;
+    void cast(Ring& ring, const Sweep& sweep, const Views& views) const;
+    bool isNoticed(const Ring& ring, std::size_t column, std::size_t scan, Random& random) const;
+    double measuredRange(const Ring& ring, std::size_t column, Random& random) const;
+    double reportedAzimuth(double azimuth_rad) const;
 
     const RayCaster& caster_;
     const TrafficCaster* traffic_;
     SensorModel sensor_;
     ScannerOptions options_;
 };
-
-/** How likely an echo is to be noticed. */
-double detectionProbability(const Hit& hit);
-/** Of an echo, 0 ... 1, in KITTI's steps of 0.01. `gain`: of the laser. */
-float intensity(const Hit& hit, double gain, Random& random);
-/** The vehicle's own bonnet and boot hide what is below them. */
-bool behindOwnVehicle(double azimuth, double elevation);
 }  // namespace delio::synth

@@ -12,27 +12,27 @@ void addBlock(SensorModel& model, int count, double top_deg, double step_deg) {
 
 /** Two blocks of 32 lasers: steps of 1/3 deg above, of 1/2 deg below. */
 SensorModel hdl64e() {
-    SensorModel model{"hdl64e", "HDL-64E", {}, 2083, 0.9, 120};
+    SensorModel model{"hdl64e", "HDL-64E", {}, 2083, 0.9, 120, 0.09 * kDegree};
     addBlock(model, 32, 2, 1 / 3.0);
     addBlock(model, 32, -8.83, 0.5);
     return model;
 }
 
 SensorModel hdl32e() {
-    SensorModel model{"hdl32e", "HDL-32E", {}, 2170, 0.9, 100};
+    SensorModel model{"hdl32e", "HDL-32E", {}, 2170, 0.9, 100, 0.01 * kDegree};
     addBlock(model, 32, 10 + 2 / 3.0, 4 / 3.0);
     return model;
 }
 
 SensorModel vlp16() {
-    SensorModel model{"vlp16", "VLP-16", {}, 1808, 0.9, 100};
+    SensorModel model{"vlp16", "VLP-16", {}, 1808, 0.9, 100, 0.01 * kDegree};
     addBlock(model, 16, 15, 2);
     return model;
 }
 
 /** The first generation, of 33.2 deg from top to bottom. */
 SensorModel os1x64() {
-    SensorModel model{"os1-64", "OS1-64", {}, 1024, 0.8, 120};
+    SensorModel model{"os1-64", "OS1-64", {}, 1024, 0.8, 120, 0};
     addBlock(model, 64, 16.6, 33.2 / 63);
     return model;
 }

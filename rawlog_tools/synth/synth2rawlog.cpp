@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
     TCLAP::ValueArg<std::string> sensor("", "sensor", "Sensor: " + sensorOptions(), false, "hdl64e",
                                         "NAME", cmd);
     TCLAP::ValueArg<double> noise("", "noise", "Range noise, standard deviation in metres", false,
-                                  0.02, "M", cmd);
+                                  0.01, "M", cmd);
     TCLAP::ValueArg<double> ringBias(
         "", "ring-bias", "Constant range error of each laser, standard deviation in metres", false,
         0, "M", cmd);

@@ -89,7 +89,8 @@ Traffic::Member Traffic::makeMember(std::size_t stripeNumber, std::size_t number
         member.ahead_m = end * (kNearest_m + kQueue_m * rank);
         member.swing_m = number < 2 ? 0.8 : 2;
     } else if (stripe.wave_m > 0) {
-        member.ahead_m = number == 0 ? 0 : end * kQueue_m * std::ceil(static_cast<double>(number) / 2);
+        member.ahead_m =
+            number == 0 ? 0 : end * kQueue_m * std::ceil(static_cast<double>(number) / 2);
         member.swing_m = 12;
         member.phase = Random{seed_, kMemberKey, stripeNumber}.uniform(0, 2 * kPi);  // all as one
     } else {
