@@ -8,11 +8,12 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 
 /** Degrees below the horizon from which down half of the rays of KITTI's scans are lost (raw drive
  *  2011_09_26_0005 and odometry 00), every 10 deg from 175 deg to the right over ahead to 175 deg
- *  to the left: the boot, an antenna on the right, the bonnet, the rails of the roof. 30: none. */
+ *  to the left: the boot, an antenna on the right, the bonnet, the rails of the roof. */
+constexpr double kNone = 90;
 constexpr double kHidden_deg[36] = {
-    18, 18.3, 20.3, 24.3, 22.8, 21.3, 24,   24.3, 24.3, 23.5, 15.8, 15,   //
-    22, 23.6, 22.2, 23.8, 21,   19.8, 19.8, 21,   23.6, 24.3, 24.3, 30,   //
-    30, 30,   30,   30,   24.3, 24.3, 23,   21.5, 24,   22.3, 18.8, 17.8  //
+    18,    18.3,  20.3,  24.3,  22.8, 21.3, 24,   24.3, 24.3, 23.5, 15.8, 15,     //
+    22,    23.6,  22.2,  23.8,  21,   19.8, 19.8, 21,   23.6, 24.3, 24.3, kNone,  //
+    kNone, kNone, kNone, kNone, 24.3, 24.3, 23,   21.5, 24,   22.3, 18.8, 17.8    //
 };
 }  // namespace
 

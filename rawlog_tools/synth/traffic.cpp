@@ -40,7 +40,7 @@ std::vector<Traffic::Stripe> Traffic::stripesOf(const Road& road, Random random)
         stripes.push_back({RoadUserKind::kPedestrian, side * (Road::kKerb_m + 1.5), direction,
                            random.uniform(1.2, 1.6), 0, 1.5});
         stripes.push_back(
-            {RoadUserKind::kCyclist, side * (edge + 1.4), direction, random.uniform(4, 6), 0, 1});
+            {RoadUserKind::kCyclist, side * (edge + 1.55), direction, random.uniform(4, 6), 0, 1});
     }
     return stripes;
 }
@@ -82,7 +82,7 @@ Traffic::Member Traffic::makeMember(std::size_t stripeNumber, std::size_t number
     member.looks = makeRoadUser(stripe.kind, random.next());
     member.phase = random.uniform(0, 2 * kPi);
     member.swing_m = 0;
-    member.sway_m = random.uniform(-1, 1) * (stripe.kind == RoadUserKind::kCyclist ? 0.05 : 0.1);
+    member.sway_m = random.uniform(-1, 1) * (stripe.kind == RoadUserKind::kPedestrian ? 0.1 : 0.04);
     const auto rank = static_cast<double>(number / 2);
     const double end = number % 2 == 0 ? 1 : -1;  // before or behind
     if (stripe.wave_m > 0 && stripeNumber == 0) {
