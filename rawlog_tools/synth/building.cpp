@@ -102,10 +102,11 @@ void addRoof(Mesh& mesh, const Frame& frame, double width, double depth, double 
 }
 }  // namespace
 
-void addBuilding(Mesh& mesh, const Frame& frame, double width, double depth, Random& random) {
+void addBuilding(Mesh& mesh, const Frame& frame, double width, double depth, Random& random,
+                 int mostFloors) {
     const double wall = random.uniform(0.3, 0.65);
     const double floorHeight = random.uniform(2.8, 3.3);
-    const int floors = static_cast<int>(random.uniform(2, 6));
+    const int floors = static_cast<int>(random.uniform(2, mostFloors + 1));
     const double eaves = floors * floorHeight;
     const Frame raised = frame.at(0, 0, random.uniform(0, 0.5));
     addFront(mesh, raised, width, floors, floorHeight, wall, random);

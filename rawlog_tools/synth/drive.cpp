@@ -2,67 +2,42 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
-#include "pose_on_road.h"
-#include "random.h"
+#include "speed_profile.h"
 
 namespace delio::synth {
-namespace {
-constexpr double kStep_m = 0.25;
-constexpr double kMaxYawRate_rad_s = 0.48;
-constexpr double kAcceleration_m_s2 = 1.7;
-constexpr double kBraking_m_s2 = 2.0;
-
-/** The speed at every kStep_m from s = 0: what curvature, brakes and engine allow. */
-std::vector<double> speedProfile(const Path& path, double cruise) {
-    std::vector<double> speed;
-    for (double s = 0; s <= path.end(); s += kStep_m) {
-        const double curvature = std::max(1e-6, std::abs(path.at(s).curvature));
-        speed.push_back(std::min(cruise, kMaxYawRate_rad_s / curvature));
+Drive::Drive(const Road& road, std::size_t scans, std::uint64_t seed)
+    : road_(road), motion_(road.givenMotion()) {
+    if (!motion_) {
+        own_ = std::make_shared<SpeedProfile>(road.path(), road.profile().style, seed);
+        motion_ = own_.get();
     }
-    const auto limit = [](double& value, double neighbour, double acceleration) {
-        value = std::min(value, std::sqrt(neighbour * neighbour + 2 * acceleration * kStep_m));
-    };
-    for (std::size_t i = speed.size() - 1; i-- > 0;) limit(speed[i], speed[i + 1], kBraking_m_s2);
-    speed[0] = 0;
-    for (std::size_t i = 1; i < speed.size(); ++i)
-        limit(speed[i], speed[i - 1], kAcceleration_m_s2);
-    return speed;
-}
-}  // namespace
-
-Drive::Drive(const Road& road, std::size_t scans, std::uint64_t seed) : road_(road) {
-    Random random{seed, 0xD71};
-    const auto speed = speedProfile(road.path(), random.uniform(9, kMaxSpeed_m_s));
-    const double end_s = kScanPeriod_s * static_cast<double>(scans);  // what the last sweep needs
-    double time_s = 0;
-    for (std::size_t i = 0; i + 1 < speed.size() && time_s <= end_s; ++i) {
-        const double duration = 2 * kStep_m / (speed[i] + speed[i + 1]);
-        legs_.push_back({time_s, kStep_m * static_cast<double>(i), speed[i],
-                         (speed[i + 1] - speed[i]) / duration});
-        time_s += duration;
-    }
-    for (std::size_t i = 0; i < scans; ++i)
-        s_.push_back(stationAt(kScanPeriod_s * static_cast<double>(i)));
-}
-
-double Drive::stationAt(double time_s) const {
-    if (time_s <= 0) return 0;
-    const auto next = std::upper_bound(legs_.begin(), legs_.end(), time_s,
-                                       [](double t, const Leg& leg) { return t < leg.begin_s; });
-    const Leg& leg = *std::prev(next);
-    const double t = time_s - leg.begin_s;
-    return leg.station + leg.speed * t + leg.acceleration * t * t / 2;
-}
-
-Eigen::Isometry3d Drive::lidarPose(std::size_t scan) const {
-    return lidarPoseAt(kScanPeriod_s * static_cast<double>(scan));
+    const double known = std::floor(motion_->duration_s() / kScanPeriod_s + 1e-6);
+    scans_ = std::min(scans, static_cast<std::size_t>(known) + 1);
 }
 
 Eigen::Isometry3d Drive::lidarPoseAt(double time_s) const {
-    const double s = stationAt(time_s);
-    return poseOnRoad(road_, s, Road::kVehicleOffset_m, {1.35, 0.75}) *
-           Eigen::Translation3d(0, 0, kSensorHeight_m);
+    constexpr double kHalfWheelbase = 1.35, kHalfTrack = 0.75;
+    const PlanPose plan = motion_->at(time_s);
+    const Eigen::Vector2d ahead(std::cos(plan.yaw), std::sin(plan.yaw));
+    const Eigen::Vector2d left(-ahead.y(), ahead.x());
+    const auto wheel = [&](double along, double side) {
+        const Eigen::Vector2d place = Eigen::Vector2d(plan.x, plan.y) + along * ahead + side * left;
+        return Eigen::Vector3d(place.x(), place.y(), road_.height(place));
+    };
+    const Eigen::Vector3d fl = wheel(kHalfWheelbase, kHalfTrack);
+    const Eigen::Vector3d fr = wheel(kHalfWheelbase, -kHalfTrack);
+    const Eigen::Vector3d rl = wheel(-kHalfWheelbase, kHalfTrack);
+    const Eigen::Vector3d rr = wheel(-kHalfWheelbase, -kHalfTrack);
+    const Eigen::Vector3d forward = (fl + fr - rl - rr).normalized();
+    const Eigen::Vector3d up = forward.cross(fl + rl - fr - rr).normalized();
+
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear().col(0) = forward;
+    pose.linear().col(1) = up.cross(forward);
+    pose.linear().col(2) = up;
+    pose.translation() =
+        Eigen::Vector3d(plan.x, plan.y, (fl + fr + rl + rr).z() / 4) + kSensorHeight_m * up;
+    return pose;
 }
 }  // namespace delio::synth

@@ -2,40 +2,38 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <memory>
 
+#include "motion.h"
 #include "road.h"
 
 namespace delio::synth {
 constexpr double kScanPeriod_s = 0.1;
-constexpr double kMaxSpeed_m_s = 12;
 
-/** Where the vehicle is at every scan: it starts from standstill, slows down for turns, and
- *  pitches and rolls with the road under its wheels. */
+/** Where the vehicle is at every scan: it moves as the road's style or a given trajectory has it,
+ *  and pitches and rolls with the ground under its wheels. */
 class Drive {
  public:
     static constexpr double kSensorHeight_m = 1.73;
 
+    /** Fewer scans than asked for where a given trajectory ends before. */
     Drive(const Road& road, std::size_t scans, std::uint64_t seed);
 
-    std::size_t scans() const { return s_.size(); }
+    std::size_t scans() const { return scans_; }
     /** Metres along the path at scan `scan`. */
-    double station(std::size_t scan) const { return s_[scan]; }
-    /** The same at any time, seconds from scan 0: before the first scan the vehicle stands, and it
-     *  drives on after the last. */
-    double stationAt(double time_s) const;
+    double station(std::size_t scan) const { return stationAt(timeOf(scan)); }
+    /** The same at any time, seconds from scan 0. */
+    double stationAt(double time_s) const { return motion_->at(time_s).s; }
     /** LiDAR to world: x forward, y left, z up. */
-    Eigen::Isometry3d lidarPose(std::size_t scan) const;
+    Eigen::Isometry3d lidarPose(std::size_t scan) const { return lidarPoseAt(timeOf(scan)); }
     Eigen::Isometry3d lidarPoseAt(double time_s) const;
 
  private:
-    /** A stretch of constant acceleration. */
-    struct Leg {
-        double begin_s;  //!< time
-        double station, speed, acceleration;
-    };
+    static double timeOf(std::size_t scan) { return kScanPeriod_s * static_cast<double>(scan); }
+
     const Road& road_;
-    std::vector<Leg> legs_;
-    std::vector<double> s_;
+    std::shared_ptr<const Motion> own_;  //!< where none is given
+    const Motion* motion_;
+    std::size_t scans_;
 };
 }  // namespace delio::synth

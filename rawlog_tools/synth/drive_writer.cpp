@@ -27,16 +27,6 @@ const char* const kFaultsHeader =
     "# empty: no points.\n"
     "drive_scan\tscan\tkind\n";
 
-CPose3D lidarToCam0() {
-    CPose3D Tr;
-    mrpt::math::CMatrixDouble33 R;
-    R.asEigen() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-    Tr.setRotationMatrix(R);
-    Tr.y(-0.08);
-    Tr.z(-0.27);
-    return Tr;
-}
-
 std::string timeRow(std::size_t scan) {
     char row[32];
     std::snprintf(row, sizeof(row), "%.6f\n", kScanPeriod_s * static_cast<double>(scan));
@@ -51,6 +41,16 @@ void writeValues(const std::string& path, const std::vector<Value>& values) {
     if (!out.flush()) throw Error("cannot write '" + path + "': is the disk full?");
 }
 }  // namespace
+
+CPose3D lidarToCam0() {
+    CPose3D Tr;
+    mrpt::math::CMatrixDouble33 R;
+    R.asEigen() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+    Tr.setRotationMatrix(R);
+    Tr.y(-0.08);
+    Tr.z(-0.27);
+    return Tr;
+}
 
 DriveWriter::DriveWriter(const DriveRequest& request, const Scene& scene, const Drive& drive)
     : request_(request),

@@ -1,4 +1,6 @@
 #pragma once
+#include <mrpt/poses/CPose3D.h>
+
 #include <cstddef>
 #include <string>
 
@@ -23,6 +25,9 @@ struct DriveRequest {
     bool labels = false;   //!< OUT_Images/NNNNNN.label says which points move
     bool embed = false, force = false;
 };
+
+/** KITTI's Tr for the synthetic vehicle: LiDAR coordinates to cam0's. */
+mrpt::poses::CPose3D lidarToCam0();
 
 /** Drives through a scene and writes what the sensor sees, with the truth: the rawlog and all of
  *  its side files. Memory does not grow with the drive but for the text of the side files. */

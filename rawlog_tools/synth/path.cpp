@@ -20,8 +20,8 @@ Station advanced(const Station& from, double ds) {
     to.yaw += from.curvature * ds;
     return to;
 }
+}  // namespace
 
-/** Into the curvature, along it and out again: turns by `angle` in all. */
 void appendTurn(std::vector<CurvaturePiece>& pieces, double angle, double radius, double ease) {
     const double curvature = std::copysign(1 / radius, angle);
     const double arc = std::max(0.0, std::abs(angle) * radius - ease);
@@ -31,7 +31,6 @@ void appendTurn(std::vector<CurvaturePiece>& pieces, double angle, double radius
     pieces.push_back({arc, peak});
     pieces.push_back({ease, 0});
 }
-}  // namespace
 
 Path::Path(double begin_s, const std::vector<CurvaturePiece>& pieces) {
     Station station;
@@ -53,6 +52,18 @@ Path::Path(double begin_s, const std::vector<CurvaturePiece>& pieces) {
         before = piece.curvature;
     }
     stations_.back().curvature = 0;
+}
+
+Path::Path(const std::vector<Station>& dense) {
+    std::size_t next = 1;
+    for (double s = dense.front().s; s <= dense.back().s && next < dense.size(); s += kStep) {
+        while (next + 1 < dense.size() && dense[next].s < s) ++next;
+        const Station &a = dense[next - 1], &b = dense[next];
+        const double u = std::clamp((s - a.s) / (b.s - a.s), 0.0, 1.0);
+        const auto between = [u](double from, double to) { return from + u * (to - from); };
+        stations_.push_back({s, between(a.x, b.x), between(a.y, b.y), between(a.yaw, b.yaw),
+                             between(a.curvature, b.curvature)});
+    }
 }
 
 Station Path::at(double s) const {
@@ -82,7 +93,7 @@ Path urbanPath(std::uint64_t seed, double length_m) {
     };
     // Streets lead alternately to the side and along +x; the stretches along +x keep the side
     // streets at least 80 m apart.
-    for (bool side = true; length < length_m + kPathMargin_m; side = !side) {
+    for (bool side = true; length < length_m + 2 * kPathMargin_m; side = !side) {
         const double away = random.uniform(60, 80) * kDegree;
         const double target =
             side ? (random.chance(0.5) ? away : -away) : random.uniform(-6, 6) * kDegree;

@@ -7,7 +7,7 @@ namespace delio::synth {
 struct Station {
     double s = 0;  //!< metres along the path; 0 where the drive begins
     double x = 0, y = 0;
-    double yaw = 0;
+    double yaw = 0;        //!< goes on beyond 180 deg: without jumps
     double curvature = 0;  //!< 1/m, positive to the left
 };
 
@@ -18,12 +18,19 @@ struct CurvaturePiece {
     double curvature;
 };
 
-/** The curve that the vehicle follows, made of clothoids: its curvature has no jumps. It goes
- *  through the origin along +x at s = 0. */
+/** Into a curvature, along it and out again: turns by `angle` in all; the clothoids before and
+ *  after the arc are `ease` long. */
+void appendTurn(std::vector<CurvaturePiece>& pieces, double angle, double radius, double ease);
+
+/** The curve that the vehicle follows. */
 class Path {
  public:
-    /** `begin_s` <= 0: where the first piece begins; the curve before s = 0 must be straight. */
+    /** Made of clothoids: the curvature has no jumps. It goes through the origin along +x at s = 0.
+     *  `begin_s` <= 0: where the first piece begins; the curve before s = 0 must be straight. */
     Path(double begin_s, const std::vector<CurvaturePiece>& pieces);
+    /** Through places a few centimetres to decimetres apart, whose `s` rises; it may cross itself
+     *  and come back to where it was. */
+    explicit Path(const std::vector<Station>& dense);
 
     double begin() const { return stations_.front().s; }
     double end() const { return stations_.back().s; }

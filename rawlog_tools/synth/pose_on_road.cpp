@@ -6,7 +6,7 @@ Eigen::Isometry3d poseOnRoad(const Road& road, double s, double side_m,
     const auto wheel = [&](double along, double across) {
         const double side = side_m + across;
         const Eigen::Vector2d place = road.point(s + along, side);
-        return Eigen::Vector3d(place.x(), place.y(), road.height(place, side));
+        return Eigen::Vector3d(place.x(), place.y(), road.height(place));
     };
     const Eigen::Vector3d fl = wheel(footprint.along_m, footprint.across_m);
     const Eigen::Vector3d fr = wheel(footprint.along_m, -footprint.across_m);

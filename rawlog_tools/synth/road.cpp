@@ -5,52 +5,69 @@
 #include <limits>
 #include <utility>
 
-#include "random.h"
-
 namespace delio::synth {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
-
-/** Crossfall of 2 %, a kerb of 13 cm, a sidewalk that falls towards it, then level. */
-double crossSection(double side) {
-    const double away = std::abs(side);
-    if (away <= Road::kKerb_m) return -0.02 * away;
-    const double sidewalk = std::min(away, Road::kSidewalkEnd_m) - Road::kKerb_m;
-    return -0.02 * Road::kKerb_m + 0.13 + 0.015 * sidewalk;
-}
+constexpr double kSample_m = 1;
+constexpr double kSameRoad_m = 2.5;  // centre lines closer than that are one road's
+constexpr double kComeBack_m = 30;   // a line is not compared with what it has just left
 }  // namespace
 
-Road::Road(Path path, std::uint64_t seed) : path_(std::move(path)) {
-    Random random{seed, 0x60D};
-    // Hills, the settling of the road (2-4 cm), and what one feels in the seat.
-    constexpr double amplitudes[] = {0.9, 0.6, 0.012, 0.010, 0.010, 0.003, 0.003, 0.002};
-    constexpr double lengths[] = {380, 240, 27, 19, 13, 7, 5.5, 4};
-    for (std::size_t i = 0; i < waves_.size(); ++i) {
-        const double direction = random.uniform(0, 2 * kPi);
-        const double number = 2 * kPi / (lengths[i] * random.uniform(0.9, 1.1));
-        waves_[i] = {amplitudes[i],
-                     number * Eigen::Vector2d(std::cos(direction), std::sin(direction)),
-                     random.uniform(0, 2 * kPi)};
+Road::Road(Path path, std::uint64_t seed, RoadProfile profile)
+    : Road(std::move(path), seed, std::move(profile), nullptr) {}
+
+Road::Road(Path path, std::uint64_t seed, RoadProfile profile, std::shared_ptr<const Motion> motion)
+    : path_(std::move(path)),
+      profile_(std::move(profile)),
+      terrain_(profile_, seed),
+      motion_(std::move(motion)) {
+    buildIndices();
+}
+
+void Road::buildIndices() {
+    const auto count = static_cast<std::size_t>((path_.end() - path_.begin()) / kSample_m);
+    const auto stationOf = [&](std::size_t i) {
+        return path_.begin() + kSample_m * static_cast<double>(i);
+    };
+    std::vector<LineIndex::Segment> centres(count);
+    LineIndex soFar;
+    owned_.assign(count, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double s = stationOf(i), next = stationOf(i + 1);
+        centres[i] = {point(s, 0), point(next, 0), s, false, false};
+        tracks_.add({point(s, vehicleSide()), point(next, vehicleSide()), s, false, false});
+        const auto earlier = soFar.nearest(centres[i].a, kSameRoad_m, s - kComeBack_m);
+        owned_[i] = earlier.segment == nullptr;
+        if (owned_[i]) soFar.add(centres[i]);
     }
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!owned_[i]) continue;
+        // The road goes on straight where the path begins and ends.
+        centres[i].first = i > 0 && !owned_[i - 1];
+        centres[i].last = i + 1 < count && !owned_[i + 1];
+        centres_.add(centres[i]);
+    }
+}
+
+bool Road::owns(double s) const {
+    const auto i = static_cast<std::ptrdiff_t>(std::floor((s - path_.begin()) / kSample_m));
+    return i >= 0 && i < static_cast<std::ptrdiff_t>(owned_.size()) &&
+           owned_[static_cast<std::size_t>(i)] != 0;
 }
 
 Eigen::Vector2d Road::point(double s, double side_m) const {
     const Station at = path_.at(s);
-    const double d = side_m - kVehicleOffset_m;
+    const double d = side_m - vehicleSide();
     return {at.x - d * std::sin(at.yaw), at.y + d * std::cos(at.yaw)};
 }
 
-double Road::distance(const Eigen::Vector2d& place, double s) const {
-    double nearest = std::numeric_limits<double>::max();
-    for (double along = s - 200; along <= s + 200; along += 2)
-        nearest = std::min(nearest, (place - point(along, 0)).squaredNorm());
-    return std::sqrt(nearest);
+double Road::height(const Eigen::Vector2d& place) const {
+    const double away = distance(place);
+    return terrain_.height(place) + profile_.height(away) + terrain_.besideRoad(place, away);
 }
 
-double Road::height(const Eigen::Vector2d& place, double side_m) const {
-    double z = crossSection(side_m);
-    for (const auto& wave : waves_)
-        z += wave.amplitude * std::sin(wave.number.dot(place) + wave.phase);
-    return z;
+std::vector<double> Road::stationsNear(const Eigen::Vector2d& place, double reach_m) const {
+    std::vector<double> stations;
+    centres_.visit(place, reach_m, [&](const auto& segment) { stations.push_back(segment.s); });
+    return stations;
 }
 }  // namespace delio::synth

@@ -11,17 +11,11 @@
 #include "delio/version.h"
 #include "drive.h"
 #include "drive_writer.h"
-#include "urban_scene.h"
+#include "make_scene.h"
 
 namespace {
 using namespace delio;
 using namespace delio::synth;
-
-std::unique_ptr<Scene> makeUrban(std::size_t scans, std::uint64_t seed) {
-    const double longest_m = kMaxSpeed_m_s * kScanPeriod_s * static_cast<double>(scans);
-    Road road(urbanPath(seed, longest_m), seed);
-    return std::make_unique<UrbanScene>(std::move(road), seed);
-}
 
 std::optional<SensorModel> findSensor(const std::string& option) {
     for (auto& model : sensorModels())
@@ -32,6 +26,12 @@ std::optional<SensorModel> findSensor(const std::string& option) {
 std::string sensorOptions() {
     std::string names;
     for (const auto& model : sensorModels()) names += (names.empty() ? "" : ", ") + model.option;
+    return names;
+}
+
+std::string sceneOptions() {
+    std::string names;
+    for (const auto& name : sceneNames()) names += (names.empty() ? "" : ", ") + name;
     return names;
 }
 
@@ -51,9 +51,16 @@ int main(int argc, char** argv) {
                        kVersion);
     TCLAP::ValueArg<std::string> output("o", "output", "Rawlog to write", true, "", "OUT.rawlog",
                                         cmd);
-    TCLAP::ValueArg<std::string> scene("", "scene", "Scene: urban", true, "", "NAME", cmd);
+    TCLAP::ValueArg<std::string> scene("", "scene", "Scene: " + sceneOptions(), true, "", "NAME",
+                                       cmd);
     TCLAP::ValueArg<int> scans("", "scans", "Number of scans, ten a second", true, 0, "N", cmd);
     TCLAP::ValueArg<int> seed("", "seed", "Another seed, another drive", false, 1, "S", cmd);
+    TCLAP::ValueArg<std::string> trajectory(
+        "", "trajectory",
+        "KITTI poses (cam0, 12 numbers a line, ten a second) to drive along: at scan i the vehicle "
+        "is where pose i is, seen from above; heights, pitch and roll are those of the made-up "
+        "ground. The drive ends where the poses end. For urban, rural and highway",
+        false, "", "POSES.txt", cmd);
     TCLAP::ValueArg<std::string> sensor("", "sensor", "Sensor: " + sensorOptions(), false, "hdl64e",
                                         "NAME", cmd);
     TCLAP::ValueArg<double> noise("", "noise", "Range noise, standard deviation in metres", false,
@@ -82,8 +89,13 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg verbose("", "verbose", "Say more", cmd);
 
     return cli::run(cmd, argc, argv, verbose, [&] {
-        if (scene.getValue() != "urban")
-            return badUsage("there is no scene '" + scene.getValue() + "'; there is: urban");
+        const auto names = sceneNames();
+        if (std::find(names.begin(), names.end(), scene.getValue()) == names.end())
+            return badUsage("there is no scene '" + scene.getValue() +
+                            "'; there are: " + sceneOptions());
+        if (trajectory.isSet() && !takesTrajectory(scene.getValue()))
+            return badUsage("--trajectory does not go with --scene " + scene.getValue() +
+                            ", which has a path of its own");
         const auto model = findSensor(sensor.getValue());
         if (!model)
             return badUsage("there is no sensor '" + sensor.getValue() +
@@ -116,8 +128,12 @@ int main(int argc, char** argv) {
             request.scanner.threads =
                 static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
         const auto count = static_cast<std::size_t>(scans.getValue());
-        const auto world = makeUrban(count, request.scanner.seed);
+        const auto world = makeScene(
+            {scene.getValue(), request.scanner.seed, count, trajectory.getValue(), lidarToCam0()});
         const Drive drive(world->road(), count, request.scanner.seed);
+        if (drive.scans() < count)
+            cli::warn("the trajectory ends after " + std::to_string(drive.scans()) + " of " +
+                      std::to_string(count) + " scans; so does the drive");
         return DriveWriter(request, *world, drive).write();
     });
 }

@@ -1,19 +1,19 @@
 #include "tile_window.h"
 
+#include <utility>
+
 namespace delio::synth {
 void TileWindow::moveTo(double s) {
-    const int first = Scene::tileAt(s - kReach_m), last = Scene::tileAt(s + kReach_m);
-    bool changed = false;
-    for (const int index : caster_.ids()) {
-        if (index >= first && index <= last) continue;
-        caster_.remove(index);
-        changed = true;
+    const auto wanted = scene_.tilesNear(s, kReach_m);
+    if (wanted == held_) return;
+    for (const int index : held_)
+        if (wanted.count(index) == 0 && caster_.has(index)) caster_.remove(index);
+    for (const int index : wanted) {
+        if (held_.count(index) != 0) continue;
+        Mesh mesh = scene_.tile(index);
+        if (!mesh.triangles().empty()) caster_.add(index, std::move(mesh));
     }
-    for (int index = first; index <= last; ++index) {
-        if (caster_.has(index)) continue;
-        caster_.add(index, scene_.tile(index));
-        changed = true;
-    }
-    if (changed) caster_.commit();
+    held_ = wanted;
+    caster_.commit();
 }
 }  // namespace delio::synth

@@ -1,4 +1,6 @@
 #pragma once
+#include <set>
+
 #include "ray_caster.h"
 #include "scene.h"
 
@@ -6,14 +8,16 @@ namespace delio::synth {
 /** Keeps the tiles near the vehicle in the ray caster, and only those. */
 class TileWindow {
  public:
-    /** Round a corner 180 m of road reach as far as 120 m straight. */
-    static constexpr double kReach_m = 180;
+    /** Between the vehicle and the road of a tile; what stands beside that road may be nearer. */
+    static constexpr double kReach_m = 150;
 
     TileWindow(const Scene& scene, RayCaster& caster) : scene_(scene), caster_(caster) {}
+    /** To where the path is at `s`. */
     void moveTo(double s);
 
  private:
     const Scene& scene_;
     RayCaster& caster_;
+    std::set<int> held_;
 };
 }  // namespace delio::synth

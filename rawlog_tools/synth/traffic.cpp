@@ -18,6 +18,12 @@ double spacing(RoadUserKind kind) { return longest_m(kind) + (kind == RoadUserKi
 double wrapped(double value, double reach) {
     return value - 2 * reach * std::floor((value + reach) / (2 * reach));
 }
+/** The path comes back to a road that it has been on. */
+bool goesInRounds(const Road& road) {
+    for (double s = 0; s < road.path().end(); s += 5)
+        if (!road.owns(s)) return true;
+    return false;
+}
 }  // namespace
 
 std::vector<Traffic::Stripe> Traffic::stripesOf(const Road& road, Random random) {
@@ -46,7 +52,11 @@ std::vector<Traffic::Stripe> Traffic::stripesOf(const Road& road, Random random)
 }
 
 Traffic::Traffic(const Road& road, const Drive& drive, std::size_t count, std::uint64_t seed)
-    : road_(road), drive_(drive), seed_(seed), stripes_(stripesOf(road, {seed, kStripeKey})) {
+    : road_(road),
+      drive_(drive),
+      seed_(seed),
+      reach_m_(goesInRounds(road) ? kReachInRounds_m : kReach_m),
+      stripes_(stripesOf(road, {seed, kStripeKey})) {
     std::vector<std::size_t> stripeOf;
     for (std::size_t i = 0; i < count; ++i) {
         const auto stripe = nextStripe();
@@ -65,7 +75,7 @@ std::size_t Traffic::nextStripe() const {
     for (std::size_t i = 0; i < stripes_.size(); ++i) {
         const Stripe& stripe = stripes_[i];
         const double gap = stripe.wave_m > 0 ? kQueue_m : spacing(stripe.kind);
-        if (static_cast<double>(stripe.members + 2) * gap > 2 * (kReach_m - kNearest_m)) continue;
+        if (static_cast<double>(stripe.members + 2) * gap > 2 * (reach_m_ - kNearest_m)) continue;
         const double load = static_cast<double>(stripe.members + 1) / stripe.share;
         if (best < stripes_.size() && load >= fewest) continue;
         best = i;
@@ -94,7 +104,7 @@ Traffic::Member Traffic::makeMember(std::size_t stripeNumber, std::size_t number
         member.swing_m = 12;
         member.phase = Random{seed_, kMemberKey, stripeNumber}.uniform(0, 2 * kPi);  // all as one
     } else {
-        const double room = 2 * kReach_m / static_cast<double>(stripe.members);
+        const double room = 2 * reach_m_ / static_cast<double>(stripe.members);
         const double play = (room - spacing(stripe.kind)) / 2;
         member.ahead_m = room * static_cast<double>(number) + play * random.uniform(-1, 1);
     }
@@ -118,7 +128,7 @@ double Traffic::ahead(std::size_t index, double time_s) const {
         return member.ahead_m +
                member.swing_m * std::sin(2 * kPi * own / stripe.wave_m + member.phase);
     const double travelled = stripe.direction * stripe.speed_m_s * time_s;
-    return wrapped(member.ahead_m + travelled - own, kReach_m);
+    return wrapped(member.ahead_m + travelled - own, reach_m_);
 }
 
 Eigen::Isometry3d Traffic::pose(std::size_t index, double time_s) const {

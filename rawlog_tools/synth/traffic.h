@@ -12,7 +12,7 @@ namespace delio::synth {
 /** Who else is on the road. In the vehicle's own lane others accompany it, the nearest ones at 4 to
  *  10 m for the whole drive (for a scan-to-scan method such a car stands still); in every other
  *  lane traffic flows freely; where traffic is slow there are cyclists at the edge and pedestrians
- *  on the sidewalk. Whoever falls behind or gets ahead by more than kReach_m comes again from the
+ *  on the sidewalk. Whoever falls behind or gets ahead by more than reach() comes again from the
  *  other end. A place is a closed formula of time (and of the vehicle's own place): it depends on
  *  nothing that was asked before.
  *
@@ -23,10 +23,14 @@ class Traffic {
     /** Metres along the road, ahead and behind: what lies beyond is seen by no sensor on a road
      * that does not turn back. */
     static constexpr double kReach_m = 180;
+    /** On a road that comes back to where it was before (round a block): less than half the way
+     *  round, so that nobody meets those of the next round. */
+    static constexpr double kReachInRounds_m = 115;
 
     /** `count` of them; more than the lanes hold with room between them are left out. */
     Traffic(const Road& road, const Drive& drive, std::size_t count, std::uint64_t seed);
 
+    double reach() const { return reach_m_; }
     std::size_t size() const { return members_.size(); }
     RoadUserKind kind(std::size_t member) const;
     const RoadUser& looks(std::size_t member) const { return members_[member].looks; }
@@ -63,6 +67,7 @@ class Traffic {
     const Road& road_;
     const Drive& drive_;
     std::uint64_t seed_;
+    double reach_m_;
     std::vector<Stripe> stripes_;
     std::vector<Member> members_;
 };

@@ -12,12 +12,6 @@ namespace {
 constexpr double kFacade_m = 9.0;
 
 enum Part : std::uint64_t { kHouses, kBackRow, kCars, kSidewalk };
-double sharpestCurvature(const Path& path, double begin_s, double end_s) {
-    double sharpest = 1e-6;
-    for (double s = begin_s; s <= end_s; s += 1)
-        sharpest = std::max(sharpest, std::abs(path.at(s).curvature));
-    return sharpest;
-}
 }  // namespace
 
 Mesh UrbanScene::tile(int index) const {
@@ -25,37 +19,12 @@ Mesh UrbanScene::tile(int index) const {
     Mesh mesh;
     addGround(mesh, road(), begin_s, begin_s + kTileLength_m);
     for (const double side : {-1.0, 1.0}) {
-        // Each part draws from a stream of its own: changing one leaves the others as they are.
-        const auto stream = [&](Part part) {
-            return Random{seed_, static_cast<std::uint64_t>(index + 1000000), side > 0 ? 1U : 0U,
-                          part};
-        };
-        addHouses(mesh, begin_s, side, stream(kHouses));
-        addBackRow(mesh, begin_s, side, stream(kBackRow));
-        addParkedCars(mesh, begin_s, side, stream(kCars));
-        addSidewalk(mesh, begin_s, side, stream(kSidewalk));
+        addHouses(mesh, begin_s, side, stream(index, side, kHouses));
+        addBackRow(mesh, begin_s, side, stream(index, side, kBackRow));
+        addParkedCars(mesh, begin_s, side, stream(index, side, kCars));
+        addSidewalk(mesh, begin_s, side, stream(index, side, kSidewalk));
     }
     return mesh;
-}
-
-Frame UrbanScene::frameAt(double s, double side) const {
-    const double yaw = road().path().at(s).yaw;
-    const Eigen::Vector2d x(std::cos(yaw), std::sin(yaw));
-    const Eigen::Vector2d y = (side > 0 ? 1 : -1) * Eigen::Vector2d(-x.y(), x.x());
-    const Eigen::Vector2d place = road().point(s, side);
-    return {{place.x(), place.y(), road().height(place, side)}, x, y};
-}
-
-bool UrbanScene::isFree(const Frame& frame, double s, double length, double width,
-                        double clearance) const {
-    const int along = static_cast<int>(length / 2) + 1, across = static_cast<int>(width / 2) + 1;
-    for (int i = 0; i <= along; ++i)
-        for (int j = 0; j <= across; ++j) {
-            const Eigen::Vector3d place =
-                frame.world((1.0 * i / along - 0.5) * length, (1.0 * j / across - 0.5) * width, 0);
-            if (road().distance(place.head<2>(), s) < clearance) return false;
-        }
-    return true;
 }
 
 void UrbanScene::addHouses(Mesh& mesh, double begin_s, double side, Random random) const {
@@ -68,7 +37,7 @@ void UrbanScene::addHouses(Mesh& mesh, double begin_s, double side, Random rando
             continue;
         }
         // Round a turn the fronts are short: a long one would reach into the road.
-        const double longest = 0.3 / sharpestCurvature(road().path(), s, s + 8);
+        const double longest = 0.3 / sharpestCurvature(s, s + 8);
         const double next = std::min({end_s, s + random.uniform(8, 17), s + longest});
         addHouse(mesh, s, next, side, random);
         s = next;
@@ -114,6 +83,7 @@ void UrbanScene::addFrontGarden(Mesh& mesh, double s0, double s1, double side,
     const double s = (s0 + s1) / 2;
     if (std::abs(road().path().at(s).curvature) > 0.02) return;
     const Frame frame = frameAt(s, side * Road::kSidewalkEnd_m);
+    if (!isFree(frame, s, length, 0.8, Road::kKerb_m + 1)) return;
     if (kind < 0.45)
         addHedge(mesh, frame, length, random);
     else if (kind < 0.8)
@@ -140,7 +110,9 @@ void UrbanScene::addParkedCars(Mesh& mesh, double begin_s, double side, Random r
         const bool straight = std::abs(road().path().at(s).curvature) < 0.015;
         if (random.chance(0.5) && straight) {
             const Frame frame = frameAt(s, side * lane);
-            addCar(mesh, frame.turned(random.chance(0.8) ? sway : sway + 3.1416), random);
+            const Frame turned = frame.turned(random.chance(0.8) ? sway : sway + 3.1416);
+            if (isFree(frame, s, kCarLength_m, kCarWidth_m, Road::kLaneEdge_m))
+                addCar(mesh, turned, random);
         }
         s += kCarLength_m + random.uniform(0.5, 2.5);
     }

@@ -68,12 +68,11 @@ TEST(SynthDrive, ThePoseBetweenScansGoesThroughThoseOfTheScans) {
         EXPECT_TRUE(street.drive.lidarPoseAt(t).isApprox(street.drive.lidarPose(scan), 0));
         EXPECT_EQ(street.drive.stationAt(t), street.drive.station(scan));
     }
-    EXPECT_EQ(street.drive.stationAt(-0.05), 0);
     for (double t = 0; t < 20.1; t += 0.01) {
         const double speed =
             (street.drive.stationAt(t + 1e-4) - street.drive.stationAt(t - 1e-4)) / 2e-4;
         EXPECT_GE(speed, 0);
-        EXPECT_LT(speed, kMaxSpeed_m_s + 0.1);
+        EXPECT_LT(speed, 13);
     }
 }
 

@@ -89,7 +89,7 @@ TEST(SynthTraffic, AllKindsTakePartBothWaysAndStayAround) {
         const bool against = along.head<2>().dot(Eigen::Vector2d(cos(yaw), sin(yaw))) < 0;
         passing += against ? 1 : 0;
         for (double t = 0; t < 60; t += 0.5)
-            EXPECT_LE(std::abs(traffic.ahead(m, t)), Traffic::kReach_m);
+            EXPECT_LE(std::abs(traffic.ahead(m, t)), traffic.reach());
     }
     EXPECT_GE(kinds[0], 8);
     EXPECT_GE(kinds[1], 2);
@@ -104,7 +104,7 @@ TEST(SynthTraffic, MovesSmoothlyOnTheGround) {
     for (std::size_t m = 0; m < traffic.size(); ++m) {
         for (double t = 0; t < 60; t += 0.7) {
             const auto pose = traffic.pose(m, t), next = traffic.pose(m, t + 0.1);
-            if (std::abs(traffic.ahead(m, t)) > Traffic::kReach_m - 5) continue;  // it may recur
+            if (std::abs(traffic.ahead(m, t)) > traffic.reach() - 5) continue;  // it may recur
             const Eigen::Vector3d step = pose.inverse() * next.translation();
             EXPECT_GT(step.x(), -1e-6) << "member " << m << " backs up at " << t;
             EXPECT_LT(step.x(), 2);

@@ -1,0 +1,18 @@
+#pragma once
+
+namespace delio::synth {
+/** Where the vehicle is, seen from above, and how far along its path. */
+struct PlanPose {
+    double s = 0, x = 0, y = 0, yaw = 0;
+};
+
+/** The vehicle's way through time. */
+class Motion {
+ public:
+    virtual ~Motion() = default;
+    /** `time_s`: from scan 0; a little before it and after the end, too. */
+    virtual PlanPose at(double time_s) const = 0;
+    /** Until when it is known. */
+    virtual double duration_s() const = 0;
+};
+}  // namespace delio::synth

@@ -1,0 +1,63 @@
+#pragma once
+#include <vector>
+
+#include "lane.h"
+
+namespace delio::synth {
+/** How the vehicle drives on a kind of road. */
+struct DrivingStyle {
+    double slowest_m_s, fastest_m_s;  //!< of the speeds at which it cruises
+    double maxYawRate_rad_s;
+    double movingStart;    //!< how likely the drive begins in full motion
+    double stopSpacing_m;  //!< about one stop of some seconds in so many metres; 0: none
+};
+
+/** What distinguishes one kind of road from another: lanes, cross-section, marks, and the land
+ *  beside it. Both sides are alike; `away` is the distance from the centre line. */
+struct RoadProfile {
+    struct Corner {
+        double away_m, height_m;
+    };
+    struct Band {
+        double until_m, reflectivity;
+    };
+    struct Mark {
+        double away_m, width_m;   //!< its middle
+        double dash_m, period_m;  //!< equal: a line without gaps
+    };
+    struct Wave {
+        double amplitude_m, length_m;
+    };
+
+    std::vector<Lane> lanes;      //!< the vehicle's own is the first
+    std::vector<Corner> section;  //!< from the centre line outwards; level beyond the last
+    std::vector<Band> bands;
+    std::vector<Mark> marks;
+    double half_m;                //!< beyond, the land's coarser triangles begin
+    double landReach_m;           //!< where the world ends
+    double landStep_m;            //!< between the land's vertices near the road
+    std::vector<Wave> waves;      //!< hills, settling, and what one feels in the seat: at most 8
+    double grade;                 //!< the whole world slopes along +x
+    double bank_m;                //!< the land beside the road rises or falls by so much ...
+    double bankFrom_m, bankTo_m;  //!< ... between these
+    double roughness_m;           //!< of the land, at the distance between the points of a scan
+    DrivingStyle style;
+
+    double height(double away_m) const;
+    double reflectivity(double s, double away_m) const;
+    /** Where the road's mesh needs vertices, from the centre line outwards. */
+    std::vector<double> columns() const;
+};
+
+/** Two lanes with parking strips, kerbs and sidewalks. */
+RoadProfile urbanProfile();
+/** The same; round a block the turns are tighter. */
+RoadProfile blockProfile();
+/** Two lanes without kerbs between fields on slopes. */
+RoadProfile ruralProfile();
+/** Three lanes and a hard shoulder in each direction; the centre line is in the middle of the
+ *  median. */
+RoadProfile highwayProfile();
+/** Two lanes and walkways on an even grade. */
+RoadProfile tunnelProfile();
+}  // namespace delio::synth
