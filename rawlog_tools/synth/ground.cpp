@@ -46,7 +46,7 @@ class SheetBuilder {
             const Eigen::Vector2d place = road_.point(s, side);
             const auto nearest = road_.nearest(place);
             const bool sunk = nearest.distance < sheet_.sunkWithin_m;
-            const double z = road_.height(place) - (sunk ? 0.8 : 0);
+            const double z = road_.height(place, nearest.distance) - (sunk ? 0.8 : 0);
             const double own = std::min(std::abs(side), Road::kReach_m);
             now_.push_back({mesh_.addVertex({place.x(), place.y(), z}),
                             nearest.beyondEnd || own - nearest.distance < 0.3});

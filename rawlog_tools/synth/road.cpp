@@ -60,8 +60,8 @@ Eigen::Vector2d Road::point(double s, double side_m) const {
     return {at.x - d * std::sin(at.yaw), at.y + d * std::cos(at.yaw)};
 }
 
-double Road::height(const Eigen::Vector2d& place) const {
-    const double away = distance(place);
+double Road::height(const Eigen::Vector2d& place, double away_m) const {
+    const double away = std::abs(away_m);
     return terrain_.height(place) + profile_.height(away) + terrain_.besideRoad(place, away);
 }
 

@@ -53,7 +53,9 @@ class Road {
     /** False where an earlier part of the path runs along the same road. */
     bool owns(double s) const;
     /** Of the ground. */
-    double height(const Eigen::Vector2d& place) const;
+    double height(const Eigen::Vector2d& place) const { return height(place, distance(place)); }
+    /** The same where it is known how far `place` is from the nearest road. */
+    double height(const Eigen::Vector2d& place, double away_m) const;
     /** The parts of the path that own a road within `reach_m` of `place`, by their stations. */
     std::vector<double> stationsNear(const Eigen::Vector2d& place, double reach_m) const;
 

@@ -93,6 +93,8 @@ int main(int argc, char** argv) {
         if (std::find(names.begin(), names.end(), scene.getValue()) == names.end())
             return badUsage("there is no scene '" + scene.getValue() +
                             "'; there are: " + sceneOptions());
+        if (trajectory.isSet() && trajectory.getValue().empty())
+            return badUsage("--trajectory needs the name of a file");
         if (trajectory.isSet() && !takesTrajectory(scene.getValue()))
             return badUsage("--trajectory does not go with --scene " + scene.getValue() +
                             ", which has a path of its own");

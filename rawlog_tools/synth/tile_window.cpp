@@ -4,7 +4,7 @@
 
 namespace delio::synth {
 void TileWindow::moveTo(double s) {
-    const auto wanted = scene_.tilesNear(s, kReach_m);
+    const auto wanted = scene_.tilesNear(s, reach_m_);
     if (wanted == held_) return;
     for (const int index : held_)
         if (wanted.count(index) == 0 && caster_.has(index)) caster_.remove(index);

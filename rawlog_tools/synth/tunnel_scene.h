@@ -3,10 +3,11 @@
 
 namespace delio::synth {
 /** A straight tunnel with smooth walls on an even grade: inside, scans do not tell how far one has
- *  gone. The drive begins in it, already in motion. Behind its end lies open country. */
+ *  gone. The drive begins in it, already in motion, its mouth out of sight; after 5 km it leads out
+ *  into open country. */
 class TunnelScene : public RuralScene {
  public:
-    static constexpr double kBegin_m = -400, kEnd_m = 5000;  //!< stations of its portals
+    static constexpr double kBegin_m = -kPathMargin_m, kEnd_m = 5000;  //!< stations of its mouths
 
     using RuralScene::RuralScene;
     Mesh tile(int index) const override;

@@ -218,7 +218,6 @@ TEST(Synth2rawlog, ABadCommandLineIsOneLineAndExit2) {
         EXPECT_TRUE(fs::is_empty(folder.path()));
     };
     expectRefused({"--scene", "moon", "--scans", "3"}, "urban");
-    expectRefused({"--scene", "rural", "--scans", "3"}, "urban");
     expectRefused({"--scene", "urban", "--scans", "3", "--sensor", "vlp1"}, "hdl64e");
     expectRefused({"--scene", "urban", "--scans", "0"}, "--scans");
     expectRefused({"--scene", "urban", "--scans", "x"}, "scans");

@@ -19,7 +19,7 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 /** Looks ahead from all over the vehicle's front, every `every` scans. */
 void expectFreeWay(const Scene& scene, const Drive& drive, std::size_t every) {
     RayCaster caster;
-    TileWindow window(scene, caster);
+    TileWindow window(scene, caster, 15);
     for (std::size_t i = 0; i + every < drive.scans(); i += every) {
         window.moveTo(drive.station(i));
         const auto pose = drive.lidarPose(i);
@@ -41,7 +41,7 @@ void expectFreeWay(const Scene& scene, const Drive& drive, std::size_t every) {
 /** One ground, not two: straight down from above, all about the vehicle. */
 void expectOneGround(const Scene& scene, const Drive& drive, std::size_t every) {
     RayCaster caster;
-    TileWindow window(scene, caster);
+    TileWindow window(scene, caster, 15);
     const Road& road = scene.road();
     for (std::size_t i = 0; i < drive.scans(); i += every) {
         window.moveTo(drive.station(i));
@@ -71,8 +71,8 @@ TEST_P(SceneOf, LeavesTheRoadToTheVehicle) {
 }
 
 TEST_P(SceneOf, HasOneGround) {
-    const auto scene = test::sceneOf(GetParam(), 3, 250);
-    expectOneGround(*scene, Drive(scene->road(), 250, 3), 10);
+    const auto scene = test::sceneOf(GetParam(), 3, 200);
+    expectOneGround(*scene, Drive(scene->road(), 200, 3), 8);
 }
 
 TEST_P(SceneOf, BeginsAlikeHoweverLongTheDrive) {
