@@ -5,13 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
+
+#include "scene_support.h"
 
 namespace {
 using namespace delio::synth;
 
+/** A street, or another road. */
 struct Way {
-    explicit Way(std::uint64_t seed = 4)
-        : road(urbanPath(seed, 900), seed), drive(road, 600, seed) {}
+    explicit Way(std::uint64_t seed = 4) : Way(Road(urbanPath(seed, 900), seed), 600, seed) {}
+    Way(Road given, std::size_t scans, std::uint64_t seed)
+        : road(std::move(given)), drive(road, scans, seed) {}
     Road road;
     Drive drive;
 };
@@ -43,12 +48,18 @@ double distanceTo(const Eigen::Isometry3d& pose, const Eigen::AlignedBox3d& box,
     return box.exteriorDistance(pose.inverse() * from);
 }
 
-class SynthTrafficOf : public testing::TestWithParam<std::uint64_t> {};
-INSTANTIATE_TEST_SUITE_P(Seeds, SynthTrafficOf, testing::Values(1, 2, 3, 4, 5, 6));
+using SceneAndSeed = std::tuple<const char*, std::uint64_t>;
+class SynthTrafficOf : public testing::TestWithParam<SceneAndSeed> {};
+INSTANTIATE_TEST_SUITE_P(Synth, SynthTrafficOf,
+                         testing::Combine(testing::Values("urban", "rural", "highway", "loop",
+                                                          "tunnel"),
+                                          testing::Values(1, 2, 3)));
 
 TEST_P(SynthTrafficOf, NobodyCollidesOnALongDrive) {
-    const Way way(GetParam());
-    const Traffic traffic(way.road, way.drive, 40, GetParam());
+    const auto [name, seed] = GetParam();
+    const auto scene = delio::test::sceneOf(name, seed, 900);
+    Way way(scene->road(), 900, seed);
+    const Traffic traffic(way.road, way.drive, 40, seed);
     ASSERT_EQ(traffic.size(), 40U);
     const Eigen::AlignedBox3d own(Eigen::Vector3d(-2.3, -0.9, 0), Eigen::Vector3d(2.3, 0.9, 1.5));
     for (std::size_t scan = 0; scan < way.drive.scans(); scan += 3) {
