@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <tuple>
 
 #include "scene_support.h"
@@ -48,7 +49,7 @@ double distanceTo(const Eigen::Isometry3d& pose, const Eigen::AlignedBox3d& box,
     return box.exteriorDistance(pose.inverse() * from);
 }
 
-using SceneAndSeed = std::tuple<const char*, std::uint64_t>;
+using SceneAndSeed = std::tuple<std::string, std::uint64_t>;
 class SynthTrafficOf : public testing::TestWithParam<SceneAndSeed> {};
 INSTANTIATE_TEST_SUITE_P(Synth, SynthTrafficOf,
                          testing::Combine(testing::Values("urban", "rural", "highway", "loop",
