@@ -27,7 +27,7 @@ bool goesInRounds(const Road& road) {
 }  // namespace
 
 std::vector<Traffic::Stripe> Traffic::stripesOf(const Road& road, Random random) {
-    const auto lanes = road.lanes();
+    const auto& lanes = road.lanes();
     std::vector<Stripe> stripes = {{RoadUserKind::kCar, lanes[0].side_m, 1, 0, 80, 4}};
     bool beside = false;
     for (std::size_t i = 1; i < lanes.size(); ++i) {
@@ -93,10 +93,10 @@ Traffic::Member Traffic::makeMember(std::size_t stripeNumber, std::size_t number
     member.phase = random.uniform(0, 2 * kPi);
     member.swing_m = 0;
     member.sway_m = random.uniform(-1, 1) * (stripe.kind == RoadUserKind::kPedestrian ? 0.1 : 0.04);
-    const auto rank = static_cast<double>(number / 2);
-    const double end = number % 2 == 0 ? 1 : -1;  // before or behind
+    const std::size_t pair = number / 2;  // one before, one behind
+    const double end = number % 2 == 0 ? 1 : -1;
     if (stripe.wave_m > 0 && stripeNumber == 0) {
-        member.ahead_m = end * (kNearest_m + kQueue_m * rank);
+        member.ahead_m = end * (kNearest_m + kQueue_m * static_cast<double>(pair));
         member.swing_m = number < 2 ? 0.8 : 2;
     } else if (stripe.wave_m > 0) {
         member.ahead_m =
@@ -135,7 +135,7 @@ Eigen::Isometry3d Traffic::pose(std::size_t index, double time_s) const {
     const Member& member = members_[index];
     const Stripe& stripe = stripes_[member.stripe];
     const double s = drive_.stationAt(time_s) + ahead(index, time_s);
-    const Eigen::Isometry3d along =
+    Eigen::Isometry3d along =
         poseOnRoad(road_, s, stripe.side_m + member.sway_m, member.looks.footprint);
     if (stripe.direction > 0) return along;
     return along * Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitZ());
