@@ -24,8 +24,8 @@ Corners drawCorners(std::uint64_t seed) {
     const auto about = [&](double x, double y) {
         return Vector2d(x + random.uniform(-3, 3), y + random.uniform(-3, 3));
     };
-    const double begin = -random.uniform(18, 28), length = random.uniform(78, 96);
-    const double left = random.uniform(62, 80), right = random.uniform(62, 80);
+    const double begin = -random.uniform(18, 26), length = random.uniform(66, 76);
+    const double left = random.uniform(54, 62), right = random.uniform(54, 62);
     Corners corners;
     corners[kStart] = {begin, 0};
     corners[kEnd] = {begin + length, 0};

@@ -4,7 +4,7 @@
 #include "path.h"
 
 namespace delio::synth {
-/** Round two blocks that share a street, the first street of the drive. One round of about 1 km:
+/** Round two blocks that share a street, the first street of the drive. One round of about 900 m:
  *  round the left block and through the shared street again in the same direction, then round both
  *  blocks and through it in the opposite one, and round both once more. `side_m`: of the
  *  vehicle from the centre line of the streets, which repeat exactly. As many rounds as `length_m`

@@ -1,11 +1,13 @@
 #include "make_scene.h"
 
+#include <cmath>
 #include <functional>
 #include <stdexcept>
 #include <utility>
 
 #include "block_path.h"
 #include "country_paths.h"
+#include "delio/error.h"
 #include "drive.h"
 #include "highway_scene.h"
 #include "recording.h"
@@ -45,6 +47,15 @@ Kind kindOf(const std::string& name) {
         if (kind.name == name) return kind;
     throw std::invalid_argument("no scene '" + name + "'");
 }
+/** The middle of a wide road lies far to the left of the vehicle: in a sharp turn it would run
+ *  backwards. */
+void refuseSharpTurns(const Recording& recording, const Kind& kind, const std::string& file) {
+    const double toCentre_m = -kind.profile.lanes.front().side_m;
+    for (double s = 0; s < recording.path().end() - 2 * kPathMargin_m; s += 1)
+        if (recording.path().at(s).curvature * toCentre_m > 0.5)
+            throw Error("'" + file + "' turns too sharply for a " + kind.name + ", " +
+                        std::to_string(std::lround(s)) + " m from its start; use --scene urban");
+}
 }  // namespace
 
 std::vector<std::string> sceneNames() {
@@ -60,6 +71,7 @@ std::unique_ptr<Scene> makeScene(const SceneRequest& request) {
     if (!request.trajectory.empty()) {
         const auto recording =
             std::make_shared<const Recording>(request.trajectory, request.lidarToCam0);
+        refuseSharpTurns(*recording, kind, request.trajectory);
         return kind.build(Road(recording->path(), request.seed, kind.profile, recording),
                           request.seed);
     }

@@ -1,5 +1,6 @@
 #include "recording.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -67,14 +68,14 @@ std::vector<PlanPose> readPlan(const std::string& file, const CPose3D& Tr) {
 
 /** By a parabola through seven poses, which leaves steady turns and accelerations as they are. */
 std::vector<PlanPose> smoothed(const std::vector<PlanPose>& plan) {
-    constexpr int kHalf = 3;
+    constexpr std::size_t kHalf = 3;
     constexpr double kWeight[] = {7.0 / 21, 6.0 / 21, 3.0 / 21, -2.0 / 21};
     auto result = plan;
     for (std::size_t i = kHalf; i + kHalf < plan.size(); ++i) {
         PlanPose sum;
-        for (int k = -kHalf; k <= kHalf; ++k) {
-            const PlanPose& p = plan[static_cast<std::size_t>(static_cast<int>(i) + k)];
-            const double weight = kWeight[std::abs(k)];
+        for (std::size_t k = 0; k <= 2 * kHalf; ++k) {
+            const PlanPose& p = plan[i + k - kHalf];
+            const double weight = kWeight[k > kHalf ? k - kHalf : kHalf - k];
             sum.x += weight * p.x;
             sum.y += weight * p.y;
             sum.yaw += weight * p.yaw;
@@ -90,15 +91,24 @@ std::vector<Station> knotsOf(const std::vector<PlanPose>& plan) {
     for (const auto& p : plan)
         if (std::hypot(p.x - raw.back().x, p.y - raw.back().y) >= kKnot_m)
             raw.push_back({0, p.x, p.y, 0, 0});
+    // Before the first and behind the last it would go on as seen in a point mirror.
+    const auto last = static_cast<int>(raw.size()) - 1;
+    const auto place = [&](int i) -> Eigen::Vector2d {
+        const auto at = [&](int k) {
+            const Station& knot = raw[static_cast<std::size_t>(std::clamp(k, 0, last))];
+            return Eigen::Vector2d(knot.x, knot.y);
+        };
+        if (i < 0) return 2 * at(0) - at(-i);
+        if (i > last) return 2 * at(last) - at(2 * last - i);
+        return at(i);
+    };
     auto knots = raw;
-    constexpr double kWeight[] = {0.4, 0.24, 0.06};
-    for (std::size_t i = 2; i + 2 < raw.size(); ++i) {
-        knots[i].x = kWeight[0] * raw[i].x;
-        knots[i].y = kWeight[0] * raw[i].y;
-        for (std::size_t k = 1; k <= 2; ++k) {
-            knots[i].x += kWeight[k] * (raw[i - k].x + raw[i + k].x);
-            knots[i].y += kWeight[k] * (raw[i - k].y + raw[i + k].y);
-        }
+    constexpr double kWeight[] = {0.28, 0.22, 0.11, 0.03};
+    for (int i = 0; i <= last; ++i) {
+        Eigen::Vector2d sum = kWeight[0] * place(i);
+        for (int k = 1; k <= 3; ++k) sum += kWeight[k] * (place(i - k) + place(i + k));
+        knots[static_cast<std::size_t>(i)].x = sum.x();
+        knots[static_cast<std::size_t>(i)].y = sum.y();
     }
     return knots;
 }

@@ -63,7 +63,7 @@ RoadProfile urbanProfile() {
 
 RoadProfile blockProfile() {
     RoadProfile p = urbanProfile();
-    p.style = {8, 11, 0.59, 0.35, 260};
+    p.style = {9, 12, 0.59, 0.35, 320};
     return p;
 }
 

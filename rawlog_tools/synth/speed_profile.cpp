@@ -12,6 +12,7 @@ namespace {
 constexpr double kStep_m = 0.25;
 constexpr double kAcceleration_m_s2 = 1.7;
 constexpr double kBraking_m_s2 = 2.0;
+constexpr double kSideways_m_s2 = 4.0;  // what passengers put up with in a bend
 
 /** Which steps are stops, and for how many seconds: at a light, behind others. */
 std::map<std::size_t, double> drawStops(double spacing_m, double end_m, std::uint64_t seed) {
@@ -35,7 +36,8 @@ std::vector<double> wantedSpeed(const Path& path, const DrivingStyle& style, Ran
             until = s + random.uniform(60, 250);
         }
         const double curvature = std::max(1e-6, std::abs(path.at(s).curvature));
-        speed.push_back(std::min(mood * cruise, style.maxYawRate_rad_s / curvature));
+        speed.push_back(std::min({mood * cruise, style.maxYawRate_rad_s / curvature,
+                                  std::sqrt(kSideways_m_s2 / curvature)}));
     }
     return speed;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace delio::synth {
 namespace {
@@ -18,11 +19,16 @@ double spacing(RoadUserKind kind) { return longest_m(kind) + (kind == RoadUserKi
 double wrapped(double value, double reach) {
     return value - 2 * reach * std::floor((value + reach) / (2 * reach));
 }
-/** The path comes back to a road that it has been on. */
-bool goesInRounds(const Road& road) {
-    for (double s = 0; s < road.path().end(); s += 5)
-        if (!road.owns(s)) return true;
-    return false;
+/** How far ahead and behind there is traffic. */
+double reachOn(const Road& road) {
+    constexpr double kJustLeft_m = 40;  // that is still the same stretch
+    double shortestRound_m = std::numeric_limits<double>::max();
+    for (double s = 0; s < road.path().end(); s += 5) {
+        if (road.owns(s)) continue;
+        for (const double before : road.stationsNear(road.point(s, 0), 1))
+            if (s - before > kJustLeft_m) shortestRound_m = std::min(shortestRound_m, s - before);
+    }
+    return std::clamp(0.4 * shortestRound_m, Traffic::kLeastReach_m, Traffic::kReach_m);
 }
 }  // namespace
 
@@ -55,7 +61,7 @@ Traffic::Traffic(const Road& road, const Drive& drive, std::size_t count, std::u
     : road_(road),
       drive_(drive),
       seed_(seed),
-      reach_m_(goesInRounds(road) ? kReachInRounds_m : kReach_m),
+      reach_m_(reachOn(road)),
       stripes_(stripesOf(road, {seed, kStripeKey})) {
     std::vector<std::size_t> stripeOf;
     for (std::size_t i = 0; i < count; ++i) {

@@ -23,9 +23,10 @@ class Traffic {
     /** Metres along the road, ahead and behind: what lies beyond is seen by no sensor on a road
      * that does not turn back. */
     static constexpr double kReach_m = 180;
-    /** On a road that comes back to where it was before (round a block): less than half the way
-     *  round, so that nobody meets those of the next round. */
-    static constexpr double kReachInRounds_m = 115;
+    /** The same where the road comes back to itself, round a block or after a turn: less than half
+     *  of the shortest way round, so that those of one round do not meet those of the next; but not
+     *  below kLeastReach_m, so that on a drive that turns back at once some may meet. */
+    static constexpr double kLeastReach_m = 60;
 
     /** `count` of them; more than the lanes hold with room between them are left out. */
     Traffic(const Road& road, const Drive& drive, std::size_t count, std::uint64_t seed);

@@ -139,6 +139,10 @@ TEST_F(SynthRecording, IsDrivenOnTimeAndCrossesItselfOnOneHeight) {
     const Drive drive(scene->road(), 100000, 4);
     // Where the eight changes sides, the heading bends from one scan to the next.
     expectOnTime(drive, file, 0.06, 0.6);
+    for (std::size_t i = 1; i < drive.scans(); ++i) {  // no kerb lies across the way
+        const auto step = drive.lidarPose(i - 1).inverse() * drive.lidarPose(i);
+        ASSERT_LT(std::acos(std::min(1.0, step(2, 2))), M_PI / 180) << i;
+    }
     std::size_t compared = 0;
     for (const auto& meeting : meetings(drive, 0.1)) {
         const auto a = drive.lidarPose(meeting.early), b = drive.lidarPose(meeting.late);
@@ -223,5 +227,18 @@ TEST_F(SynthRecording, WhatNoVehicleDrivesIsRefused) {
     for (int i = 0; i < 20; ++i) sideways += "1 0 0 " + std::to_string(i) + " 0 1 0 0 0 0 1 0\n";
     expectRefused(sideways, "sideways");
     EXPECT_THROW(Recording(folder_ / "none.txt", test::kittiAxes()), Error);
+}
+
+TEST_F(SynthRecording, AHighwayDoesNotTurnSharply) {
+    io::Trajectory poses;
+    for (int i = 0; i < 40; ++i) {
+        const double angle = 0.05 * i, radius = 10;
+        poses.poses.push_back(mrpt::poses::CPose3D(radius * std::sin(angle),
+                                                   radius * (1 - std::cos(angle)), 0, angle, 0, 0));
+    }
+    const std::string file = folder_ / "sharp.txt";
+    io::writeKitti(io::lidarToCam0(poses, test::kittiAxes()), file);
+    EXPECT_NO_THROW(test::sceneOf("urban", 1, 40, file));
+    EXPECT_THROW(test::sceneOf("highway", 1, 40, file), Error);
 }
 }  // namespace

@@ -54,14 +54,14 @@ class SynthTrafficOf : public testing::TestWithParam<SceneAndSeed> {};
 INSTANTIATE_TEST_SUITE_P(Synth, SynthTrafficOf,
                          testing::Combine(testing::Values("urban", "rural", "highway", "loop",
                                                           "tunnel"),
-                                          testing::Values(1, 2, 3)));
+                                          testing::Values(1, 2, 3, 4)));
 
 TEST_P(SynthTrafficOf, NobodyCollidesOnALongDrive) {
     const auto [name, seed] = GetParam();
     const auto scene = delio::test::sceneOf(name, seed, 900);
     Way way(scene->road(), 900, seed);
-    const Traffic traffic(way.road, way.drive, 40, seed);
-    ASSERT_EQ(traffic.size(), 40U);
+    const Traffic traffic(way.road, way.drive, 30, seed);
+    ASSERT_EQ(traffic.size(), 30U);
     const Eigen::AlignedBox3d own(Eigen::Vector3d(-2.3, -0.9, 0), Eigen::Vector3d(2.3, 0.9, 1.5));
     for (std::size_t scan = 0; scan < way.drive.scans(); scan += 3) {
         const double t = kScanPeriod_s * static_cast<double>(scan);
