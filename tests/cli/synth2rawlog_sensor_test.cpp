@@ -204,6 +204,14 @@ TEST(Synth2rawlogSensor, FaultsAreInTheRawlogAsListed) {
     for (const auto* kind : {"none", "dropped", "repeated", "empty"}) EXPECT_GT(kinds[kind], 1);
 }
 
+TEST(Synth2rawlogSensor, SaysSoWhereTheRoadIsFull) {
+    const test::TemporaryFolder folder;
+    const auto run =
+        synth(folder / "d.rawlog", {"--scans", "1", "--sensor", "vlp16", "--movers", "5000"});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_NE(run.err.find("warning: the road has room for"), std::string::npos) << run.err;
+}
+
 TEST(Synth2rawlogSensor, GoesToKittiAndBack) {
     const test::TemporaryFolder folder;
     ASSERT_EQ(synth(folder / "d.rawlog", {"--scans", "4", "--movers", "6", "--distort", "--labels",
