@@ -70,8 +70,7 @@ void RayCaster::commit() {
     }
 }
 
-Hit RayCaster::exactHit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                        unsigned geometry, unsigned triangle, double found) const {
+Hit RayCaster::exactHit(const Ray& ray, unsigned geometry, unsigned triangle, double found) const {
     const Mesh& mesh = *byGeometry_[geometry];
     const auto& t = mesh.triangles()[triangle];
     const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
@@ -79,28 +78,35 @@ Hit RayCaster::exactHit(const Eigen::Vector3d& origin, const Eigen::Vector3d& di
     };
     const Eigen::Vector3d a = corner(0);
     const Eigen::Vector3d normal = (corner(1) - a).cross(corner(2) - a).normalized();
-    const double along = normal.dot(direction);
+    const double along = normal.dot(ray.direction);
     Hit hit{found, std::abs(along), t.reflectivity};
     // A triangle seen edge-on has no well-defined crossing: Embree's stands.
-    const double exact = normal.dot(a - origin) / along;
+    const double exact = normal.dot(a - ray.origin) / along;
     if (std::abs(exact - found) < 0.01) hit.range = exact;
     return hit;
 }
 
 void RayCaster::cast(const Eigen::Vector3d& origin, const std::vector<Eigen::Vector3d>& directions,
                      double maxRange, std::vector<Hit>& hits) const {
+    std::vector<Ray> rays;
+    rays.reserve(directions.size());
+    for (const auto& direction : directions) rays.push_back({origin, direction});
+    cast(rays, maxRange, hits);
+}
+
+void RayCaster::cast(const std::vector<Ray>& all, double maxRange, std::vector<Hit>& hits) const {
     constexpr std::size_t kPacket = 4;  // what SSE holds
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    const Eigen::Vector3f from = origin.cast<float>();
-    hits.assign(directions.size(), Hit{});
-    for (std::size_t begin = 0; begin < directions.size(); begin += kPacket) {
-        const std::size_t count = std::min(kPacket, directions.size() - begin);
+    hits.assign(all.size(), Hit{});
+    for (std::size_t begin = 0; begin < all.size(); begin += kPacket) {
+        const std::size_t count = std::min(kPacket, all.size() - begin);
         alignas(16) RTCRayHit4 rays{};
         alignas(16) int valid[kPacket] = {};
         for (std::size_t i = 0; i < count; ++i) {
-            const Eigen::Vector3f d = directions[begin + i].cast<float>();
+            const Eigen::Vector3f from = all[begin + i].origin.cast<float>();
+            const Eigen::Vector3f d = all[begin + i].direction.cast<float>();
             valid[i] = -1;
             rays.ray.org_x[i] = from.x();
             rays.ray.org_y[i] = from.y();
@@ -115,8 +121,8 @@ void RayCaster::cast(const Eigen::Vector3d& origin, const std::vector<Eigen::Vec
         rtcIntersect4(valid, scene_, &context, &rays);
         for (std::size_t i = 0; i < count; ++i)
             if (rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
-                hits[begin + i] = exactHit(origin, directions[begin + i], rays.hit.geomID[i],
-                                           rays.hit.primID[i], rays.ray.tfar[i]);
+                hits[begin + i] = exactHit(all[begin + i], rays.hit.geomID[i], rays.hit.primID[i],
+                                           rays.ray.tfar[i]);
     }
 }
 }  // namespace delio::synth

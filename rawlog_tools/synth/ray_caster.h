@@ -15,6 +15,11 @@ struct Hit {
     double range = 0;
     double cosIncidence = 0;
     double reflectivity = 0;
+    bool moving = false;  //!< it was a vehicle or a person of the traffic
+};
+
+struct Ray {
+    Eigen::Vector3d origin, direction;  //!< the direction is a unit vector
 };
 
 /** Finds the first triangle on a ray, with Embree. The instruction set and the building thread are
@@ -35,7 +40,9 @@ class RayCaster {
     /** To be called after meshes were added or removed, before rays are cast. */
     void commit();
 
-    /** Rays from `origin` along `directions` (unit vectors): may be called by several threads. */
+    /** May be called by several threads. */
+    void cast(const std::vector<Ray>& rays, double maxRange, std::vector<Hit>& hits) const;
+    /** The same for rays from one place. */
     void cast(const Eigen::Vector3d& origin, const std::vector<Eigen::Vector3d>& directions,
               double maxRange, std::vector<Hit>& hits) const;
 
@@ -44,8 +51,7 @@ class RayCaster {
         unsigned geometry;
         Mesh mesh;
     };
-    Hit exactHit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, unsigned geometry,
-                 unsigned triangle, double found) const;
+    Hit exactHit(const Ray& ray, unsigned geometry, unsigned triangle, double found) const;
 
     RTCDeviceTy* device_;
     RTCSceneTy* scene_;

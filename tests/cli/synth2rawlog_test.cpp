@@ -113,7 +113,7 @@ TEST(Synth2rawlog, GivesTheSameBytesForAnyNumberOfThreads) {
                 << name;
         ++files;
     }
-    EXPECT_EQ(files, 4U + 5U);
+    EXPECT_EQ(files, 2 * 4U + 6U);  // points and rings of each scan; rawlog and side files
 }
 
 TEST(Synth2rawlog, SideFilesAreConsistent) {
@@ -191,7 +191,9 @@ TEST(Synth2rawlog, EmbeddedPointsAreTheSame) {
     const test::TemporaryFolder folder;
     ASSERT_EQ(synth(folder / "a.rawlog", {"--scans", "2"}).exitCode, 0);
     ASSERT_EQ(synth(folder / "b.rawlog", {"--scans", "2", "--embed"}).exitCode, 0);
-    EXPECT_FALSE(fs::exists(folder / "b_Images"));
+    EXPECT_FALSE(fs::exists(folder / "b_Images/000000.bin"));
+    EXPECT_EQ(test::readText(folder / "a_Images/000001.ring"),
+              test::readText(folder / "b_Images/000001.ring"));
     io::ScanSource external(folder / "a.rawlog"), embedded(folder / "b.rawlog");
     for (int i = 0; i < 2; ++i) {
         const auto a = external.next(), b = embedded.next();
@@ -216,12 +218,17 @@ TEST(Synth2rawlog, ABadCommandLineIsOneLineAndExit2) {
         EXPECT_TRUE(fs::is_empty(folder.path()));
     };
     expectRefused({"--scene", "moon", "--scans", "3"}, "urban");
-    expectRefused({"--scene", "urban", "--scans", "3", "--sensor", "vlp16"}, "hdl64e");
+    expectRefused({"--scene", "urban", "--scans", "3", "--sensor", "vlp1"}, "hdl64e");
     expectRefused({"--scene", "urban", "--scans", "0"}, "--scans");
     expectRefused({"--scene", "urban", "--scans", "x"}, "scans");
     expectRefused({"--scene", "urban"}, "required");
     expectRefused({"--scene", "urban", "--scans", "3", "--noise", "-0.1"}, "--noise");
     expectRefused({"--scene", "urban", "--scans", "3", "--noise", "nan"}, "noise");
+    expectRefused({"--scene", "urban", "--scans", "3", "--ring-bias", "-0.1"}, "--ring-bias");
+    expectRefused({"--scene", "urban", "--scans", "3", "--movers", "-1"}, "--movers");
+    expectRefused({"--scene", "urban", "--scans", "3", "--drop-rate", "1"}, "--drop-rate");
+    expectRefused({"--scene", "urban", "--scans", "3", "--repeat-rate", "-0.1"}, "--repeat-rate");
+    expectRefused({"--scene", "urban", "--scans", "3", "--empty-rate", "nan"}, "empty-rate");
     expectRefused({"--scene", "urban", "--scans", "3", "--threads", "-1"}, "--threads");
     expectRefused({"--scene", "urban", "--scans", "3", "--tunnel"}, "tunnel");
 }

@@ -107,7 +107,8 @@ std::string RawlogWriter::extraFile(const std::string& extension) {
 }
 
 void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
-                          const std::string& calibText, const std::string& posesText) {
+                          const std::string& calibText, const std::string& posesText,
+                          const std::string& faultsText) {
     // A full disk may show only now: everything that was handed over has to be in the file.
     const auto written = out_.getPosition();
     out_.close();
@@ -123,7 +124,7 @@ void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
     writeText(".times.txt", timesText);
     writeText(".calib.txt", calibText);
     writeText(".poses.txt", posesText);
-    writeText(".faults.tsv", "");
+    writeText(".faults.tsv", faultsText);
     writeDriveMeta(meta, path_);
     std::error_code fault;
     fs::remove_all(images_, fault);

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "drive.h"
+#include "echo.h"
 #include "random.h"
 #include "ray_caster.h"
-#include "scanner.h"
 #include "sensor_model.h"
 #include "tile_window.h"
 #include "urban_scene.h"
