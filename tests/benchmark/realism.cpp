@@ -1,4 +1,4 @@
-// realism: what can be counted in the scans of several drives, side by side: how close are
+// benchmark_realism: what can be counted in the scans of several drives, side by side: how close are
 // synthetic drives to real ones? Prints a Markdown table. Needs OUT.poses.txt and OUT.calib.txt
 // beside each rawlog.
 #include <mrpt/poses/CPose3D.h>
@@ -71,7 +71,7 @@ void print(const std::vector<std::string>& names, const std::vector<Rows>& drive
 
 int main(int argc, char** argv) {
     if (argc < 2) {
-        std::fprintf(stderr, "usage: realism DRIVE.rawlog...\n");
+        std::fprintf(stderr, "usage: benchmark_realism DRIVE.rawlog...\n");
         return 2;
     }
     try {
@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
         }
         print(names, drives);
     } catch (const std::exception& e) {
-        std::fprintf(stderr, "realism: %s\n", plainMessage(e).c_str());
+        std::fprintf(stderr, "benchmark_realism: %s\n", plainMessage(e).c_str());
         return 1;
     }
     return 0;

@@ -53,9 +53,10 @@ void print(const char* what, std::vector<double> errors, const char* unit) {
 struct Errors {
     std::vector<double> rotation, predictedRotation, translation, givenRotation;
     std::vector<double> coupledRotation, coupledTranslation;
-    std::vector<double> rotationNes, translationNes;  //!< normalised squared errors, 3 each
-    double iterations = 0;                            //!< of the pattern's registration
-    double along = 0, givenAlong = 0, path = 0;       //!< signed, along the true motion
+    std::vector<double> rotationNes, translationNes;         //!< normalised squared errors, 3 each
+    Eigen::Vector3d meanRotation = Eigen::Vector3d::Zero();  //!< deg, signed, sensor's axes
+    double iterations = 0;                                   //!< of the pattern's registration
+    double along = 0, givenAlong = 0, path = 0;              //!< signed, along the true motion
 };
 
 /** Squared error in units of its covariance. */
@@ -98,6 +99,7 @@ void compare(const CPose3D& truth, const CPose3D& predicted, const OdometryResul
     const Eigen::Matrix<double, 6, 6> covariance = result.increment.covariance.asEigen();
     const Eigen::Matrix3d F = found.getRotationMatrix().asEigen();
     const Eigen::AngleAxisd off(F.transpose() * R);
+    errors.meanRotation += off.angle() * off.axis() * 180 / M_PI;
     errors.rotationNes.push_back(
         normalised(off.angle() * off.axis(), covariance.bottomRightCorner<3, 3>()));
     errors.translationNes.push_back(
@@ -135,6 +137,9 @@ void run(const std::string& rawlog, Options options) {
                 100 * translationOf((-drivenTruly) + driven).norm() / errors.path);
     print("rotation", errors.rotation, "deg");
     print("rotation, of the prediction", errors.predictedRotation, "deg");
+    const Eigen::Vector3d bias = errors.meanRotation / static_cast<double>(scans - 1);
+    std::printf("  mean rotation error about x, y, z %+.4f %+.4f %+.4f deg\n", bias.x(), bias.y(),
+                bias.z());
     print("translation", errors.translation, "m");
     print("translation, true rotation given", errors.givenRotation, "m");
     print("coupled: rotation", errors.coupledRotation, "deg");

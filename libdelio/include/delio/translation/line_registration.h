@@ -20,7 +20,7 @@ struct LineRegistrationOptions : public StageOptions {
     unsigned max_iterations = 40;
     double converged = 0.001;
     unsigned min_matches = 100;
-    double min_observability = 0.02;
+    double min_observability = 0.06;
     double independent_share = 0.25;
     double prior_sigma = 0.5;
     double search_radius = 3;
