@@ -15,7 +15,7 @@ constexpr double kLeastResidual_m = 1e-3;
 
 /** Which directions are seen is judged where the iteration ends; on the way there, where pairs are
  *  still wrong, so many times less will do. */
-constexpr double kPatience = 4;
+constexpr double kPatience = 16;
 
 /** Of all pairs' closest points: d = X_from - X_to, and the projection onto what the pair sees. */
 struct Sums {
