@@ -98,6 +98,30 @@ Registration Odometry::align(const Features& from, const Features& to, const CPo
 }
 
 OdometryResult Odometry::process(const Scan& scan) {
+    return options_.tracker.enabled ? processWithMap(scan) : processWithLastScan(scan);
+}
+
+OdometryResult Odometry::processWithMap(const Scan& scan) {
+    OdometryResult result;
+    const auto cloud = timed(result.times_ms[kPreprocess],
+                             [&] { return scan::preprocess(scan, options_.preprocess); });
+    const auto tracked = tracker_.track(cloud.points, scan.stamp_s);
+    result.times_ms[kPlanes] = tracked.register_ms;
+    result.times_ms[kPlaneMap] = tracked.map_ms;
+    result.counts.points = static_cast<std::size_t>(cloud.points.cols());
+    result.counts.notFinite = cloud.notFinite;
+    result.counts.planePoints = tracked.points;
+    result.registration.rotation = tracked.estimate.rotation;
+    result.registration.translation = tracked.estimate.translation;
+    result.increment = incrementOf(tracked.estimate.rotation, tracked.estimate.translation);
+    result.increment.pose = orthonormalised(tracked.pose - tracked_);
+    tracked_ = tracked.pose;
+    result.predicted = tracked.predicted;
+    result.reason = result.registration.predictedReason = tracked.reason;
+    return result;
+}
+
+OdometryResult Odometry::processWithLastScan(const Scan& scan) {
     OdometryResult result;
     result.features = extract(scan, result.counts, result.times_ms);
     ++scans_;

@@ -59,6 +59,9 @@ std::vector<std::pair<std::string, StageOptions*>> Options::stages() {
             {"line_cloud", &odometry.lines},
             {"line_registration", &odometry.lineRegistration},
             {"prediction", &odometry.prediction},
+            {"plane_tracker", &odometry.tracker},
+            {"plane_map", &odometry.planeMap},
+            {"plane_registration", &odometry.planes},
             {"graph", &graph},
             {"map", &map}};
 }

@@ -50,7 +50,7 @@ ScanReport Slam::process(const Scan& scan) {
     }
     odometryTrajectory_.stamps_s.push_back(scan.stamp_s);
     if (withMap_) map_.add(latest.node, poses.back(), *scan.points, scan.sensorPose, scan.time);
-    if (withGraph_ && !report.odometry.predicted) {
+    if (withGraph_ && !report.odometry.predicted && report.odometry.features) {
         mrpt::system::CTicTac clock;
         addSkipEdges(latest);
         report.graph_ms = 1e3 * clock.Tac();

@@ -64,8 +64,28 @@ double normalised(const Eigen::Vector3d& error, const Eigen::Matrix3d& covarianc
     return error.dot(covariance.ldlt().solve(error));
 }
 
+/** The line stage alone with the true rotation given, and the coupled way from the same lines. */
+void compareLines(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, const CPose3D& predicted,
+                  const Features& before, const Features& now, const OdometryOptions& options,
+                  Errors& errors) {
+    const Eigen::Vector3d start = translationOf(predicted);
+    const auto lines = translation::registerLines(before.lines, translation::rotated(now.lines, R),
+                                                  start, options.lineRegistration);
+    const Eigen::Vector3d given = lines.translation - t;
+    errors.givenRotation.push_back(given.norm());
+    if (t.norm() > 0.05) errors.givenAlong += given.dot(t.normalized());
+    Eigen::Isometry3d guess = Eigen::Isometry3d::Identity();
+    guess.linear() = predicted.getRotationMatrix().asEigen();
+    guess.translation() = start;
+    const auto coupled =
+        translation::registerCoupled(before.lines, now.lines, guess, options.lineRegistration).pose;
+    errors.coupledTranslation.push_back((coupled.translation() - t).norm());
+    const Eigen::AngleAxisd turn(Eigen::Matrix3d(R.transpose() * coupled.linear()));
+    errors.coupledRotation.push_back(turn.angle() * 180 / M_PI);
+}
+
 void compare(const CPose3D& truth, const CPose3D& predicted, const OdometryResult& result,
-             const Features& before, const OdometryOptions& options, Errors& errors) {
+             const Features* before, const OdometryOptions& options, Errors& errors) {
     const CPose3D& found = result.increment.pose;
     errors.iterations += result.registration.rotation.iterations;
     errors.rotation.push_back(degreesBetween(truth, found));
@@ -73,29 +93,13 @@ void compare(const CPose3D& truth, const CPose3D& predicted, const OdometryResul
     const Eigen::Vector3d t = translationOf(truth), e = translationOf(found) - t;
     errors.translation.push_back(e.norm());
 
-    // The line stage alone: with the true rotation given.
     const Eigen::Matrix3d R = truth.getRotationMatrix().asEigen();
-    const auto lines =
-        translation::registerLines(before.lines, translation::rotated(result.features->lines, R),
-                                   translationOf(predicted), options.lineRegistration);
-    const Eigen::Vector3d given = lines.translation - t;
-    errors.givenRotation.push_back(given.norm());
     if (t.norm() > 0.05) {
         errors.along += e.dot(t.normalized());
-        errors.givenAlong += given.dot(t.normalized());
         errors.path += t.norm();
     }
-    // Rotation and translation together, from the same lines.
-    Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
-    start.linear() = predicted.getRotationMatrix().asEigen();
-    start.translation() = translationOf(predicted);
-    const auto coupled = translation::registerCoupled(before.lines, result.features->lines, start,
-                                                      options.lineRegistration)
-                             .pose;
-    errors.coupledTranslation.push_back((coupled.translation() - t).norm());
-    errors.coupledRotation.push_back(
-        degreesBetween(truth, CPose3D(coupled.linear(), coupled.translation())));
-
+    if (result.features && before)
+        compareLines(R, t, predicted, *before, *result.features, options, errors);
     const Eigen::Matrix<double, 6, 6> covariance = result.increment.covariance.asEigen();
     const Eigen::Matrix3d F = found.getRotationMatrix().asEigen();
     const Eigen::AngleAxisd off(F.transpose() * R);
@@ -122,7 +126,7 @@ void run(const std::string& rawlog, Options options) {
         const auto result = odometry.process(*scan);
         for (std::size_t s = 0; s < kStages; ++s) times[s] += result.times_ms[s];
         if (scans > 0 && scans - 1 < truth.size()) {
-            compare(truth[scans - 1], prediction.predict(), result, *before, options.odometry,
+            compare(truth[scans - 1], prediction.predict(), result, before.get(), options.odometry,
                     errors);
             prediction.observe(result.increment.pose);
             driven = driven + result.increment.pose;
@@ -141,11 +145,15 @@ void run(const std::string& rawlog, Options options) {
     std::printf("  mean rotation error about x, y, z %+.4f %+.4f %+.4f deg\n", bias.x(), bias.y(),
                 bias.z());
     print("translation", errors.translation, "m");
-    print("translation, true rotation given", errors.givenRotation, "m");
-    print("coupled: rotation", errors.coupledRotation, "deg");
-    print("         translation", errors.coupledTranslation, "m");
-    std::printf("  along the motion %+.3f %%, with true rotation %+.3f %% of the path\n",
-                100 * errors.along / errors.path, 100 * errors.givenAlong / errors.path);
+    std::printf("  translation along the motion %+.3f %% of the path\n",
+                100 * errors.along / errors.path);
+    if (!errors.givenRotation.empty()) {
+        print("translation, true rotation given", errors.givenRotation, "m");
+        std::printf("  along the motion, true rotation given %+.3f %% of the path\n",
+                    100 * errors.givenAlong / errors.path);
+        print("coupled: rotation", errors.coupledRotation, "deg");
+        print("         translation", errors.coupledTranslation, "m");
+    }
     print("normalised squared error, rotation", errors.rotationNes, "(3 expected)");
     print("                       translation", errors.translationNes, "(3 expected)");
     std::printf("  ms a scan:");

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "delio/increment.h"
+#include "delio/localmap/plane_tracker.h"
 #include "delio/prediction.h"
 #include "delio/rotation/bilateral_filter.h"
 #include "delio/rotation/mean_shift.h"
@@ -27,6 +28,9 @@ struct OdometryOptions {
     translation::LineCloudOptions lines;
     translation::LineRegistrationOptions lineRegistration;
     PredictionOptions prediction;
+    localmap::PlaneTrackerOptions tracker;
+    localmap::PlaneMapOptions planeMap;
+    localmap::PlaneRegistrationOptions planes;
 };
 
 /** Stages that time is measured of, in the order in which a scan goes through them. */
@@ -39,11 +43,13 @@ enum Stage {
     kLines,
     kRotation,
     kTranslation,
+    kPlanes,
+    kPlaneMap,
     kStages
 };
-constexpr std::array<const char*, kStages> kStageNames = {"preprocess", "normals",    "bilateral",
-                                                          "outliers",   "mean_shift", "lines",
-                                                          "rotation",   "translation"};
+constexpr std::array<const char*, kStages> kStageNames = {
+    "preprocess", "normals",  "bilateral",   "outliers", "mean_shift",
+    "lines",      "rotation", "translation", "planes",   "plane_map"};
 using StageTimes = std::array<double, kStages>;  //!< milliseconds
 
 /** What is kept of a scan to register others with; sensor's frame. */
@@ -60,6 +66,7 @@ struct FeatureCounts {
     std::size_t pattern = 0;    //!< normals, or cells of modes, left in the pattern
     std::size_t modes = 0;      //!< that mean shift found; 0 where it was not needed
     std::size_t lines = 0;
+    std::size_t planePoints = 0;  //!< registered against the map of planes
 };
 
 /** Scan `to` against scan `from`. */
@@ -74,22 +81,26 @@ struct Registration {
 struct OdometryResult {
     /** Maps the sensor's frame at this scan to that at the scan before; identity for the first. */
     Increment increment;
-    Registration registration;  //!< against the last usable scan
-    bool predicted = false;     //!< the scan could not be registered
-    std::string reason;         //!< why
-    std::shared_ptr<const Features> features;
+    Registration registration;                 //!< against the last usable scan
+    bool predicted = false;                    //!< the scan could not be registered
+    std::string reason;                        //!< why
+    std::shared_ptr<const Features> features;  //!< none where scans go against the map of planes
     FeatureCounts counts;
     StageTimes times_ms{};
 };
 
-/** DeLiO, one scan after the other: rotation from the pattern of surface normals, the scan
- *  unrotated, then translation from line clouds; both from the linear prediction on. A scan that
- *  cannot be registered takes the prediction, and the next one is registered against the last
- *  usable scan. */
+/** DeLiO, one scan after the other, rotation and translation decoupled. As in the paper: rotation
+ *  from the pattern of surface normals, the scan unrotated, then translation from line clouds, both
+ *  from the linear prediction on, against the last usable scan. With `tracker.enabled`: rotation
+ *  from translation-free plane residuals, then translation alone, against a map of planes. A scan
+ *  that cannot be registered takes the prediction. */
 class Odometry {
  public:
     explicit Odometry(const OdometryOptions& options)
-        : options_(options), prediction_(options.prediction) {}
+        : options_(options),
+          prediction_(options.prediction),
+          tracker_(options.tracker, options.planeMap, options.planes, options.normals,
+                   options.bilateral, options.pattern, options.prediction) {}
 
     OdometryResult process(const Scan& scan);
 
@@ -101,12 +112,16 @@ class Odometry {
  private:
     std::shared_ptr<const Features> extract(const Scan& scan, FeatureCounts& counts,
                                             StageTimes& times_ms) const;
+    OdometryResult processWithLastScan(const Scan& scan);
+    OdometryResult processWithMap(const Scan& scan);
 
     OdometryOptions options_;
     LinearPrediction prediction_;
     unsigned scans_ = 0;                         //!< processed
     std::shared_ptr<const Features> reference_;  //!< the last usable scan
     mrpt::poses::CPose3D sinceReference_;        //!< maps the latest frame to that of reference_
+    localmap::PlaneTracker tracker_;
+    mrpt::poses::CPose3D tracked_;  //!< latest pose in the tracker's map
     bool lost_ = true;  //!< where the next scan will be is not known to better than metres
 };
 }  // namespace delio

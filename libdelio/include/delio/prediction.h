@@ -20,17 +20,22 @@ class LinearPrediction {
  public:
     explicit LinearPrediction(const PredictionOptions& options) : frames_(options.frames) {}
 
-    /** The increment expected next: maps the coming frame to the present one. */
-    mrpt::poses::CPose3D predict() const;
+    /** The increment expected over the next `duration_s`: maps the coming frame to the present one.
+     *  With equal durations it is the paper's equation; otherwise speeds are averaged. */
+    mrpt::poses::CPose3D predict(double duration_s = 1) const;
 
     /** False until an increment was observed: the prediction is a mere guess then. */
     bool hasMotion() const { return !latestFirst_.empty(); }
 
-    /** Tells what the increment turned out to be. */
-    void observe(const mrpt::poses::CPose3D& increment);
+    /** Tells what the increment turned out to be, and how long (more than 0) it took. */
+    void observe(const mrpt::poses::CPose3D& increment, double duration_s = 1);
 
  private:
     std::size_t frames_;
-    std::deque<mrpt::poses::CPose3D> latestFirst_;
+    struct Observed {
+        mrpt::poses::CPose3D increment;
+        double duration_s;
+    };
+    std::deque<Observed> latestFirst_;
 };
 }  // namespace delio

@@ -1,0 +1,89 @@
+#include "delio/localmap/plane_map.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <map>
+
+#include "delio/scan/voxel_grid.h"
+
+namespace delio::localmap {
+std::vector<OptionField> PlaneMapOptions::fields() {
+    return {{"voxel_size", &voxel_size, "m; edge of the voxels that hold a plane each", 0.05, 20},
+            {"min_points", &min_points, "points that a plane needs", 3, 1e6},
+            {"max_thickness", &max_thickness, "m; standard deviation of a plane's points across it",
+             1e-4, 10},
+            {"max_flatness", &max_flatness,
+             "largest share of the smallest variance in the middle one; more is no plane", 0, 1},
+            {"max_points", &max_points, "points after which a voxel takes no more", 3, 1e9},
+            {"radius", &radius, "m; the map ends at this distance from the sensor", 1, 1e4}};
+}
+
+double Plane::varianceAt(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d d = axes.transpose() * (point - mean);
+    return variances[0] *
+           (1 + (1 + d[1] * d[1] / variances[1] + d[2] * d[2] / variances[2]) / count);
+}
+
+void PlaneMap::fit(Cell& cell) const {
+    cell.touched = false;
+    if (cell.count < options_.min_points) return;
+    const Eigen::Vector3d mean = cell.sum / cell.count;
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> pca;
+    pca.computeDirect(cell.squares / cell.count - mean * mean.transpose());
+    // Never thinner than rounding allows.
+    const Eigen::Vector3d variances = pca.eigenvalues().cwiseMax(1e-9);
+    // Two rows of points of one ring are a plane; a single row is a line.
+    constexpr double kBreadth = 0.01;
+    cell.isPlane = std::sqrt(variances[0]) < options_.max_thickness &&
+                   variances[0] < options_.max_flatness * variances[1] &&
+                   variances[1] > kBreadth * variances[2];
+    cell.plane = {cell.origin + mean, variances, pca.eigenvectors(),
+                  static_cast<double>(cell.count)};
+}
+
+void PlaneMap::add(const Eigen::Matrix3Xd& points) {
+    std::vector<Cell*> touched;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector3d point = points.col(i);
+        Cell& cell = cells_[scan::voxelKey(point, options_.voxel_size)];
+        if (cell.count == 0) cell.origin = point;
+        if (cell.count >= options_.max_points) continue;
+        const Eigen::Vector3d d = point - cell.origin;
+        cell.sum += d;
+        cell.squares += d * d.transpose();
+        ++cell.count;
+        if (!cell.touched) touched.push_back(&cell);
+        cell.touched = true;
+    }
+    tbb::parallel_for(std::size_t{0}, touched.size(), [&](std::size_t i) { fit(*touched[i]); });
+}
+
+void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
+    for (auto i = cells_.begin(); i != cells_.end();)
+        i = (i->second.origin - centre).norm() > options_.radius ? cells_.erase(i) : std::next(i);
+}
+
+const Plane* PlaneMap::at(const Eigen::Vector3d& point) const {
+    const auto cell = cells_.find(scan::voxelKey(point, options_.voxel_size));
+    return cell == cells_.end() || !cell->second.isPlane ? nullptr : &cell->second.plane;
+}
+
+rotation::Pattern PlaneMap::pattern(const Eigen::Vector3d& viewer) const {
+    // In the order of their keys: that of the hash table is nobody's promise.
+    std::map<std::uint64_t, const Plane*> planes;
+    for (const auto& [key, cell] : cells_)
+        if (cell.isPlane) planes.emplace(key, &cell.plane);
+    rotation::Pattern pattern;
+    pattern.normals = planes.size();
+    pattern.directions.resize(3, static_cast<Eigen::Index>(planes.size()));
+    pattern.weights = Eigen::VectorXf::Ones(pattern.directions.cols());
+    Eigen::Index i = 0;
+    for (const auto& [key, plane] : planes) {
+        const bool away = plane->normal().dot(plane->mean - viewer) > 0;
+        pattern.directions.col(i++) = (away ? -1 : 1) * plane->normal().cast<float>();
+    }
+    return pattern;
+}
+}  // namespace delio::localmap

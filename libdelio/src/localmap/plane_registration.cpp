@@ -1,0 +1,224 @@
+#include "delio/localmap/plane_registration.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "delio/rotation/plane_rotation.h"
+#include "delio/translation/plane_translation.h"
+
+namespace delio::localmap {
+namespace {
+constexpr double kDeg = M_PI / 180;
+/** Points farther from a plane than so many kernel widths do not belong to it. */
+constexpr double kReach = 3;
+
+Eigen::Matrix3d turned(const Eigen::Matrix3d& R, const Eigen::Vector3d& w) {
+    const double angle = w.norm();
+    if (angle == 0) return R;
+    const Eigen::Quaterniond q(R * Eigen::AngleAxisd(angle, w / angle).toRotationMatrix());
+    return q.normalized().toRotationMatrix();
+}
+
+struct Pose {
+    Eigen::Matrix3d R;
+    Eigen::Vector3d t;
+};
+
+/** With one kernel, until both stand still. */
+void iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, double kernel,
+             unsigned max_iterations, const PlaneRegistrationOptions& options, Pose& pose) {
+    for (unsigned i = 0; i < max_iterations; ++i) {
+        const auto matches = matchPlanes(map, points, pose.R, pose.t, kernel, options.point_sigma);
+        if (matches.size() < options.min_matches) return;
+        const auto turn =
+            rotation::rotationFromPlanes(matches, pose.R, pose.t, options.min_rotation_share);
+        pose.R = turned(pose.R, turn.step);
+        const auto move = translation::translationFromPlanes(matches, pose.R, pose.t,
+                                                             options.min_translation_share);
+        pose.t += move.step;
+        if (turn.step.norm() < options.converged_rad && move.step.norm() < options.converged_m)
+            return;
+    }
+}
+
+/** How well points lie on planes, 0 to 1: the mean robust weight, 0 for points without a plane. */
+double shareOnPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Pose& pose,
+                     double kernel) {
+    double sum = 0;
+    for (const auto& match : matchPlanes(map, points, pose.R, pose.t, kernel, 0)) {
+        const double r = match.residual(pose.R, pose.t) / kernel;
+        sum += 1 / (1 + r * r);
+    }
+    return sum / static_cast<double>(std::max<Eigen::Index>(points.cols(), 1));
+}
+
+/** Variances from information on the axes that are seen, the motion model's on the others. */
+template <typename Estimate>
+Eigen::Matrix3d covarianceOf(const Eigen::Matrix3d& information, double least, double noise,
+                             double prior, Estimate& estimate) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(information);
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3d axis = axes.eigenvectors().col(k);
+        const bool observed = axes.eigenvalues()[k] > least;
+        if (!observed) {
+            estimate.unobservedAxes.conservativeResize(3, estimate.unobservedAxes.cols() + 1);
+            estimate.unobservedAxes.rightCols(1) = axis;
+        }
+        covariance += (observed ? noise / axes.eigenvalues()[k] : prior) * axis * axis.transpose();
+    }
+    return covariance;
+}
+
+/** Covariances and diagnostics of where the iteration ended. */
+void settle(const PlaneMatches& matches, const Pose& pose, const PlaneRegistrationOptions& options,
+            PlaneEstimate& estimate) {
+    const auto turn =
+        rotation::rotationFromPlanes(matches, pose.R, pose.t, options.min_rotation_share);
+    const auto move =
+        translation::translationFromPlanes(matches, pose.R, pose.t, options.min_translation_share);
+    // Points of one surface err together, so that only a share of them counts.
+    const double noise = 1 / options.independent_share;
+    auto& rotation = estimate.rotation;
+    rotation.rotation = pose.R;
+    rotation.matches = matches.size();
+    rotation.observability = turn.information.selfadjointView<Eigen::Lower>().eigenvalues() /
+                             std::max(turn.weight, 1e-12);
+    rotation.covariance =
+        covarianceOf(turn.information, options.min_rotation_share * turn.information.norm(), noise,
+                     std::pow(options.prior_sigma_deg * kDeg, 2), rotation);
+    rotation.valid = true;
+    auto& translation = estimate.translation;
+    translation.translation = pose.t;
+    translation.matches = matches.size();
+    translation.observability = move.information.selfadjointView<Eigen::Lower>().eigenvalues() /
+                                std::max(move.weight, 1e-12);
+    translation.covariance =
+        covarianceOf(move.information, options.min_translation_share * move.weight, noise,
+                     options.prior_sigma * options.prior_sigma, translation);
+    // t follows an error w of the rotation by -H_tt^-1 H_tr w; here w is about the map's axes.
+    translation.lever = -translation.covariance / noise * move.mixed * pose.R.transpose();
+    translation.valid = true;
+    double squared = 0;
+    for (const auto& match : matches) squared += std::pow(match.residual(pose.R, pose.t), 2);
+    translation.residual_m = std::sqrt(squared / static_cast<double>(matches.size()));
+    rotation.residual_rad = 0;
+    estimate.valid = true;
+}
+
+/** Every n-th point. */
+Eigen::Matrix3Xd everyNth(const Eigen::Matrix3Xd& points, Eigen::Index n) {
+    return points(Eigen::all, Eigen::seqN(0, (points.cols() + n - 1) / n, n));
+}
+}  // namespace
+
+std::vector<OptionField> PlaneRegistrationOptions::fields() {
+    return {
+        {"first_kernel", &first_kernel,
+         "m; widest kernel of the residuals; it follows the error of the motion model up to this",
+         1e-3, 100},
+        {"last_kernel", &last_kernel, "m; width to which the kernel is halved", 1e-3, 100},
+        {"point_sigma", &point_sigma, "m; a point's own error", 0, 1},
+        {"max_iterations", &max_iterations, "matchings with one kernel at most", 1, 10000},
+        {"converged_rad", &converged_rad, "rad; smaller turns and", 0, 1},
+        {"converged_m", &converged_m, "m; smaller moves end the iteration", 0, 1},
+        {"min_matches", &min_matches, "points on planes that are needed; fewer: predicted", 6, 1e6},
+        {"min_rotation_share", &min_rotation_share,
+         "share of the best seen axis' information; an axis with less keeps the prediction", 0, 1},
+        {"min_translation_share", &min_translation_share,
+         "share of the weight; a direction that is seen with less keeps the prediction", 0, 1},
+        {"independent_share", &independent_share,
+         "share of the points that count as independent in the covariance", 1e-6, 1},
+        {"prior_sigma", &prior_sigma, "m; the motion model's error along such a direction", 1e-6,
+         100},
+        {"prior_sigma_deg", &prior_sigma_deg, "deg; the same about such an axis", 1e-6, 180},
+        {"search_speed", &search_speed,
+         "m/s; where the motion is not known, what can be driven at this speed is searched", 0,
+         1000},
+        {"search_step", &search_step, "m; distance between the starts of that search", 0.1, 50}};
+}
+
+PlaneMatches matchPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
+                         const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double kernel,
+                         double point_sigma) {
+    std::vector<PlaneMatch> all(static_cast<std::size_t>(points.cols()));
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, all.size(), 512),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const Eigen::Vector3d point = points.col(static_cast<Eigen::Index>(i));
+                const Eigen::Vector3d placed = R * point + t;
+                const Plane* plane = map.at(placed);
+                if (!plane) continue;
+                const double r = plane->normal().dot(placed - plane->mean);
+                if (std::abs(r) > kReach * kernel) continue;
+                const double robust = 1 / (1 + r * r / (kernel * kernel));
+                all[i] = {
+                    point, plane->normal(), plane->mean,
+                    robust * robust / (plane->varianceAt(placed) + point_sigma * point_sigma)};
+            }
+        });
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [](const PlaneMatch& match) { return match.weight == 0; }),
+              all.end());
+    return all;
+}
+
+PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
+                               const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double kernel,
+                               const PlaneRegistrationOptions& options) {
+    PlaneEstimate estimate;
+    Pose pose{R, t};
+    for (double width = std::max(kernel, options.last_kernel);;
+         width = std::max(width / 2, options.last_kernel)) {
+        iterate(map, points, width, options.max_iterations, options, pose);
+        if (width <= options.last_kernel) break;
+    }
+    const auto matches =
+        matchPlanes(map, points, pose.R, pose.t, options.last_kernel, options.point_sigma);
+    if (matches.size() >= options.min_matches) {
+        settle(matches, pose, options, estimate);
+        estimate.share = shareOnPlanes(map, points, pose, options.last_kernel);
+        return estimate;
+    }
+    estimate.rotation.rotation = R;
+    estimate.rotation.covariance =
+        std::pow(options.prior_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity();
+    estimate.rotation.unobservedAxes = Eigen::Matrix3d::Identity();
+    estimate.translation.translation = t;
+    estimate.translation.covariance =
+        options.prior_sigma * options.prior_sigma * Eigen::Matrix3d::Identity();
+    estimate.translation.unobservedAxes = Eigen::Matrix3d::Identity();
+    return estimate;
+}
+
+PlaneEstimate searchInPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
+                             const Eigen::Matrix3d& R, const Eigen::Vector3d& centre, double radius,
+                             const PlaneRegistrationOptions& options) {
+    constexpr Eigen::Index kThinning = 4;
+    constexpr std::size_t kBest = 12;
+    const Eigen::Matrix3Xd some = everyNth(points, kThinning);
+    const int steps = static_cast<int>(radius / options.search_step);
+    std::vector<std::pair<double, Eigen::Vector3d>> starts;
+    for (int x = -steps; x <= steps; ++x)
+        for (int y = -steps; y <= steps; ++y) {
+            const Eigen::Vector3d offset(x * options.search_step, y * options.search_step, 0);
+            if (offset.norm() > radius) continue;
+            const Pose start{R, centre + offset};
+            starts.emplace_back(shareOnPlanes(map, some, start, options.search_step / 2), start.t);
+        }
+    std::stable_sort(starts.begin(), starts.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    if (starts.size() > kBest) starts.resize(kBest);
+    PlaneEstimate best = registerToPlanes(map, points, R, centre, options.first_kernel, options);
+    for (const auto& [share, t] : starts) {
+        const auto found = registerToPlanes(map, points, R, t, options.first_kernel, options);
+        if (found.valid && found.share > best.share) best = found;
+    }
+    return best;
+}
+}  // namespace delio::localmap
