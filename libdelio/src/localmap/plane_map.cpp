@@ -4,7 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <map>
+#include <iterator>
 
 #include "delio/scan/voxel_grid.h"
 
@@ -68,22 +68,5 @@ void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
 const Plane* PlaneMap::at(const Eigen::Vector3d& point) const {
     const auto cell = cells_.find(scan::voxelKey(point, options_.voxel_size));
     return cell == cells_.end() || !cell->second.isPlane ? nullptr : &cell->second.plane;
-}
-
-rotation::Pattern PlaneMap::pattern(const Eigen::Vector3d& viewer) const {
-    // In the order of their keys: that of the hash table is nobody's promise.
-    std::map<std::uint64_t, const Plane*> planes;
-    for (const auto& [key, cell] : cells_)
-        if (cell.isPlane) planes.emplace(key, &cell.plane);
-    rotation::Pattern pattern;
-    pattern.normals = planes.size();
-    pattern.directions.resize(3, static_cast<Eigen::Index>(planes.size()));
-    pattern.weights = Eigen::VectorXf::Ones(pattern.directions.cols());
-    Eigen::Index i = 0;
-    for (const auto& [key, plane] : planes) {
-        const bool away = plane->normal().dot(plane->mean - viewer) > 0;
-        pattern.directions.col(i++) = (away ? -1 : 1) * plane->normal().cast<float>();
-    }
-    return pattern;
 }
 }  // namespace delio::localmap

@@ -45,15 +45,20 @@ void iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, double kernel,
     }
 }
 
-/** How well points lie on planes, 0 to 1: the mean robust weight, 0 for points without a plane. */
+/** How well those points that fall into voxels with a plane lie on it, 0 to 1. What is seen for the
+ *  first time does not count. */
 double shareOnPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Pose& pose,
                      double kernel) {
-    double sum = 0;
-    for (const auto& match : matchPlanes(map, points, pose.R, pose.t, kernel, 0)) {
-        const double r = match.residual(pose.R, pose.t) / kernel;
+    double sum = 0, count = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector3d placed = pose.R * points.col(i) + pose.t;
+        const Plane* plane = map.at(placed);
+        if (!plane) continue;
+        const double r = plane->normal().dot(placed - plane->mean) / kernel;
         sum += 1 / (1 + r * r);
+        count += 1;
     }
-    return sum / static_cast<double>(std::max<Eigen::Index>(points.cols(), 1));
+    return count > 0 ? sum / count : 0;
 }
 
 /** Variances from information on the axes that are seen, the motion model's on the others. */
@@ -108,11 +113,6 @@ void settle(const PlaneMatches& matches, const Pose& pose, const PlaneRegistrati
     translation.residual_m = std::sqrt(squared / static_cast<double>(matches.size()));
     rotation.residual_rad = 0;
     estimate.valid = true;
-}
-
-/** Every n-th point. */
-Eigen::Matrix3Xd everyNth(const Eigen::Matrix3Xd& points, Eigen::Index n) {
-    return points(Eigen::all, Eigen::seqN(0, (points.cols() + n - 1) / n, n));
 }
 }  // namespace
 
@@ -196,28 +196,51 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
     return estimate;
 }
 
+double agreement(const PlaneMap& map, const rotation::SurfaceNormals& surfaces,
+                 const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double kernel) {
+    constexpr double kSameWay = 0.95;  // cosine
+    Eigen::Matrix3d all = Eigen::Matrix3d::Zero(), found = all;
+    for (Eigen::Index i = 0; i < surfaces.points.cols(); ++i) {
+        const Eigen::Vector3d normal = R * surfaces.directions.col(i).cast<double>();
+        all += normal * normal.transpose();
+        const Eigen::Vector3d placed = R * surfaces.points.col(i).cast<double>() + t;
+        const Plane* plane = map.at(placed);
+        if (!plane || std::abs(plane->normal().dot(normal)) < kSameWay) continue;
+        const double r = plane->normal().dot(placed - plane->mean) / kernel;
+        found += normal * normal.transpose() / (1 + r * r);
+    }
+    // The trace of all^-1 found: each direction's share of what could be found there.
+    return all.completeOrthogonalDecomposition().solve(found).trace() / 3;
+}
+
 PlaneEstimate searchInPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
-                             const Eigen::Matrix3d& R, const Eigen::Vector3d& centre, double radius,
+                             const rotation::SurfaceNormals& surfaces, const Eigen::Matrix3d& R,
+                             const Eigen::Vector3d& centre, double radius,
                              const PlaneRegistrationOptions& options) {
-    constexpr Eigen::Index kThinning = 4;
     constexpr std::size_t kBest = 12;
-    const Eigen::Matrix3Xd some = everyNth(points, kThinning);
     const int steps = static_cast<int>(radius / options.search_step);
     std::vector<std::pair<double, Eigen::Vector3d>> starts;
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y) {
             const Eigen::Vector3d offset(x * options.search_step, y * options.search_step, 0);
-            if (offset.norm() > radius) continue;
-            const Pose start{R, centre + offset};
-            starts.emplace_back(shareOnPlanes(map, some, start, options.search_step / 2), start.t);
+            if (offset.norm() <= radius) starts.emplace_back(0, centre + offset);
         }
+    tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
+        starts[i].first = agreement(map, surfaces, R, starts[i].second, options.search_step / 2);
+    });
     std::stable_sort(starts.begin(), starts.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     if (starts.size() > kBest) starts.resize(kBest);
-    PlaneEstimate best = registerToPlanes(map, points, R, centre, options.first_kernel, options);
-    for (const auto& [share, t] : starts) {
-        const auto found = registerToPlanes(map, points, R, t, options.first_kernel, options);
-        if (found.valid && found.share > best.share) best = found;
+    starts.emplace_back(0, centre);
+    PlaneEstimate best;
+    double bestAgreement = -1;
+    for (const auto& [rough, t] : starts) {
+        const auto found = registerToPlanes(map, points, R, t, options.search_step, options);
+        const double agreed = agreement(map, surfaces, found.rotation.rotation,
+                                        found.translation.translation, 2 * options.last_kernel);
+        if (agreed <= bestAgreement) continue;
+        best = found;
+        bestAgreement = agreed;
     }
     return best;
 }

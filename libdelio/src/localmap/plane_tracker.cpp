@@ -24,7 +24,8 @@ std::vector<OptionField> PlaneTrackerOptions::fields() {
          0.01, 10},
         {"scan_spacing", &scan_spacing, "m; points that are registered are so far apart", 0.01, 10},
         {"lost_share", &lost_share,
-         "share of the usual points on planes; with fewer a scan is searched for anew", 0, 1}};
+         "share of the usual share of points on their planes; with less a scan is searched for", 0,
+         1}};
 }
 
 /** Three standard deviations of what the motion model was off lately, within the options. */
@@ -38,31 +39,38 @@ double PlaneTracker::kernel() const {
                       registrationOptions_.first_kernel);
 }
 
-PlaneEstimate PlaneTracker::search(const Eigen::Matrix3Xf& all, const Eigen::Matrix3Xd& points,
-                                   const CPose3D& guess, double duration_s) const {
-    // Rotation first, by the paper's way, which no translation can disturb: the pattern of the
-    // scan's normals on that of the map's.
-    const auto normals = rotation::filterBilaterally(
-        rotation::estimateNormals(all, normalsOptions_), bilateralOptions_);
-    rotation::Pattern pattern{normals.directions, normals.planarity,
-                              static_cast<std::size_t>(normals.directions.cols()), 0};
-    const auto turned = rotation::registerPatterns(map_.pattern(translationOf(guess)), pattern,
-                                                   rotationOf(guess), patternOptions_);
-    const double radius = registrationOptions_.search_speed * duration_s;
-    const auto byPattern = searchInPlanes(map_, points, turned.rotation, translationOf(guess),
-                                          radius, registrationOptions_);
-    return byPattern;
+rotation::SurfaceNormals PlaneTracker::surfacesOf(const Eigen::Matrix3Xf& points) const {
+    return rotation::filterBilaterally(rotation::estimateNormals(points, normalsOptions_),
+                                       bilateralOptions_);
+}
+
+PlaneEstimate PlaneTracker::search(const rotation::SurfaceNormals& surfaces,
+                                   const Eigen::Matrix3Xd& points, const CPose3D& guess,
+                                   double duration_s) const {
+    // Rotation first, by the paper's way, which no translation can disturb: the pattern of this
+    // scan's normals on that of the latest one's.
+    const Eigen::Matrix3d R = rotationOf(latestPose_);
+    const auto pattern = rotation::registerPatterns(
+        rotation::patternOf(surfacesOf(latest_)), rotation::patternOf(surfaces),
+        R.transpose() * rotationOf(guess), patternOptions_);
+    return searchInPlanes(map_, points, surfaces, R * pattern.rotation, translationOf(guess),
+                          registrationOptions_.search_speed * duration_s, registrationOptions_);
 }
 
 PlaneEstimate PlaneTracker::place(const Eigen::Matrix3Xf& all, const Eigen::Matrix3Xd& points,
                                   double duration_s) const {
     const CPose3D guess = pose_ + prediction_.predict(duration_s);
-    if (lost_) return search(all, points, guess, duration_s);
+    if (lost_) return search(surfacesOf(all), points, guess, duration_s);
     const auto found = registerToPlanes(map_, points, rotationOf(guess), translationOf(guess),
                                         kernel(), registrationOptions_);
     if (found.valid && found.share >= options_.lost_share * usualShare_) return found;
-    const auto searched = search(all, points, guess, duration_s);
-    return searched.share > found.share ? searched : found;
+    const auto surfaces = surfacesOf(all);
+    const auto searched = search(surfaces, points, guess, duration_s);
+    const auto agreed = [&](const PlaneEstimate& estimate) {
+        return agreement(map_, surfaces, estimate.rotation.rotation,
+                         estimate.translation.translation, 2 * registrationOptions_.last_kernel);
+    };
+    return agreed(searched) > agreed(found) ? searched : found;
 }
 
 void PlaneTracker::learn(const CPose3D& pose, const CPose3D& guess, const PlaneEstimate& estimate) {
@@ -112,6 +120,8 @@ Tracked PlaneTracker::track(const Eigen::Matrix3Xf& points, double stamp_s) {
             (rotationOf(pose_) * fine.cast<double>()).colwise() + translationOf(pose_);
         map_.add(placed);
         map_.forgetFarFrom(translationOf(pose_));
+        latest_ = points;
+        latestPose_ = pose_;
         started_ = true;
     }
     stamp_s_ = stamp_s;

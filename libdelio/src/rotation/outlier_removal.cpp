@@ -60,6 +60,11 @@ OutlierRemovalOptions OutlierRemovalOptions::firstRounds(unsigned count) const {
     return first;
 }
 
+Pattern patternOf(const SurfaceNormals& normals) {
+    return {normals.directions, normals.planarity,
+            static_cast<std::size_t>(normals.directions.cols()), 0};
+}
+
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Pattern& pattern) {
     Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
     double weights = 0;
@@ -74,10 +79,7 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Pattern& pattern) {
 }
 
 Pattern removeOutliers(const SurfaceNormals& normals, const OutlierRemovalOptions& options) {
-    Pattern pattern;
-    pattern.directions = normals.directions;
-    pattern.weights = normals.planarity;
-    pattern.normals = static_cast<std::size_t>(normals.directions.cols());
+    Pattern pattern = patternOf(normals);
     for (unsigned round = 0; round < options.rounds && pattern.directions.cols() > 1; ++round) {
         const double neighbours = options.neighboursOf(round);
         const Eigen::VectorXf means = meanNeighbourDistances(

@@ -5,7 +5,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include "delio/rotation/outlier_removal.h"
 #include "delio/stage_options.h"
 
 namespace delio::localmap {
@@ -49,9 +48,6 @@ class PlaneMap {
 
     /** The plane of the voxel that `point` lies in, or none. Valid until the map changes. */
     const Plane* at(const Eigen::Vector3d& point) const;
-
-    /** The pattern that the map's normals draw on the unit sphere, turned towards `viewer`. */
-    rotation::Pattern pattern(const Eigen::Vector3d& viewer) const;
 
     std::size_t voxels() const { return cells_.size(); }
 

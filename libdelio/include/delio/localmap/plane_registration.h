@@ -3,6 +3,7 @@
 
 #include "delio/localmap/plane_map.h"
 #include "delio/localmap/plane_match.h"
+#include "delio/rotation/normals.h"
 #include "delio/rotation/pattern_registration.h"
 #include "delio/stage_options.h"
 #include "delio/translation/line_registration.h"
@@ -32,7 +33,7 @@ struct PlaneRegistrationOptions : public StageOptions {
 struct PlaneEstimate {
     rotation::RotationEstimate rotation;
     translation::TranslationEstimate translation;
-    double share = 0;  //!< of the points that lie on a plane of the map, 0 to 1
+    double share = 0;  //!< of the points in voxels with a plane that lie on it, 0 to 1
     bool valid = false;
 };
 
@@ -49,10 +50,17 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
                                const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double kernel,
                                const PlaneRegistrationOptions& options);
 
+/** How well a scan's surfaces lie on the map's at a pose, 0 to 1: a surface counts where it meets a
+ *  plane that looks the same way, within about `kernel` (metres). All directions count the same
+ *  in all, so that the ground, which fits nearly anywhere, does not decide. */
+double agreement(const PlaneMap& map, const rotation::SurfaceNormals& surfaces,
+                 const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double kernel);
+
 /** Where a scan of known rotation lies best within `radius` (metres, horizontally) of `centre`:
- *  starts all over that disc are compared by how many points lie near a plane, the best are
- *  registered. For a prediction that is off by metres. */
+ *  the agreement of starts all over that disc is compared, and the best are registered. For a
+ *  prediction that is off by metres. `surfaces`: of the same scan. */
 PlaneEstimate searchInPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
-                             const Eigen::Matrix3d& R, const Eigen::Vector3d& centre, double radius,
+                             const rotation::SurfaceNormals& surfaces, const Eigen::Matrix3d& R,
+                             const Eigen::Vector3d& centre, double radius,
                              const PlaneRegistrationOptions& options);
 }  // namespace delio::localmap

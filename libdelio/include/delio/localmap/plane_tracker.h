@@ -18,7 +18,7 @@ struct PlaneTrackerOptions : public StageOptions {
     bool enabled = false;
     double map_spacing = 0.25;
     double scan_spacing = 0.5;
-    double lost_share = 0.6;
+    double lost_share = 0.93;
 
  protected:
     std::vector<OptionField> fields() override;
@@ -57,8 +57,9 @@ class PlaneTracker {
  private:
     PlaneEstimate place(const Eigen::Matrix3Xf& all, const Eigen::Matrix3Xd& points,
                         double duration_s) const;
-    PlaneEstimate search(const Eigen::Matrix3Xf& all, const Eigen::Matrix3Xd& points,
+    PlaneEstimate search(const rotation::SurfaceNormals& surfaces, const Eigen::Matrix3Xd& points,
                          const mrpt::poses::CPose3D& guess, double duration_s) const;
+    rotation::SurfaceNormals surfacesOf(const Eigen::Matrix3Xf& points) const;
     void learn(const mrpt::poses::CPose3D& pose, const mrpt::poses::CPose3D& guess,
                const PlaneEstimate& estimate);
     double kernel() const;
@@ -76,5 +77,7 @@ class PlaneTracker {
     bool lost_ = true;           //!< where the next scan will be is not known to better than metres
     std::deque<double> modelErrors_m_;  //!< of the latest predictions
     double usualShare_ = 0;             //!< of points on planes
+    Eigen::Matrix3Xf latest_;           //!< points of the latest scan that was placed
+    mrpt::poses::CPose3D latestPose_;   //!< its pose
 };
 }  // namespace delio::localmap

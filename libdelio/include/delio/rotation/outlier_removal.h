@@ -30,6 +30,9 @@ struct Pattern {
     std::size_t removed = 0;      //!< normals that were outliers
 };
 
+/** All of the normals, weighted by their planarity. */
+Pattern patternOf(const SurfaceNormals& normals);
+
 /** How well a pattern fixes a rotation: eigenvalues (rising, 0 to 1) and eigenvectors of the mean
  * of w (I - n n'). Ground alone gives (0, 1, 1), with the vertical first. */
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Pattern& pattern);
