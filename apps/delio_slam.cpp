@@ -152,7 +152,7 @@ int main(int argc, char** argv) {
     Text input("i", "input", "Rawlog to read, or a posegraph.g2o to optimise again", true, "",
                "IN.rawlog", cmd);
     Text output("o", "output", "Folder for the results", true, "", "OUTDIR", cmd);
-    Text profile("", "profile", "paper or paper-literal", false, "paper", "NAME", cmd);
+    Text profile("", "profile", "accurate, paper or paper-literal", false, "accurate", "NAME", cmd);
     Text config("c", "config", "Options that differ from the profile's", false, "", "CONFIG.ini",
                 cmd);
     TCLAP::MultiArg<std::string> set("", "set", "One option; may be repeated", false,

@@ -157,7 +157,7 @@ TEST_F(DelioSlam, LeavesTheFilesOfTheContract) {
     const auto summary = this->summary();
     EXPECT_TRUE(summary["complete"].as<bool>());
     EXPECT_EQ(summary["version"].as<std::string>(), "0.1.0");
-    EXPECT_EQ(summary["profile"].as<std::string>(), "paper");
+    EXPECT_EQ(summary["profile"].as<std::string>(), "accurate");
     EXPECT_EQ(summary["scans"].as<int>(), static_cast<int>(kScans));
     EXPECT_EQ(summary["predicted"].as<int>(), 0);
     EXPECT_EQ(summary["vertical_correction_deg"].as<double>(), 0);

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -63,6 +64,11 @@ void PlaneMap::add(const Eigen::Matrix3Xd& points) {
 void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
     for (auto i = cells_.begin(); i != cells_.end();)
         i = (i->second.origin - centre).norm() > options_.radius ? cells_.erase(i) : std::next(i);
+}
+
+std::size_t PlaneMap::planes() const {
+    return static_cast<std::size_t>(std::count_if(
+        cells_.begin(), cells_.end(), [](const auto& entry) { return entry.second.isPlane; }));
 }
 
 const Plane* PlaneMap::at(const Eigen::Vector3d& point) const {

@@ -168,6 +168,20 @@ PlaneMatches matchPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
     return all;
 }
 
+PlaneEstimate predictedEstimate(const Eigen::Matrix3d& R, const Eigen::Vector3d& t,
+                                const PlaneRegistrationOptions& options) {
+    PlaneEstimate estimate;
+    estimate.rotation.rotation = R;
+    estimate.rotation.covariance =
+        std::pow(options.prior_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity();
+    estimate.rotation.unobservedAxes = Eigen::Matrix3d::Identity();
+    estimate.translation.translation = t;
+    estimate.translation.covariance =
+        options.prior_sigma * options.prior_sigma * Eigen::Matrix3d::Identity();
+    estimate.translation.unobservedAxes = Eigen::Matrix3d::Identity();
+    return estimate;
+}
+
 PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
                                const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double kernel,
                                const PlaneRegistrationOptions& options) {
@@ -185,15 +199,7 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
         estimate.share = shareOnPlanes(map, points, pose, options.last_kernel);
         return estimate;
     }
-    estimate.rotation.rotation = R;
-    estimate.rotation.covariance =
-        std::pow(options.prior_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity();
-    estimate.rotation.unobservedAxes = Eigen::Matrix3d::Identity();
-    estimate.translation.translation = t;
-    estimate.translation.covariance =
-        options.prior_sigma * options.prior_sigma * Eigen::Matrix3d::Identity();
-    estimate.translation.unobservedAxes = Eigen::Matrix3d::Identity();
-    return estimate;
+    return predictedEstimate(R, t, options);
 }
 
 double agreement(const PlaneMap& map, const rotation::SurfaceNormals& surfaces,

@@ -109,20 +109,30 @@ Tracked PlaneTracker::track(const Eigen::Matrix3Xf& points, double stamp_s) {
             prediction_.observe(pose - pose_, duration_s);
         pose_ = pose;
         lost_ = result.predicted;
-    } else if (points.cols() == 0) {
-        result.predicted = true;
-        result.reason = "no points";
+    } else {
+        result.estimate =
+            predictedEstimate(rotationOf(pose_), translationOf(pose_), registrationOptions_);
+        // What was driven since scans that could not be used is not known.
+        result.predicted = !first_;
+        if (!first_) result.reason = "no usable scan before it";
     }
+    first_ = false;
     result.register_ms = 1e3 * clock.Tac();
     clock.Tic();
-    if (!result.predicted) {
+    if (!started_ || !result.predicted) {
         const Eigen::Matrix3Xd placed =
             (rotationOf(pose_) * fine.cast<double>()).colwise() + translationOf(pose_);
         map_.add(placed);
         map_.forgetFarFrom(translationOf(pose_));
         latest_ = points;
         latestPose_ = pose_;
-        started_ = true;
+    }
+    if (!started_) {
+        started_ = map_.planes() > 0;
+        if (!started_) {
+            result.predicted = true;
+            result.reason = points.cols() == 0 ? "no points" : "no surfaces";
+        }
     }
     stamp_s_ = stamp_s;
     result.pose = pose_;

@@ -50,6 +50,7 @@ class PlaneMap {
     const Plane* at(const Eigen::Vector3d& point) const;
 
     std::size_t voxels() const { return cells_.size(); }
+    std::size_t planes() const;
 
  private:
     struct Cell {

@@ -37,6 +37,12 @@ struct PlaneEstimate {
     bool valid = false;
 };
 
+/** The prediction, where there is nothing to register: not valid, with the motion model's
+ * variances.
+ */
+PlaneEstimate predictedEstimate(const Eigen::Matrix3d& R, const Eigen::Vector3d& t,
+                                const PlaneRegistrationOptions& options);
+
 /** Points next to a plane of the map at pose (R, t), with robust weights (Geman-McClure of width
  *  `kernel`, metres) over the variance of plane and point. In the order of the points. */
 PlaneMatches matchPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,

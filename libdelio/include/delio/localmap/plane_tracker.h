@@ -73,7 +73,8 @@ class PlaneTracker {
     LinearPrediction prediction_;
     mrpt::poses::CPose3D pose_;  //!< of the latest scan: sensor to map
     double stamp_s_ = 0;         //!< of the latest scan
-    bool started_ = false;       //!< the map has a scan
+    bool first_ = true;          //!< no scan was seen yet
+    bool started_ = false;       //!< the map has planes
     bool lost_ = true;           //!< where the next scan will be is not known to better than metres
     std::deque<double> modelErrors_m_;  //!< of the latest predictions
     double usualShare_ = 0;             //!< of points on planes
