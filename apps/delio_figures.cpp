@@ -95,8 +95,7 @@ void drawOutlierRemoval(const Scan& scan, const OdometryOptions& options, const 
 /** The line cloud of a scan, and the pairs with the next one's before and after registration. */
 void drawLines(const std::vector<Scan>& scans, const OdometryOptions& options,
                const Figures& figures) {
-    OdometryOptions stages = options;
-    Odometry odometry(stages);
+    Odometry odometry(options);
     const auto from = odometry.process(scans[0]);
     const auto to = odometry.process(scans[1]);
     map::SnapshotOptions view = map::topView();

@@ -1,6 +1,6 @@
-// benchmark_realism: what can be counted in the scans of several drives, side by side: how close are
-// synthetic drives to real ones? Prints a Markdown table. Needs OUT.poses.txt and OUT.calib.txt
-// beside each rawlog.
+// benchmark_realism: what can be counted in the scans of several drives, side by side: how close
+// are synthetic drives to real ones? Prints a Markdown table. Needs OUT.poses.txt and
+// OUT.calib.txt beside each rawlog.
 #include <mrpt/poses/CPose3D.h>
 
 #include <cstdio>

@@ -11,7 +11,7 @@ using namespace delio;
 
 std::string toyRawlog(const test::TemporaryFolder& folder, std::size_t scans) {
     test::writeSequence(folder / "toy", test::toyScans(scans));
-    const std::string rawlog = folder / "toy.rawlog";
+    std::string rawlog = folder / "toy.rawlog";
     const auto converted = test::runTool("kitti2rawlog", {"-i", folder / "toy", "-o", rawlog});
     EXPECT_EQ(converted.exitCode, 0) << converted.err;
     return rawlog;
@@ -42,7 +42,8 @@ TEST(DelioFigures, BadInput) {
     const test::TemporaryFolder folder;
     const std::string rawlog = toyRawlog(folder, 3);
     const std::string out = folder / "figures";
-    const auto expect = [&](std::vector<std::string> options, int code, const std::string& what) {
+    const auto expect = [&](const std::vector<std::string>& options, int code,
+                            const std::string& what) {
         const auto run = test::runTool("delio-figures", options);
         EXPECT_EQ(run.exitCode, code) << what;
         EXPECT_NE(run.err.find(what), std::string::npos) << run.err;

@@ -93,15 +93,16 @@ class Decoder {
     void decode(const Block& block, const Block* first, std::size_t firstLaser, double turn) {
         // A VLP-16 fires twice within a block.
         const std::size_t perFiring = std::min(kReturns, lasers_.size());
-        const auto firings = static_cast<double>(kReturns / perFiring);
+        const std::size_t firings = kReturns / perFiring;
         for (std::size_t k = 0; k < kReturns; ++k) {
             const auto& measured = block.laser_returns[k];
             if (measured.distance() == 0) continue;
             if (first && first->laser_returns[k].distance() == measured.distance()) continue;
+            const std::size_t firing = k / perFiring, laser = k % perFiring;
             const double share =
-                (static_cast<double>(k / perFiring) + times_.share(k % perFiring)) / firings;
+                (static_cast<double>(firing) + times_.share(laser)) / static_cast<double>(firings);
             const double azimuth = mrpt::DEG2RAD(0.01 * (block.rotation() + turn * share));
-            add(firstLaser + k % perFiring, azimuth, measured);
+            add(firstLaser + laser, azimuth, measured);
         }
     }
 

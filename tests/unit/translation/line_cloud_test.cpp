@@ -25,7 +25,8 @@ std::size_t sectorOf(const Eigen::Vector3d& p, unsigned sectors) {
 }
 
 bool same(const LineCloud& a, const LineCloud& b) {
-    return a.midpoints == b.midpoints && a.directions == b.directions && a.lengths == b.lengths;
+    return a.lengths.size() == b.lengths.size() && a.midpoints == b.midpoints &&
+           a.directions == b.directions && a.lengths == b.lengths;
 }
 
 /** A point by its coordinates: the ends of a line are midpoint -+ length/2 direction. */
