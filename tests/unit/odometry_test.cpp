@@ -69,6 +69,7 @@ std::vector<OdometryResult> resultsOf(const std::vector<Scan>& scans,
                                       const OdometryOptions& options = quick()) {
     Odometry odometry(options);
     std::vector<OdometryResult> results;
+    results.reserve(scans.size());
     for (const auto& scan : scans) results.push_back(odometry.process(scan));
     return results;
 }

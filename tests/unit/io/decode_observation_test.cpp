@@ -98,8 +98,8 @@ struct Spinner {
             const double behind = dual && part == 1 && laser == 3 ? 1 : 0;
             const double metres = range(laser, 0.01 * (shot + share(k)) * turn) + behind;
             const auto units = static_cast<std::uint16_t>(std::lround(metres / 0.002));
-            std::memcpy(&bytes[static_cast<std::size_t>(4 + 3 * k)], &units, 2);
-            bytes[static_cast<std::size_t>(6 + 3 * k)] = static_cast<std::uint8_t>(8 * k);
+            std::memcpy(&bytes[4 + 3 * static_cast<std::size_t>(k)], &units, 2);
+            bytes[6 + 3 * static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(8 * k);
         }
         return bytes;
     }

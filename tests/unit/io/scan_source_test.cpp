@@ -196,6 +196,7 @@ TEST(ScanSource, WhatCameBeforeACutComesOutThenOneError) {
 TEST(ScanSource, LabelsAndFractionOfPlainAndCompressedRawlogs) {
     const test::TemporaryFolder folder;
     std::vector<mrpt::serialization::CSerializable::Ptr> objects;
+    objects.reserve(6);
     for (int scan = 0; scan < 6; ++scan)
         objects.push_back(cloudObservation(scan, scan % 3 == 1 ? "second" : "first"));
     writeRawlog(folder / "plain.rawlog", objects);

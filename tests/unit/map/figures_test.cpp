@@ -18,7 +18,7 @@ std::vector<int> colouredByThird(const mrpt::img::CImage& picture) {
             const int r = picture.at<uint8_t>(x, y, 0), g = picture.at<uint8_t>(x, y, 1),
                       b = picture.at<uint8_t>(x, y, 2);
             const int spread = std::max({r, g, b}) - std::min({r, g, b});
-            count[3 * x / picture.getWidth()] += spread > 40;
+            count[std::size_t{3} * x / picture.getWidth()] += spread > 40;
         }
     return count;
 }

@@ -24,8 +24,8 @@ SurfaceNormals corner(double noise_deg) {
     normals.points.resize(3, 2 * kEach);
     normals.planarity = Eigen::VectorXf::Constant(2 * kEach, 0.9F);
     for (Eigen::Index i = 0; i < 2 * kEach; ++i) {
-        const double u = 0.4 * static_cast<double>(i % kEach % 20),
-                     v = 0.4 * static_cast<double>(i % kEach / 20);
+        const Eigen::Index column = i % kEach % 20, row = i % kEach / 20;
+        const double u = 0.4 * static_cast<double>(column), v = 0.4 * static_cast<double>(row);
         const bool ground = i < kEach;
         normals.points.col(i) << static_cast<float>(ground ? 5 - u : 5), static_cast<float>(v),
             static_cast<float>(ground ? -2 : u - 2);
