@@ -11,7 +11,7 @@ namespace delio::rotation {
  *  sought, so that small structures are kept beside the ground. The paper gives no numbers. */
 struct MeanShiftOptions : public StageOptions {
     unsigned min_pattern = 500;
-    double min_observability = 0.02;
+    double min_observability = 0.01;
     double seed_spacing_deg = 10;
     double window_deg = 20;
     unsigned max_iterations = 50;
