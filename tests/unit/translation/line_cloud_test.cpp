@@ -71,6 +71,44 @@ TEST(LineCloud, LinesConnectNeighbouringRingsWithinASector) {
     EXPECT_EQ(lines.drawn, options.drawn * inBin.size());
 }
 
+/** Faces of the scene's blocks that a point lies on: block, axis, and low or high end. */
+std::set<std::size_t> facesAt(const test::Scene& scene, const Eigen::Vector3d& p) {
+    std::set<std::size_t> faces;
+    for (std::size_t b = 0; b < scene.size(); ++b)
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto number = 6 * b + 2 * static_cast<std::size_t>(axis);
+            if (std::abs(p[axis] - scene[b].low[axis]) < 1e-3) faces.insert(number);
+            if (std::abs(p[axis] - scene[b].high[axis]) < 1e-3) faces.insert(number + 1);
+        }
+    return faces;
+}
+
+/** Share of the lines that have both ends on one face. */
+double shareOnOneSurface(const LineCloud& lines, const test::Scene& scene) {
+    double inside = 0;
+    for (Eigen::Index i = 0; i < lines.midpoints.cols(); ++i) {
+        const Eigen::Vector3f half = lines.lengths[i] / 2 * lines.directions.col(i);
+        const auto a = facesAt(scene, (lines.midpoints.col(i) - half).cast<double>());
+        const auto b = facesAt(scene, (lines.midpoints.col(i) + half).cast<double>());
+        inside +=
+            std::any_of(a.begin(), a.end(), [&](std::size_t face) { return b.count(face) > 0; });
+    }
+    return inside / static_cast<double>(lines.midpoints.cols());
+}
+
+// Why the shortest are kept.
+TEST(LineCloud, LinesStayOnOneSurface) {
+    test::Noise noise;
+    const auto scene = test::room();
+    const auto made = test::ringScan(scene, {}, {64, 1440, -24, 8, 0}, noise);
+    LineCloudOptions all;
+    all.kept = all.drawn;
+    const double kept = shareOnOneSurface(drawLines(made.points, made.rings, {}), scene);
+    const double drawn = shareOnOneSurface(drawLines(made.points, made.rings, all), scene);
+    EXPECT_GT(kept, 0.97);
+    EXPECT_GT(1 - drawn, 1.5 * (1 - kept));
+}
+
 TEST(LineCloud, TheShortestOfThoseDrawnAreKept) {
     const auto made = scan();
     LineCloudOptions all;
