@@ -95,7 +95,9 @@ void drawOutlierRemoval(const Scan& scan, const OdometryOptions& options, const 
 /** The line cloud of a scan, and the pairs with the next one's before and after registration. */
 void drawLines(const std::vector<Scan>& scans, const OdometryOptions& options,
                const Figures& figures) {
-    Odometry odometry(options);
+    OdometryOptions stages = options;
+    stages.tracker.enabled = false;  // lines are drawn on the paper's way only
+    Odometry odometry(stages);
     const auto from = odometry.process(scans[0]);
     const auto to = odometry.process(scans[1]);
     map::SnapshotOptions view = map::topView();
@@ -122,7 +124,7 @@ int main(int argc, char** argv) {
     Text output("o", "output", "Folder for the figures", true, "", "OUTDIR", cmd);
     TCLAP::ValueArg<cli::Count> scan("", "scan", "First of the scans that are shown, from 0", false,
                                      {}, "N", cmd);
-    Text profile("", "profile", "paper or paper-literal", false, "paper", "NAME", cmd);
+    Text profile("", "profile", "accurate, paper or paper-literal", false, "paper", "NAME", cmd);
     TCLAP::MultiArg<std::string> set("", "set", "One option; may be repeated", false,
                                      "section.key=value", cmd);
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);

@@ -110,7 +110,6 @@ OdometryResult Odometry::processWithMap(const Scan& scan) {
     result.times_ms[kPlaneMap] = tracked.map_ms;
     result.counts.points = static_cast<std::size_t>(cloud.points.cols());
     result.counts.notFinite = cloud.notFinite;
-    result.counts.planePoints = tracked.points;
     result.registration.rotation = tracked.estimate.rotation;
     result.registration.translation = tracked.estimate.translation;
     result.increment = incrementOf(tracked.estimate.rotation, tracked.estimate.translation);

@@ -31,6 +31,11 @@ TEST(DelioFigures, MakesASceneAndAPictureOfEachStage) {
         EXPECT_TRUE(picture.loadFromFile(out + "/" + name + ".png"));
         EXPECT_GT(picture.getWidth(), 900U);
     }
+    // The profile that draws no lines of its own gives the same figures.
+    EXPECT_EQ(test::runTool("delio-figures",
+                            {"-i", rawlog, "-o", folder / "accurate", "--profile", "accurate"})
+                  .exitCode,
+              0);
     // They are not overwritten unless that is wanted.
     const auto again = test::runTool("delio-figures", {"-i", rawlog, "-o", out});
     EXPECT_EQ(again.exitCode, 1);

@@ -66,7 +66,6 @@ struct FeatureCounts {
     std::size_t pattern = 0;    //!< normals, or cells of modes, left in the pattern
     std::size_t modes = 0;      //!< that mean shift found; 0 where it was not needed
     std::size_t lines = 0;
-    std::size_t planePoints = 0;  //!< registered against the map of planes
 };
 
 /** Scan `to` against scan `from`. */

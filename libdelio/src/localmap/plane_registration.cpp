@@ -93,9 +93,9 @@ void settle(const PlaneMatches& matches, const Pose& pose, const PlaneRegistrati
     rotation.matches = matches.size();
     rotation.observability = turn.information.selfadjointView<Eigen::Lower>().eigenvalues() /
                              std::max(turn.weight, 1e-12);
-    rotation.covariance =
-        covarianceOf(turn.information, options.min_rotation_share * turn.information.norm(), noise,
-                     std::pow(options.prior_sigma_deg * kDeg, 2), rotation);
+    rotation.covariance = covarianceOf(
+        turn.information, options.min_rotation_share * rotation.observability[2] * turn.weight,
+        noise, std::pow(options.prior_sigma_deg * kDeg, 2), rotation);
     rotation.valid = true;
     auto& translation = estimate.translation;
     translation.translation = pose.t;
@@ -139,6 +139,7 @@ std::vector<OptionField> PlaneRegistrationOptions::fields() {
         {"search_speed", &search_speed,
          "m/s; where the motion is not known, what can be driven at this speed is searched", 0,
          1000},
+        {"search_radius", &search_radius, "m; but no farther than this", 0, 200},
         {"search_step", &search_step, "m; distance between the starts of that search", 0.1, 50}};
 }
 

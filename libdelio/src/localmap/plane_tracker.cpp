@@ -54,7 +54,9 @@ PlaneEstimate PlaneTracker::search(const rotation::SurfaceNormals& surfaces,
         rotation::patternOf(surfacesOf(latest_)), rotation::patternOf(surfaces),
         R.transpose() * rotationOf(guess), patternOptions_);
     return searchInPlanes(map_, points, surfaces, R * pattern.rotation, translationOf(guess),
-                          registrationOptions_.search_speed * duration_s, registrationOptions_);
+                          std::min(registrationOptions_.search_speed * duration_s,
+                                   registrationOptions_.search_radius),
+                          registrationOptions_);
 }
 
 PlaneEstimate PlaneTracker::place(const Eigen::Matrix3Xf& all, const Eigen::Matrix3Xd& points,
@@ -93,7 +95,6 @@ Tracked PlaneTracker::track(const Eigen::Matrix3Xf& points, double stamp_s) {
     const Eigen::Matrix3Xf fine = scan::voxelCentroids(points, options_.map_spacing);
     const Eigen::Matrix3Xd thinned =
         scan::voxelCentroids(fine, options_.scan_spacing).cast<double>();
-    result.points = static_cast<std::size_t>(thinned.cols());
     if (started_) {
         const double elapsed = stamp_s - stamp_s_;
         const double duration_s = elapsed > 0 ? elapsed : 0.1;
@@ -109,6 +110,14 @@ Tracked PlaneTracker::track(const Eigen::Matrix3Xf& points, double stamp_s) {
             prediction_.observe(pose - pose_, duration_s);
         pose_ = pose;
         lost_ = result.predicted;
+        constexpr unsigned kPatience = 3;
+        if (!result.predicted)
+            misses_ = 0;
+        else if (points.cols() > 0 && ++misses_ == kPatience) {
+            misses_ = 0;
+            map_.clear();
+            started_ = false;
+        }
     } else {
         result.estimate =
             predictedEstimate(rotationOf(pose_), translationOf(pose_), registrationOptions_);

@@ -208,6 +208,25 @@ std::vector<Scan> driveScans(const std::vector<double>& x, test::Noise& noise) {
     return scans;
 }
 
+// The recording pauses for a quarter of an hour: what the prediction says then is far off.
+TEST(OdometryWithMap, BeginsANewMapAfterALongPause) {
+    test::Noise noise;
+    const std::vector<double> x = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+    auto scans = driveScans(x, noise);
+    for (std::size_t i = 4; i < scans.size(); ++i) scans[i].stamp_s += 900;
+    Odometry odometry(Options::ofProfile("accurate").odometry);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const auto result = odometry.process(scans[i]);
+        EXPECT_EQ(result.predicted, i >= 4 && i <= 6) << i << " " << result.reason;
+        const Eigen::Matrix<double, 6, 6> C = result.increment.covariance.asEigen();
+        EXPECT_TRUE(C.allFinite());
+        if (i == 0 || result.predicted) continue;
+        const CPose3D truth =
+            CPose3D(x[i], 0, 0, 0.01 * x[i], 0, 0) - CPose3D(x[i - 1], 0, 0, 0.01 * x[i - 1], 0, 0);
+        EXPECT_LT(result.increment.pose.distanceTo(truth), 0.03) << i;
+    }
+}
+
 TEST(OdometryWithMap, FollowsADriveAlsoWhereScansAreMissingOrEmpty) {
     test::Noise noise;
     const std::vector<double> x = {0, 1, 2, 3, 6, 7, 8, 9, 10};  // two are lost after 3

@@ -49,6 +49,9 @@ class PlaneMap {
     /** The plane of the voxel that `point` lies in, or none. Valid until the map changes. */
     const Plane* at(const Eigen::Vector3d& point) const;
 
+    /** Drops everything. */
+    void clear() { cells_.clear(); }
+
     std::size_t voxels() const { return cells_.size(); }
     std::size_t planes() const;
 

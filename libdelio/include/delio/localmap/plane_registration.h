@@ -23,6 +23,7 @@ struct PlaneRegistrationOptions : public StageOptions {
     double prior_sigma = 0.5;
     double prior_sigma_deg = 1.0;
     double search_speed = 40;
+    double search_radius = 30;
     double search_step = 1;
 
  protected:

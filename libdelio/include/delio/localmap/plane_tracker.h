@@ -30,11 +30,11 @@ struct Tracked {
     mrpt::poses::CPose3D pose;  //!< the same, or the prediction
     bool predicted = false;     //!< the scan could not be placed
     std::string reason;         //!< why
-    std::size_t points = 0;     //!< that were registered
     double register_ms = 0, map_ms = 0;
 };
 
-/** Registers scan after scan against the planes of those before. */
+/** Registers scan after scan against the planes of those before. Where three in a row that are not
+ *  empty cannot be placed (the recording was interrupted), a new map is begun at the prediction. */
 class PlaneTracker {
  public:
     PlaneTracker(const PlaneTrackerOptions& options, const PlaneMapOptions& map,
@@ -78,6 +78,7 @@ class PlaneTracker {
     bool lost_ = true;           //!< where the next scan will be is not known to better than metres
     std::deque<double> modelErrors_m_;  //!< of the latest predictions
     double usualShare_ = 0;             //!< of points on planes
+    unsigned misses_ = 0;               //!< scans in a row that were not found in the map
     Eigen::Matrix3Xf latest_;           //!< points of the latest scan that was placed
     mrpt::poses::CPose3D latestPose_;   //!< its pose
 };
