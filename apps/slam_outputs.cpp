@@ -99,14 +99,15 @@ void SlamRun::readSideFiles(const std::string& rawlog, const std::string& truth,
     truthWasAskedFor_ = !truth.empty();
 }
 
-void SlamRun::addScan(const Scan& scan, const ScanReport& report, double read_ms) {
+void SlamRun::addScan(const Scan& scan, ScanReport report, double read_ms) {
     if (stampsRise_ && !reports.empty() && scan.stamp_s <= reports.back().stamp_s) {
         stampsRise_ = false;
         warn(format("scan %zu is not later than the one before: trajectory_tum.txt is left out",
                     scan.index));
     }
-    reports.push_back(report);
-    reports.back().odometry.features.reset();  // Slam keeps what registration needs
+    report.odometry.features.reset();  // Slam keeps what registration needs
+    report.odometry.used = {};
+    reports.push_back(std::move(report));
     sensorPoses_.push_back(scan.sensorPose);
     read_ms_.push_back(read_ms);
 }

@@ -28,8 +28,7 @@ VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
     return result;
 }
 
-Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size) {
-    const VoxelNumbers numbers = numberVoxels(points, size);
+Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers& numbers) {
     Eigen::Matrix3Xf centroids = Eigen::Matrix3Xf::Zero(3, numbers.voxels);
     Eigen::VectorXf counts = Eigen::VectorXf::Zero(numbers.voxels);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -39,5 +38,9 @@ Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size) {
     }
     centroids.array().rowwise() /= counts.transpose().array();
     return centroids;
+}
+
+Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size) {
+    return centroidsOf(points, numberVoxels(points, size));
 }
 }  // namespace delio::scan
