@@ -22,34 +22,48 @@ bool alike(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
 }  // namespace
 
 std::vector<OptionField> MovingObjectsOptions::fields() {
-    return {{"enabled", &enabled, "true: what moves is kept out of registration and map"},
-            {"cell_deg", &cell_deg, "deg; directions are told apart by this", 0.05, 10},
-            {"margin", &margin, "m; a beam that went on by this saw a place free", 0, 10},
-            {"interval_s", &interval_s, "s; between the earlier scans that are looked at", 0, 100},
-            {"memory_s", &memory_s, "s; the earliest of them", 0, 100},
-            {"min_share", &min_share, "of a segment's points in places seen free", 0, 1}};
+    return {
+        {"enabled", &enabled, "true: what moves is kept out of registration and map"},
+        {"cell_deg", &cell_deg, "deg; directions are told apart by this", 0.05, 10},
+        {"margin", &margin, "m; a beam that went on by this saw a place free", 0, 10},
+        {"interval_s", &interval_s, "s; between the earlier scans that are looked at", 0, 100},
+        {"memory_s", &memory_s, "s; the earliest of them", 0, 100},
+        {"min_share", &min_share,
+         "of a segment's points in places of which something is known, those seen free", 0, 1},
+        {"min_known", &min_known, "share of its points of whose places something is known", 0, 1}};
 }
 
-double MovingObjects::shareFree(const Object& object, const View& seen, const View& by) const {
+bool MovingObjects::isFree(const Object& object, const View& seen, const View& by,
+                           double minKnown) const {
     const Eigen::Isometry3f toSensor = by.toMap.inverse() * seen.toMap;
-    int free = 0;
-    for (Eigen::Index i = 0; i < object.points.cols(); ++i)
-        free += by.image.at(toSensor * Eigen::Vector3f(object.points.col(i)),
-                            static_cast<float>(options_.margin)) == Place::kFree;
-    return static_cast<double>(free) / static_cast<double>(object.points.cols());
+    int free = 0, taken = 0;
+    for (Eigen::Index i = 0; i < object.points.cols(); ++i) {
+        const Place place = by.image.at(toSensor * Eigen::Vector3f(object.points.col(i)),
+                                        static_cast<float>(options_.margin));
+        free += place == Place::kFree;
+        taken += place == Place::kTaken;
+    }
+    const double known = free + taken;
+    return free > 0 && free >= options_.min_share * known &&
+           known >= minKnown * static_cast<double>(object.points.cols());
 }
 
 bool MovingObjects::came(const Object& object) const {
-    return std::any_of(views_.begin(), views_.end(), [&](const View& view) {
-        return shareFree(object, latest_, view) >= options_.min_share;
-    });
+    // Leaves and edges let beams through now and then: two scans have to agree where there are two.
+    constexpr std::size_t kWitnesses = 2;
+    std::size_t witnesses = 0;
+    for (const auto& view : views_) {
+        witnesses += isFree(object, latest_, view, options_.min_known);
+        if (witnesses == kWitnesses) return true;
+    }
+    return witnesses > 0 && witnesses == views_.size();
 }
 
 bool MovingObjects::droveAhead(const Object& object) const {
     constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTolerance = 0.15F;
+    constexpr double kLeastKnown = 0.05;  // near the vehicle places are left below all beams
     const auto gone = [&](const Object& earlier, const View& view) {
-        return alike(earlier.size, object.size) &&
-               shareFree(earlier, view, latest_) >= options_.min_share;
+        return alike(earlier.size, object.size) && isFree(earlier, view, latest_, kLeastKnown);
     };
     const Eigen::Vector3f here = latest_.toMap * object.centre;
     for (std::size_t i = 0; i < views_.size(); ++i) {
@@ -77,9 +91,7 @@ bool MovingObjects::droveAhead(const Object& object) const {
     return false;
 }
 
-bool MovingObjects::moves(const Object& object) const {
-    return came(object) || droveAhead(object);
-}
+bool MovingObjects::moves(const Object& object) const { return came(object) || droveAhead(object); }
 
 std::vector<std::uint8_t> MovingObjects::find(const Eigen::Matrix3Xf& points,
                                               const Eigen::Matrix3Xf& all,

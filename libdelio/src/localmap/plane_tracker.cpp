@@ -75,29 +75,28 @@ PlaneEstimate PlaneTracker::search(const rotation::SurfaceNormals& surfaces,
 PlaneTracker::View PlaneTracker::viewOf(const scan::PointCloud& cloud,
                                         const scan::Motion& motion) const {
     View view;
-    view.points = cloud.times_s.empty() ? cloud.points
-                                        : scan::deskew(cloud.points, cloud.times_s, motion);
+    view.points =
+        cloud.times_s.empty() ? cloud.points : scan::deskew(cloud.points, cloud.times_s, motion);
     view.moving.resize(static_cast<std::size_t>(view.points.cols()));
     return view;
 }
 
 void PlaneTracker::thin(View& view) const {
-    view.fine = scan::voxelCentroids(unmarked(view.points, view.moving), options_.tracker.map_spacing);
-    view.thinned =
-        scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
+    view.fine =
+        scan::voxelCentroids(unmarked(view.points, view.moving), options_.tracker.map_spacing);
+    view.thinned = scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
 }
 
 void PlaneTracker::leaveOutWhatMoves(View& view, const CPose3D& pose, double stamp_s) {
     if (!options_.moving.enabled) return;
     const auto voxels = scan::numberVoxels(view.points, options_.tracker.map_spacing);
-    const auto moving = movingObjects_.find(scan::centroidsOf(view.points, voxels), view.points,
-                                            pose, stamp_s);
+    const auto moving =
+        movingObjects_.find(scan::centroidsOf(view.points, voxels), view.points, pose, stamp_s);
     for (std::size_t i = 0; i < view.moving.size(); ++i)
         view.moving[i] = moving[static_cast<std::size_t>(voxels.ofPoint[i])];
 }
 
-PlaneEstimate PlaneTracker::place(const View& view, const CPose3D& guess,
-                                  double duration_s) const {
+PlaneEstimate PlaneTracker::place(const View& view, const CPose3D& guess, double duration_s) const {
     if (lost_) return search(surfacesOf(view.points), view.thinned, guess, duration_s);
     const auto found = registerToPlanes(map_, view.thinned, rotationOf(guess), translationOf(guess),
                                         kernel(), options_.registration);
@@ -111,7 +110,8 @@ PlaneEstimate PlaneTracker::place(const View& view, const CPose3D& guess,
     return agreed(searched) > agreed(found) ? searched : found;
 }
 
-/** Once more, with the points where the motion that was found puts them. */
+/** Once more, with the points where the motion that was found puts them. (It is the mean since the
+ *  last stamp. Extrapolated to this one it did worse: vehicles shake.) */
 void PlaneTracker::refine(const scan::PointCloud& cloud, double duration_s, View& view,
                           PlaneEstimate& estimate) {
     const auto motion = scan::Motion::of(poseOf(estimate) - pose_, duration_s);

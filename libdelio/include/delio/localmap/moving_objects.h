@@ -15,9 +15,10 @@ struct MovingObjectsOptions : public StageOptions {
     bool enabled = true;
     double cell_deg = 0.5;
     double margin = 0.4;
-    double interval_s = 0.2;
-    double memory_s = 1.2;
+    double interval_s = 0.1;
+    double memory_s = 0.8;
     double min_share = 0.5;
+    double min_known = 0.3;
 
  protected:
     std::vector<OptionField> fields() override;
@@ -58,7 +59,9 @@ class MovingObjects {
     bool moves(const Object& object) const;
     bool came(const Object& object) const;
     bool droveAhead(const Object& object) const;
-    double shareFree(const Object& object, const View& seen, const View& by) const;
+    /** True where scan `by` saw through the place that `object` took in scan `seen`. `minKnown`:
+     *  the share of its points whose places it has to know of. */
+    bool isFree(const Object& object, const View& seen, const View& by, double minKnown) const;
 
     MovingObjectsOptions options_;
     SegmentOptions segmentOptions_;
