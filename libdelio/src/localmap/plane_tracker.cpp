@@ -81,19 +81,22 @@ PlaneTracker::View PlaneTracker::viewOf(const scan::PointCloud& cloud,
     return view;
 }
 
+/** Thins the points for map and registration. */
 void PlaneTracker::thin(View& view) const {
     view.fine =
         scan::voxelCentroids(unmarked(view.points, view.moving), options_.tracker.map_spacing);
     view.thinned = scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
 }
 
-void PlaneTracker::leaveOutWhatMoves(View& view, const CPose3D& pose, double stamp_s) {
-    if (!options_.moving.enabled) return;
+/** The same where what moves is not known yet. */
+void PlaneTracker::thinWithoutWhatMoves(View& view, const CPose3D& pose, double stamp_s) {
     const auto voxels = scan::numberVoxels(view.points, options_.tracker.map_spacing);
-    const auto moving =
-        movingObjects_.find(scan::centroidsOf(view.points, voxels), view.points, pose, stamp_s);
+    const auto centroids = scan::centroidsOf(view.points, voxels);
+    const auto moving = movingObjects_.find(centroids, view.points, pose, stamp_s);
     for (std::size_t i = 0; i < view.moving.size(); ++i)
         view.moving[i] = moving[static_cast<std::size_t>(voxels.ofPoint[i])];
+    view.fine = unmarked(centroids, moving);
+    view.thinned = scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
 }
 
 PlaneEstimate PlaneTracker::place(const View& view, const CPose3D& guess, double duration_s) const {
@@ -177,8 +180,10 @@ void PlaneTracker::follow(const scan::PointCloud& cloud, double stamp_s, Tracked
     const double duration_s = elapsed > 0 ? elapsed : 0.1;
     const CPose3D step = prediction_.predict(duration_s), guess = pose_ + step;
     View view = viewOf(cloud, scan::Motion::of(step, duration_s));
-    if (!lost_) leaveOutWhatMoves(view, guess, stamp_s);
-    thin(view);
+    if (options_.moving.enabled && !lost_)
+        thinWithoutWhatMoves(view, guess, stamp_s);
+    else
+        thin(view);
     result.moving_ms = 1e3 * clock.Tac();
     clock.Tic();
     result.estimate = place(view, guess, duration_s);
@@ -193,7 +198,7 @@ void PlaneTracker::follow(const scan::PointCloud& cloud, double stamp_s, Tracked
     result.register_ms = 1e3 * clock.Tac();
     clock.Tic();
     if (found) {
-        if (!lost_) movingObjects_.remember(pose);
+        if (options_.moving.enabled && !lost_) movingObjects_.remember(pose);
         insert(view, pose);
         misses_ = 0;
     } else if (cloud.points.cols() > 0)

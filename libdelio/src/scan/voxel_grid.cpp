@@ -19,11 +19,18 @@ VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
     numbers.reserve(static_cast<std::size_t>(points.cols()));
     VoxelNumbers result;
     result.ofPoint.reserve(static_cast<std::size_t>(points.cols()));
+    // Most points lie in the voxel of the one before: a sensor gives neighbours after each other.
+    std::uint64_t latestKey = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const auto [entry, isNew] =
-            numbers.emplace(voxelKey(points.col(i).cast<double>(), size), result.voxels);
+        const std::uint64_t key = voxelKey(points.col(i).cast<double>(), size);
+        if (i > 0 && key == latestKey) {
+            result.ofPoint.push_back(result.ofPoint.back());
+            continue;
+        }
+        const auto [entry, isNew] = numbers.emplace(key, result.voxels);
         result.voxels += isNew;
         result.ofPoint.push_back(entry->second);
+        latestKey = key;
     }
     return result;
 }

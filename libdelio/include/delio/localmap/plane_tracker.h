@@ -77,7 +77,7 @@ class PlaneTracker {
         Eigen::Matrix3Xd thinned;          //!< for registration
     };
     View viewOf(const scan::PointCloud& cloud, const scan::Motion& motion) const;
-    void leaveOutWhatMoves(View& view, const mrpt::poses::CPose3D& pose, double stamp_s);
+    void thinWithoutWhatMoves(View& view, const mrpt::poses::CPose3D& pose, double stamp_s);
     PlaneEstimate place(const View& view, const mrpt::poses::CPose3D& guess,
                         double duration_s) const;
     PlaneEstimate search(const rotation::SurfaceNormals& surfaces, const Eigen::Matrix3Xd& points,
