@@ -111,6 +111,7 @@ OdometryResult Odometry::processWithMap(const Scan& scan) {
     result.times_ms[kPlaneMap] = tracked.map_ms;
     result.counts.points = static_cast<std::size_t>(cloud.points.cols());
     result.counts.notFinite = cloud.notFinite;
+    result.deskewed = !cloud.times_s.empty();
     result.counts.moving = static_cast<std::size_t>(
         std::count(tracked.moving.begin(), tracked.moving.end(), std::uint8_t{1}));
     result.used = {std::move(tracked.points), std::move(cloud.indices), std::move(tracked.moving)};

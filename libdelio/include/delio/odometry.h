@@ -98,6 +98,7 @@ struct OdometryResult {
     std::string reason;                        //!< why
     std::shared_ptr<const Features> features;  //!< none where scans go against the map of planes
     UsedPoints used;
+    bool deskewed = false;  //!< its points had times
     FeatureCounts counts;
     StageTimes times_ms{};
 };
