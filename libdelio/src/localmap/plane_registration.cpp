@@ -64,17 +64,21 @@ double shareOnPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points, const 
 /** Variances from information on the axes that are seen, the motion model's on the others. */
 template <typename Estimate>
 Eigen::Matrix3d covarianceOf(const Eigen::Matrix3d& information, double least, double noise,
-                             double prior, Estimate& estimate) {
+                             double prior, Estimate& estimate, Eigen::Matrix3d& inverseSeen) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(information);
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    inverseSeen = covariance;
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = axes.eigenvectors().col(k);
-        const bool observed = axes.eigenvalues()[k] > least;
-        if (!observed) {
+        const Eigen::Matrix3d along = axis * axis.transpose();
+        if (axes.eigenvalues()[k] > least) {
+            inverseSeen += along / axes.eigenvalues()[k];
+            covariance += noise / axes.eigenvalues()[k] * along;
+        } else {
             estimate.unobservedAxes.conservativeResize(3, estimate.unobservedAxes.cols() + 1);
             estimate.unobservedAxes.rightCols(1) = axis;
+            covariance += prior * along;
         }
-        covariance += (observed ? noise / axes.eigenvalues()[k] : prior) * axis * axis.transpose();
     }
     return covariance;
 }
@@ -86,8 +90,17 @@ void settle(const PlaneMatches& matches, const Pose& pose, const PlaneRegistrati
         rotation::rotationFromPlanes(matches, pose.R, pose.t, options.min_rotation_share);
     const auto move =
         translation::translationFromPlanes(matches, pose.R, pose.t, options.min_translation_share);
-    // Points of one surface err together, so that only a share of them counts.
-    const double noise = 1 / options.independent_share;
+    // The variance factor, as it turned out; points of one surface err together, so that only a
+    // share of them counts.
+    double weighted = 0, squared = 0;
+    for (const auto& match : matches) {
+        const double r = match.residual(pose.R, pose.t);
+        weighted += match.weight * r * r;
+        squared += r * r;
+    }
+    const auto count = static_cast<double>(matches.size());
+    const double noise = weighted / count / options.independent_share;
+    Eigen::Matrix3d inverseSeen;
     auto& rotation = estimate.rotation;
     rotation.rotation = pose.R;
     rotation.matches = matches.size();
@@ -95,7 +108,7 @@ void settle(const PlaneMatches& matches, const Pose& pose, const PlaneRegistrati
                              std::max(turn.weight, 1e-12);
     rotation.covariance = covarianceOf(
         turn.information, options.min_rotation_share * rotation.observability[2] * turn.weight,
-        noise, std::pow(options.prior_sigma_deg * kDeg, 2), rotation);
+        noise, std::pow(options.prior_sigma_deg * kDeg, 2), rotation, inverseSeen);
     rotation.valid = true;
     auto& translation = estimate.translation;
     translation.translation = pose.t;
@@ -104,13 +117,12 @@ void settle(const PlaneMatches& matches, const Pose& pose, const PlaneRegistrati
                                 std::max(move.weight, 1e-12);
     translation.covariance =
         covarianceOf(move.information, options.min_translation_share * move.weight, noise,
-                     options.prior_sigma * options.prior_sigma, translation);
-    // t follows an error w of the rotation by -H_tt^-1 H_tr w; here w is about the map's axes.
-    translation.lever = -translation.covariance / noise * move.mixed * pose.R.transpose();
+                     options.prior_sigma * options.prior_sigma, translation, inverseSeen);
+    // t follows an error w of the rotation by -H_tt^-1 H_tr w, where it is seen at all; here w is
+    // about the map's axes.
+    translation.lever = -inverseSeen * move.mixed * pose.R.transpose();
     translation.valid = true;
-    double squared = 0;
-    for (const auto& match : matches) squared += std::pow(match.residual(pose.R, pose.t), 2);
-    translation.residual_m = std::sqrt(squared / static_cast<double>(matches.size()));
+    translation.residual_m = std::sqrt(squared / count);
     rotation.residual_rad = 0;
     estimate.valid = true;
 }

@@ -45,11 +45,11 @@ struct TrackingOptions {
 
 /** A scan placed in the map. */
 struct Tracked {
-    PlaneEstimate estimate;     //!< sensor to map
-    mrpt::poses::CPose3D pose;  //!< the same, or the prediction
-    bool predicted = false;     //!< the scan could not be placed
-    std::string reason;         //!< why
-    Eigen::Matrix3Xf points;    //!< of the cloud, all as seen at the stamp
+    PlaneEstimate estimate;            //!< sensor to map
+    mrpt::poses::CPose3D pose;         //!< the same, or the prediction
+    bool predicted = false;            //!< the scan could not be placed
+    std::string reason;                //!< why
+    Eigen::Matrix3Xf points;           //!< of the cloud, all as seen at the stamp
     std::vector<std::uint8_t> moving;  //!< 1 for each of these points that belongs to what moves
     double register_ms = 0, moving_ms = 0, map_ms = 0;
 };
