@@ -6,12 +6,12 @@
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/system/CTicTac.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "delio/error.h"
-#include "delio/graph/information.h"
+#include "delio/pose_pdf.h"
 #include "delio/scan/voxel_grid.h"
 #include "increment_of.h"
 
@@ -45,7 +45,18 @@ Eigen::Matrix3Xf pointsOf(const CMetricMap* map, const std::string& which) {
     return points;
 }
 
-/** One alignment: what is known of both clouds, and the ways to bring them together. */
+/** How the map of planes is turned against the first cloud: clouds of buildings tend to have their
+ *  walls along their axes. On a border between voxels such a wall would lie over its whole length,
+ *  with half of its points on either side, and lose them to a step of a centimetre; it has to
+ *  cross the voxels. Nearly upright, for the search is horizontal. */
+Eigen::Matrix3d mapTurn() {
+    return (Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()) *
+            Eigen::AngleAxisd(0.02, Eigen::Vector3d(0.6, 0.8, 0)))
+        .toRotationMatrix();
+}
+
+/** One alignment: what is known of both clouds, and the ways to bring them together. Estimates are
+ *  in the turned map; see inFirst(). */
 class Alignment {
  public:
     Alignment(const Eigen::Matrix3Xf& from, const Eigen::Matrix3Xf& to,
@@ -55,7 +66,7 @@ class Alignment {
           map_(options.planeMap),
           points_(scan::voxelCentroids(to, options.scan_spacing).cast<double>()),
           surfaces_(surfacesOf(to)) {
-        map_.add(scan::voxelCentroids(from, options.map_spacing).cast<double>());
+        map_.add(turn_ * scan::voxelCentroids(from, options.map_spacing).cast<double>());
         if (map_.planes() == 0)
             throw Error("Aligner: the first map has no planes, of " + std::to_string(from.cols()) +
                         " points; it has to be a cloud of surfaces in 3D");
@@ -67,7 +78,8 @@ class Alignment {
     }
 
     PlaneEstimate fromEstimate(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) const {
-        return registerToPlanes(map_, points_, R, t, options_.planes.first_kernel, options_.planes);
+        return registerToPlanes(map_, points_, turn_ * R, turn_ * t, options_.planes.first_kernel,
+                                options_.planes);
     }
 
     /** Rotation first, by the paper's way, which no translation can disturb; then the best place
@@ -76,7 +88,7 @@ class Alignment {
         const auto pattern =
             rotation::registerPatterns(rotation::patternOf(surfacesOf(from_)),
                                        rotation::patternOf(surfaces_), R, options_.pattern);
-        return searchInPlanes(map_, points_, surfaces_, pattern.rotation, t,
+        return searchInPlanes(map_, points_, surfaces_, turn_ * pattern.rotation, turn_ * t,
                               options_.planes.search_radius, options_.planes);
     }
 
@@ -87,6 +99,18 @@ class Alignment {
                    : 0;
     }
 
+    /** The estimate with the first cloud's axes in place of the map's. */
+    PlaneEstimate inFirst(PlaneEstimate estimate) const {
+        const Eigen::Matrix3d back = turn_.transpose();
+        auto& translation = estimate.translation;
+        estimate.rotation.rotation = back * estimate.rotation.rotation;
+        translation.translation = back * translation.translation;
+        translation.covariance = back * translation.covariance * turn_;
+        translation.lever = back * translation.lever * turn_;
+        translation.unobservedAxes = back * translation.unobservedAxes;
+        return estimate;
+    }
+
  private:
     rotation::SurfaceNormals surfacesOf(const Eigen::Matrix3Xf& points) const {
         return rotation::filterBilaterally(rotation::estimateNormals(points, options_.normals),
@@ -95,23 +119,11 @@ class Alignment {
 
     const AlignerOptions& options_;
     const Eigen::Matrix3Xf& from_;
+    const Eigen::Matrix3d turn_ = mapTurn();
     PlaneMap map_;
     Eigen::Matrix3Xd points_;
     rotation::SurfaceNormals surfaces_;
 };
-
-/** MRPT's covariance of the pose's numbers, x y z yaw pitch roll. */
-CPose3DPDFGaussian pdfOf(const Increment& increment) {
-    const graph::Matrix6 information =
-        increment.covariance.asEigen().ldlt().solve(graph::Matrix6::Identity());
-    const graph::Matrix6 converted =
-        graph::convertInformation(information, increment.pose, graph::InformationOf::tangent,
-                                  graph::InformationOf::yawPitchRoll);
-    CPose3DPDFGaussian pdf(increment.pose);
-    const graph::Matrix6 covariance = converted.ldlt().solve(graph::Matrix6::Identity());
-    pdf.cov.asEigen() = (covariance + covariance.transpose()) / 2;
-    return pdf;
-}
 
 void tell(const PlaneEstimate& estimate, double agreement, bool searched, double seconds,
           mrpt::slam::TMetricMapAlignmentResult& out) {
@@ -198,9 +210,10 @@ mrpt::poses::CPose3DPDF::Ptr Aligner::Align3DPDF(
                                  options.planes.search_radius) +
                     std::to_string(options.planes.min_matches) +
                     " points of the second map lie on planes of the first");
+    estimate = alignment.inFirst(estimate);
     if (outInfo) tell(estimate, agreed, searched, clock.Tac(), outInfo.value().get());
     return std::make_shared<CPose3DPDFGaussian>(
-        pdfOf(incrementOf(estimate.rotation, estimate.translation)));
+        posePdfOf(incrementOf(estimate.rotation, estimate.translation)));
 }
 
 mrpt::poses::CPosePDF::Ptr Aligner::AlignPDF(
