@@ -76,7 +76,7 @@ double distanceToPlane(const Eigen::Vector3f& point, const Eigen::Matrix3Xf& clo
     const Eigen::Vector3d mean = sum / kNeighbours;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> pca(
         Eigen::Matrix3d(squares / kNeighbours - mean * mean.transpose()));
-    const Eigen::Vector3d variances = pca.eigenvalues();
+    const Eigen::Vector3d& variances = pca.eigenvalues();
     if (variances[0] > kFlatness * variances[1] || variances[1] < kBreadth * variances[2])
         return kNone;
     return std::abs(pca.eigenvectors().col(0).dot(mean));
@@ -105,6 +105,7 @@ Distances distances(const Eigen::Matrix3Xf& queries, const Eigen::Matrix3Xf& map
 
 MapPoints mapPoints(const std::vector<SplitScan>& scans, const Poses& rough, double spacing) {
     std::vector<Eigen::Matrix3Xf> thinned;
+    thinned.reserve(scans.size());
     for (const auto& scan : scans) thinned.push_back(scan::voxelCentroids(scan.used, spacing));
     const MapPoints all = joined(thinned);
     const Eigen::Matrix3Xf there = placed(all, rough);
@@ -121,6 +122,7 @@ MapPoints mapPoints(const std::vector<SplitScan>& scans, const Poses& rough, dou
 
 MapPoints heldOutPoints(const std::vector<SplitScan>& scans, double spacing) {
     std::vector<Eigen::Matrix3Xf> thinned;
+    thinned.reserve(scans.size());
     for (const auto& scan : scans) thinned.push_back(scan::voxelCentroids(scan.heldOut, spacing));
     return joined(thinned);
 }

@@ -123,6 +123,7 @@ void printDistances(const char* what, const std::vector<Entry>& entries,
     double first[2] = {0, 0};
     for (std::size_t e = 0; e < entries.size(); ++e) {
         std::vector<double> sorted;
+        sorted.reserve(common.size());
         for (const auto i : common) sorted.push_back(distances[e][i]);
         std::sort(sorted.begin(), sorted.end());
         const double figures[2] = {sorted[sorted.size() / 2], sorted[sorted.size() * 9 / 10]};
@@ -151,11 +152,15 @@ void printAgreement(const std::string& name, const char* what, const Poses& a, c
         degrees.push_back(evaluation::rotationAngle_rad(off) * 180 / M_PI);
     }
     const auto m = evaluation::spreadOf(metres), deg = evaluation::spreadOf(degrees);
+    const auto worst = [](const std::vector<double>& errors) {
+        return std::max_element(errors.begin(), errors.end()) - errors.begin();
+    };
     std::printf(
-        "  %-14s %-36s steps %.4f / %.4f m, %.4f / %.4f deg   poses %.4f / %.4f m, %.4f / %.4f "
-        "deg\n",
+        "  %-14s %-30s steps %.4f / %.4f m (%td), %.4f / %.4f deg (%td)   poses %.4f / %.4f m, "
+        "%.4f / %.4f deg\n",
         name.c_str(), what, steps.translation_m.median, steps.translation_m.max,
-        steps.rotation_deg.median, steps.rotation_deg.max, m.median, m.max, deg.median, deg.max);
+        worst(steps.translations_m), steps.rotation_deg.median, steps.rotation_deg.max,
+        worst(steps.rotations_deg), m.median, m.max, deg.median, deg.max);
 }
 
 void measure(const std::string& rawlog, Options options, const std::vector<std::string>& arguments,
@@ -203,7 +208,7 @@ void measure(const std::string& rawlog, Options options, const std::vector<std::
     std::printf("%s: %zu scans\n", rawlog.c_str(), scans.size());
     printDistances("map thickness", entries, thickness);
     printDistances("held-out residual", entries, residuals);
-    std::printf("there and back: median / worst disagreement\n");
+    std::printf("there and back: median / worst disagreement (number of the worst step)\n");
     for (const auto& entry : entries) {
         printAgreement(entry.name, "every scan: backwards", entry.all, entry.back);
         printAgreement(entry.name, "every second: backwards", entry.second, entry.secondBack);
