@@ -44,7 +44,7 @@ std::string textOf(const std::string& path) {
 /** From the weakest to the strongest: the profile, what the drive says of itself, -c, --set. */
 Options optionsFor(const Request& request, const std::optional<io::DriveMeta>& meta) {
     Options options = Options::ofProfile(request.profile);
-    if (meta) options.odometry.preprocess.vertical_correction_deg = meta->verticalCorrectionDeg;
+    if (meta) options.adaptTo(*meta);
     options.load(request.configText);
     for (const auto& assignment : request.assignments) options.set(assignment);
     return options;

@@ -99,14 +99,15 @@ void SlamRun::readSideFiles(const std::string& rawlog, const std::string& truth,
     truthWasAskedFor_ = !truth.empty();
 }
 
-void SlamRun::addScan(const Scan& scan, const ScanReport& report, double read_ms) {
+void SlamRun::addScan(const Scan& scan, ScanReport report, double read_ms) {
     if (stampsRise_ && !reports.empty() && scan.stamp_s <= reports.back().stamp_s) {
         stampsRise_ = false;
         warn(format("scan %zu is not later than the one before: trajectory_tum.txt is left out",
                     scan.index));
     }
-    reports.push_back(report);
-    reports.back().odometry.features.reset();  // Slam keeps what registration needs
+    report.odometry.features.reset();  // Slam keeps what registration needs
+    report.odometry.used = {};
+    reports.push_back(std::move(report));
     sensorPoses_.push_back(scan.sensorPose);
     read_ms_.push_back(read_ms);
 }
@@ -242,7 +243,7 @@ void SlamRun::writeScans() const {
     io::replaceTextFile(path("scans.csv"), [&](std::ostream& out) {
         out << "scan,stamp_s,points,not_finite,read_ms";
         for (const char* stage : kStageNames) out << "," << stage << "_ms";
-        out << ",graph_ms,normals,pattern,modes,lines,matches,residual_m,rotation_observability_1,"
+        out << ",graph_ms,moving,normals,pattern,modes,lines,matches,residual_m,rotation_observability_1,"
                "rotation_observability_2,rotation_observability_3,translation_observability_1,"
                "translation_observability_2,translation_observability_3,rotation_unobserved,"
                "translation_unobserved,predicted,reason\n";
@@ -254,7 +255,7 @@ void SlamRun::writeScans() const {
             out << report.index << format(",%.7f,", report.stamp_s) << counts.points << ","
                 << counts.notFinite << format(",%.3f", read_ms_[i]);
             for (const double ms : report.odometry.times_ms) out << format(",%.3f", ms);
-            out << format(",%.3f,", report.graph_ms) << counts.normals << "," << counts.pattern
+            out << format(",%.3f,", report.graph_ms) << counts.moving << "," << counts.normals << "," << counts.pattern
                 << "," << counts.modes << "," << counts.lines << "," << translation.matches
                 << format(",%.9g", translation.residual_m);
             for (int k = 0; k < 3; ++k) out << format(",%.9g", rotation.observability[k]);
@@ -301,6 +302,8 @@ void SlamRun::writeSummary(const Options& options) const {
     summary["predicted"] = predictedScans();
     summary["path_m"] = path_m();
     summary["vertical_correction_deg"] = options.odometry.preprocess.vertical_correction_deg;
+    summary["deskewed"] = std::count_if(reports.begin(), reports.end(),
+                                        [](const auto& r) { return r.odometry.deskewed; });
     summary["ms_per_scan"] = msPerScan();
     yaml stages = yaml::Map();
     double read = 0, graph = 0;

@@ -21,7 +21,7 @@ class SlamRun {
     void readSideFiles(const std::string& rawlog, const std::string& truth,
                        const std::string& truthFrame);
 
-    void addScan(const Scan& scan, const ScanReport& report, double read_ms);
+    void addScan(const Scan& scan, ScanReport report, double read_ms);
     /** One line for people: what became of the scan that was added last. */
     std::string describeLastScan() const;
     void warn(const std::string& text);

@@ -3,6 +3,7 @@
 #include <mrpt/system/CTicTac.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 #include "increment_of.h"
 
@@ -26,11 +27,10 @@ CPose3D orthonormalised(const CPose3D& pose) {
 }
 }  // namespace
 
-std::shared_ptr<const Features> Odometry::extract(const Scan& scan, FeatureCounts& counts,
+std::shared_ptr<const Features> Odometry::extract(const scan::PointCloud& cloud,
+                                                  FeatureCounts& counts,
                                                   StageTimes& times_ms) const {
     auto features = std::make_shared<Features>();
-    const auto cloud =
-        timed(times_ms[kPreprocess], [&] { return scan::preprocess(scan, options_.preprocess); });
     const auto raw = timed(times_ms[kNormals], [&] {
         return rotation::estimateNormals(cloud.points, options_.normals);
     });
@@ -87,13 +87,18 @@ OdometryResult Odometry::process(const Scan& scan) {
 
 OdometryResult Odometry::processWithMap(const Scan& scan) {
     OdometryResult result;
-    const auto cloud = timed(result.times_ms[kPreprocess],
-                             [&] { return scan::preprocess(scan, options_.preprocess); });
-    const auto tracked = tracker_.track(cloud.points, scan.stamp_s);
+    auto cloud = timed(result.times_ms[kPreprocess],
+                       [&] { return scan::preprocess(scan, options_.preprocess); });
+    auto tracked = tracker_.track(cloud, scan.stamp_s);
+    result.times_ms[kMoving] = tracked.moving_ms;
     result.times_ms[kPlanes] = tracked.register_ms;
     result.times_ms[kPlaneMap] = tracked.map_ms;
     result.counts.points = static_cast<std::size_t>(cloud.points.cols());
     result.counts.notFinite = cloud.notFinite;
+    result.deskewed = !cloud.times_s.empty();
+    result.counts.moving = static_cast<std::size_t>(
+        std::count(tracked.moving.begin(), tracked.moving.end(), std::uint8_t{1}));
+    result.used = {std::move(tracked.points), std::move(cloud.indices), std::move(tracked.moving)};
     result.registration.rotation = tracked.estimate.rotation;
     result.registration.translation = tracked.estimate.translation;
     result.increment = incrementOf(tracked.estimate.rotation, tracked.estimate.translation);
@@ -106,9 +111,12 @@ OdometryResult Odometry::processWithMap(const Scan& scan) {
 
 OdometryResult Odometry::processWithLastScan(const Scan& scan) {
     OdometryResult result;
-    result.features = extract(scan, result.counts, result.times_ms);
+    auto cloud = timed(result.times_ms[kPreprocess],
+                       [&] { return scan::preprocess(scan, options_.preprocess); });
+    result.features = extract(cloud, result.counts, result.times_ms);
     ++scans_;
     const auto& features = *result.features;
+    result.used = {std::move(cloud.points), std::move(cloud.indices), {}};
     const bool usable = result.counts.pattern > 0 && result.counts.lines > 0;
     if (reference_) {
         const CPose3D guess = sinceReference_ + prediction_.predict();

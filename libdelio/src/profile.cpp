@@ -43,6 +43,13 @@ Options Options::ofProfile(const std::string& name) {
     return options;
 }
 
+void Options::adaptTo(const io::DriveMeta& meta) {
+    constexpr double kKittiSweep_s = 0.1;
+    odometry.preprocess.vertical_correction_deg = meta.verticalCorrectionDeg;
+    odometry.preprocess.deskew = !meta.motionCompensated;
+    odometry.preprocess.sweep_s = meta.source == "kitti-raw" ? kKittiSweep_s : 0;
+}
+
 std::vector<std::string> Options::profileNames() {
     std::vector<std::string> names;
     for (const auto& [name, text] : profileTexts()) names.push_back(name);
@@ -62,6 +69,8 @@ std::vector<std::pair<std::string, StageOptions*>> Options::stages() {
             {"plane_tracker", &odometry.tracker},
             {"plane_map", &odometry.planeMap},
             {"plane_registration", &odometry.planes},
+            {"moving_objects", &odometry.moving},
+            {"segments", &odometry.segments},
             {"graph", &graph},
             {"map", &map}};
 }

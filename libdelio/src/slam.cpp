@@ -1,5 +1,7 @@
 #include "delio/slam.h"
 
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/system/CTicTac.h>
 
 #include <Eigen/Dense>
@@ -25,6 +27,26 @@ Increment ofVehicle(const Increment& ofSensor, const CPose3D& sensorFrom, const 
         Eigen::Matrix<double, 6, 6>((covariance + covariance.transpose()) / 2));
     return result;
 }
+
+/** What belongs into a map: the points that were used, without what moves, with the intensities
+ *  that the scan came with. */
+mrpt::maps::CPointsMap::Ptr pointsForMap(const Scan& scan, const UsedPoints& used) {
+    using mrpt::maps::CPointsMapXYZI;
+    const auto* bright = dynamic_cast<const CPointsMapXYZI*>(scan.points.get());
+    mrpt::maps::CPointsMap::Ptr points = mrpt::maps::CSimplePointsMap::Create();
+    if (bright) points = CPointsMapXYZI::Create();
+    points->reserve(used.indices.size());
+    for (std::size_t i = 0; i < used.indices.size(); ++i) {
+        if (!used.moving.empty() && used.moving[i]) continue;
+        const Eigen::Vector3f p = used.points.col(static_cast<Eigen::Index>(i));
+        if (bright)
+            points->insertPointRGB(p.x(), p.y(), p.z(),
+                                   bright->getPointIntensity_fast(used.indices[i]), 0, 0);
+        else
+            points->insertPointFast(p.x(), p.y(), p.z());
+    }
+    return points;
+}
 }  // namespace
 
 Slam::Slam(const Options& options, bool withGraph, bool withMap, const std::string& sensorLabel)
@@ -49,7 +71,9 @@ ScanReport Slam::process(const Scan& scan) {
         graph_.addEdge({latest.node - 1, latest.node, increment});
     }
     odometryTrajectory_.stamps_s.push_back(scan.stamp_s);
-    if (withMap_) map_.add(latest.node, poses.back(), *scan.points, scan.sensorPose, scan.time);
+    if (withMap_)
+        map_.add(latest.node, poses.back(), *pointsForMap(scan, report.odometry.used),
+                 scan.sensorPose, scan.time);
     if (withGraph_ && !report.odometry.predicted && report.odometry.features) {
         mrpt::system::CTicTac clock;
         addSkipEdges(latest);

@@ -112,7 +112,7 @@ void compare(const CPose3D& truth, const CPose3D& predicted, const OdometryResul
 
 void run(const std::string& rawlog, Options options) {
     const auto meta = io::readDriveMeta(rawlog);
-    if (meta) options.odometry.preprocess.vertical_correction_deg = meta->verticalCorrectionDeg;
+    if (meta) options.adaptTo(*meta);
     const auto truth = trueMotions(rawlog);
     io::ScanSource source(rawlog);
     Odometry odometry(options.odometry);

@@ -49,6 +49,19 @@ void expectPictureOfMap(const std::string& file) {
     EXPECT_GT(colours.size(), 30U);
 }
 
+/** No step far from that of another odometry on the same scans. */
+void expectStepsOfKissIcp(const std::string& extract, const std::string& out) {
+    DELIO_NEED_DATA("peers/kiss_icp");
+    const auto peer = io::readTrajectory(
+        (test::dataFolder() / "peers/kiss_icp" / (extract + ".txt")).string());
+    const auto own = io::readTrajectory(out + "/trajectory_kitti.txt");
+    const auto apart = evaluation::relativeError(peer.poses, own.poses);
+    std::printf("%s, steps from KISS-ICP's: at most %.3f m, %.3f deg\n", extract.c_str(),
+                apart.translation_m.max, apart.rotation_deg.max);
+    EXPECT_LT(apart.translation_m.max, 0.08);
+    EXPECT_LT(apart.rotation_deg.max, 0.25);
+}
+
 // KISS-ICP with the same correction has medians of 0.019 m and 0.056 deg on the first, and of 0.075
 // deg (95 %: 0.155) on the second.
 TEST(EndToEnd, AccurateOnBothExtracts) {
@@ -58,11 +71,13 @@ TEST(EndToEnd, AccurateOnBothExtracts) {
     EXPECT_EQ(of00["predicted"].as<int>(), 0);
     EXPECT_LT(of00["metrics"]["scan_translation_median_m"].as<double>(), 0.019);
     EXPECT_LT(of00["metrics"]["scan_rotation_median_deg"].as<double>(), 0.056);
+    expectStepsOfKissIcp("00_first16", folder / "00_first16accurate");
     DELIO_NEED_DATA("kitti/drive0005_first60");
     auto of0005 = runOn("drive0005_first60", folder, "accurate");
     EXPECT_EQ(of0005["predicted"].as<int>(), 0);
     EXPECT_LT(of0005["metrics"]["scan_rotation_median_deg"].as<double>(), 0.06);
     EXPECT_LT(of0005["metrics"]["scan_rotation_p95_deg"].as<double>(), 0.12);
+    expectStepsOfKissIcp("drive0005_first60", folder / "drive0005_first60accurate");
 }
 
 TEST(EndToEnd, FirstScansOfSequence00) {

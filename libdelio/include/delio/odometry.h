@@ -31,6 +31,8 @@ struct OdometryOptions {
     localmap::PlaneTrackerOptions tracker;
     localmap::PlaneMapOptions planeMap;
     localmap::PlaneRegistrationOptions planes;
+    localmap::MovingObjectsOptions moving;
+    localmap::SegmentOptions segments;
 };
 
 /** Stages that time is measured of, in the order in which a scan goes through them. */
@@ -43,13 +45,14 @@ enum Stage {
     kLines,
     kRotation,
     kTranslation,
+    kMoving,
     kPlanes,
     kPlaneMap,
     kStages
 };
 constexpr std::array<const char*, kStages> kStageNames = {
     "preprocess", "normals",  "bilateral",   "outliers", "mean_shift",
-    "lines",      "rotation", "translation", "planes",   "plane_map"};
+    "lines",      "rotation", "translation", "moving",   "planes", "plane_map"};
 using StageTimes = std::array<double, kStages>;  //!< milliseconds
 
 /** What is kept of a scan to register others with; sensor's frame. */
@@ -66,6 +69,16 @@ struct FeatureCounts {
     std::size_t pattern = 0;    //!< normals, or cells of modes, left in the pattern
     std::size_t modes = 0;      //!< that mean shift found; 0 where it was not needed
     std::size_t lines = 0;
+    std::size_t moving = 0;     //!< points that belong to what moves
+};
+
+/** The points of a scan that were used, as the sensor would have seen them all at once at the stamp:
+ *  metres, its frame, vertical angles corrected. */
+struct UsedPoints {
+    Eigen::Matrix3Xf points;
+    std::vector<std::uint32_t> indices;  //!< of each in the scan as it came
+    /** 1 for each that belongs to what moves; empty where that is not looked for. */
+    std::vector<std::uint8_t> moving;
 };
 
 /** Scan `to` against scan `from`. */
@@ -84,6 +97,8 @@ struct OdometryResult {
     bool predicted = false;                    //!< the scan could not be registered
     std::string reason;                        //!< why
     std::shared_ptr<const Features> features;  //!< none where scans go against the map of planes
+    UsedPoints used;
+    bool deskewed = false;  //!< its points had times
     FeatureCounts counts;
     StageTimes times_ms{};
 };
@@ -98,8 +113,9 @@ class Odometry {
     explicit Odometry(const OdometryOptions& options)
         : options_(options),
           prediction_(options.prediction),
-          tracker_(options.tracker, options.planeMap, options.planes, options.normals,
-                   options.bilateral, options.pattern, options.prediction) {}
+          tracker_({options.tracker, options.planeMap, options.planes, options.moving,
+                    options.segments, options.prediction, options.normals, options.bilateral,
+                    options.pattern}) {}
 
     OdometryResult process(const Scan& scan);
 
@@ -109,7 +125,7 @@ class Odometry {
                        bool search, StageTimes& times_ms) const;
 
  private:
-    std::shared_ptr<const Features> extract(const Scan& scan, FeatureCounts& counts,
+    std::shared_ptr<const Features> extract(const scan::PointCloud& cloud, FeatureCounts& counts,
                                             StageTimes& times_ms) const;
     OdometryResult processWithLastScan(const Scan& scan);
     OdometryResult processWithMap(const Scan& scan);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "delio/graph/pose_graph.h"
+#include "delio/io/drive_meta.h"
 #include "delio/map/map_builder.h"
 #include "delio/odometry.h"
 
@@ -17,6 +18,10 @@ struct Options {
     /** share/config/NAME.ini, which travels inside the library. Error for an unknown name. */
     static Options ofProfile(const std::string& name);
     static std::vector<std::string> profileNames();
+
+    /** What a drive says of its own sensor: the vertical correction, and whether its scans are to be
+     *  de-skewed (KITTI's raw ones, which come without times, by azimuth). */
+    void adaptTo(const io::DriveMeta& meta);
 
     /** Takes over the keys that are in `iniText`; throws Error that names an unknown section or
      *  key, a malformed value, or a line that is none of section, key = value and comment. */

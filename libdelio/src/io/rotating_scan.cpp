@@ -99,6 +99,7 @@ void decodeRotatingScan(const CObservationRotatingScan& observation, Scan& scan)
     checkSizes(observation);
     const auto& lasers = calibrationOf(observation).laser_corrections;
     const Azimuths azimuths(observation);
+    const int columns = columnsOfSpan(observation, !observation.rangeOtherLayers.empty());
     const bool withIntensity = observation.intensityImage.size() != 0;
     auto bright = withIntensity ? CPointsMapXYZI::Create() : nullptr;
     scan.points = bright;
@@ -120,6 +121,9 @@ void decodeRotatingScan(const CObservationRotatingScan& observation, Scan& scan)
                     bright->size() - 1,
                     static_cast<float>(observation.intensityImage(row, column)) / 255.0F);
             scan.rings.push_back(static_cast<std::uint16_t>(row));
+            if (observation.sweepDuration > 0)
+                scan.times_s.push_back(
+                    static_cast<float>(observation.sweepDuration * column / columns));
         }
     }
 }

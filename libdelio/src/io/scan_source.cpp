@@ -5,6 +5,7 @@
 #include <mrpt/obs/CSensoryFrame.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "delio/io/decode_observation.h"
 #include "delio/io/drive_meta.h"
 #include "gz_input.h"
+#include "point_extras.h"
 #include "rawlog_archive.h"
 
 namespace delio::io {
@@ -50,8 +52,11 @@ std::optional<Scan> ScanSource::next() {
     if (!observation) return {};
     Scan scan;
     try {
-        loadExternal(*observation);
+        const std::string file = loadExternal(*observation);
         scan = decodeObservation(*observation);
+        readPointExtras(file.empty() ? embeddedStem(count_ - 1)
+                                     : fs::path(file).replace_extension().string(),
+                        scan);
     } catch (const std::exception& e) {
         ended_ = true;
         throw Error("scan " + std::to_string(count_ - 1) + " of '" + path_ +
@@ -107,18 +112,26 @@ bool ScanSource::readEntry() {
     return true;
 }
 
-void ScanSource::loadExternal(const CObservation& observation) const {
+std::vector<std::string> ScanSource::imagesFolders() const {
+    if (!imagesFolder_.empty()) return {imagesFolder_};
+    return {sidecarPath(path_, "_Images"), (fs::path(path_).parent_path() / "Images").string()};
+}
+
+std::string ScanSource::embeddedStem(std::size_t scan) const {
+    char name[32];
+    std::snprintf(name, sizeof(name), "%06zu", scan);
+    return (fs::path(imagesFolders().front()) / name).string();
+}
+
+std::string ScanSource::loadExternal(const CObservation& observation) const {
     const auto* cloud = dynamic_cast<const CObservationPointCloud*>(&observation);
     if (!cloud || !cloud->isExternallyStored()) {
         observation.load();
-        return;
+        return "";
     }
     const fs::path name = cloud->getExternalStorageFile();
-    const fs::path beside = fs::path(path_).parent_path();
-    std::vector<fs::path> folders = {sidecarPath(path_, "_Images"), beside / "Images"};
-    if (!imagesFolder_.empty()) folders = {imagesFolder_};
     std::string tried;
-    for (const auto& folder : folders) {
+    for (const fs::path folder : imagesFolders()) {
         const fs::path file = name.is_absolute() ? name : folder / name;
         tried += (tried.empty() ? "'" : ", '") + file.parent_path().string() + "'";
         if (!fs::exists(file)) continue;
@@ -136,7 +149,7 @@ void ScanSource::loadExternal(const CObservation& observation) const {
         } catch (const std::exception&) {
             throw Error("cannot read its points from '" + file.string() + "'");
         }
-        return;
+        return file.string();
     }
     throw Error("its external file '" + name.string() + "' is in none of the folders tried: " +
                 tried + "; name the right one with --images");

@@ -46,6 +46,25 @@ int turnPerBlock(const Packet& packet) {
     return *middle;
 }
 
+/** Microseconds from `earlier` to `later`: a packet's clock counts from the full hour. */
+double microsecondsBetween(const Packet& earlier, const Packet& later) {
+    constexpr std::int64_t kHour_us = 3600000000;
+    const std::int64_t passed = std::int64_t{later.gps_timestamp()} - earlier.gps_timestamp();
+    return static_cast<double>((passed + kHour_us) % kHour_us);
+}
+
+/** The usual time from one packet to the next in microseconds; 0 where their clocks do not tell. */
+double packetPeriod_us(const std::vector<Packet>& packets) {
+    if (packets.size() < 2) return 0;
+    std::vector<double> periods;
+    for (std::size_t i = 1; i < packets.size(); ++i)
+        periods.push_back(microsecondsBetween(packets[i - 1], packets[i]));
+    const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
+    std::nth_element(periods.begin(), middle, periods.end());
+    constexpr double kSlowest_us = 10000;
+    return *middle < kSlowest_us ? *middle : 0;
+}
+
 /** The block with the first returns of those that block `b` holds second returns of, or none. It is
  *  told by its azimuth: the packet's byte for the return mode is another thing on an HDL-64E. */
 const Block* firstReturns(const Packet& packet, int b) {
@@ -64,13 +83,19 @@ class Decoder {
           minRange_(minRange),
           maxRange_(maxRange) {}
 
-    void decode(const Packet& packet) {
+    /** `start_s`: from the stamp to the packet, `period_s`: until the next one; with a period of 0
+     *  points get no times. */
+    void decode(const Packet& packet, double start_s, double period_s) {
         const double turn = turnPerBlock(packet);
         for (int b = 0; b < kBlocks; ++b) {
             const Block& block = packet.blocks[b];
             const bool lower = lasers_.size() == 64 && block.header() == Velodyne::LOWER_BANK;
+            const std::size_t before = points_.size();
             if (lower || block.header() == Velodyne::UPPER_BANK)
                 decode(block, firstReturns(packet, b), lower ? kReturns : 0, turn);
+            if (period_s > 0)
+                pointTimes_.insert(pointTimes_.end(), points_.size() - before,
+                                   static_cast<float>(start_s + period_s * b / kBlocks));
         }
     }
 
@@ -83,6 +108,7 @@ class Decoder {
         }
         scan.points = points;
         scan.rings = std::move(rings_);
+        scan.times_s = std::move(pointTimes_);
     }
 
  private:
@@ -132,6 +158,7 @@ class Decoder {
     double angleUnit_, minRange_, maxRange_;
     std::vector<Point> points_;
     std::vector<std::uint16_t> rings_;
+    std::vector<float> pointTimes_;
 };
 }  // namespace
 
@@ -153,7 +180,9 @@ void decodeVelodynePackets(const std::vector<Packet>& packets,
         throw Error("a Velodyne scan of " + std::to_string(lasers.size()) +
                     " lasers; models of 16, 32 and 64 are known");
     Decoder decoder(lasers, minRange, maxRange);
-    for (const auto& packet : packets) decoder.decode(packet);
+    const double period_s = 1e-6 * packetPeriod_us(packets);
+    for (const auto& packet : packets)
+        decoder.decode(packet, 1e-6 * microsecondsBetween(packets.front(), packet), period_s);
     decoder.moveTo(scan);
 }
 }  // namespace delio::io

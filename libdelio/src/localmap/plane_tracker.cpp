@@ -14,6 +14,19 @@ using mrpt::poses::CPose3D;
 namespace {
 Eigen::Matrix3d rotationOf(const CPose3D& pose) { return pose.getRotationMatrix().asEigen(); }
 Eigen::Vector3d translationOf(const CPose3D& pose) { return {pose.x(), pose.y(), pose.z()}; }
+CPose3D poseOf(const PlaneEstimate& estimate) {
+    return {estimate.rotation.rotation, estimate.translation.translation};
+}
+
+/** The points that are not marked. */
+Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std::uint8_t>& marks) {
+    Eigen::Matrix3Xf result(3, points.cols());
+    Eigen::Index kept = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        if (!marks[static_cast<std::size_t>(i)]) result.col(kept++) = points.col(i);
+    result.conservativeResize(3, kept);
+    return result;
+}
 }  // namespace
 
 std::vector<OptionField> PlaneTrackerOptions::fields() {
@@ -31,17 +44,17 @@ std::vector<OptionField> PlaneTrackerOptions::fields() {
 /** Three standard deviations of what the motion model was off lately, within the options. */
 double PlaneTracker::kernel() const {
     constexpr std::size_t kEnough = 3;
-    if (modelErrors_m_.size() < kEnough) return registrationOptions_.first_kernel;
+    if (modelErrors_m_.size() < kEnough) return options_.registration.first_kernel;
     double squares = 0;
     for (const double error : modelErrors_m_) squares += error * error;
     const double sigma = std::sqrt(squares / static_cast<double>(modelErrors_m_.size()));
-    return std::clamp(3 * sigma, 2 * registrationOptions_.last_kernel,
-                      registrationOptions_.first_kernel);
+    return std::clamp(3 * sigma, 2 * options_.registration.last_kernel,
+                      options_.registration.first_kernel);
 }
 
 rotation::SurfaceNormals PlaneTracker::surfacesOf(const Eigen::Matrix3Xf& points) const {
-    return rotation::filterBilaterally(rotation::estimateNormals(points, normalsOptions_),
-                                       bilateralOptions_);
+    return rotation::filterBilaterally(rotation::estimateNormals(points, options_.normals),
+                                       options_.bilateral);
 }
 
 PlaneEstimate PlaneTracker::search(const rotation::SurfaceNormals& surfaces,
@@ -52,27 +65,75 @@ PlaneEstimate PlaneTracker::search(const rotation::SurfaceNormals& surfaces,
     const Eigen::Matrix3d R = rotationOf(latestPose_);
     const auto pattern = rotation::registerPatterns(
         rotation::patternOf(surfacesOf(latest_)), rotation::patternOf(surfaces),
-        R.transpose() * rotationOf(guess), patternOptions_);
+        R.transpose() * rotationOf(guess), options_.pattern);
     return searchInPlanes(map_, points, surfaces, R * pattern.rotation, translationOf(guess),
-                          std::min(registrationOptions_.search_speed * duration_s,
-                                   registrationOptions_.search_radius),
-                          registrationOptions_);
+                          std::min(options_.registration.search_speed * duration_s,
+                                   options_.registration.search_radius),
+                          options_.registration);
 }
 
-PlaneEstimate PlaneTracker::place(const Eigen::Matrix3Xf& all, const Eigen::Matrix3Xd& points,
-                                  double duration_s) const {
-    const CPose3D guess = pose_ + prediction_.predict(duration_s);
-    if (lost_) return search(surfacesOf(all), points, guess, duration_s);
-    const auto found = registerToPlanes(map_, points, rotationOf(guess), translationOf(guess),
-                                        kernel(), registrationOptions_);
-    if (found.valid && found.share >= options_.lost_share * usualShare_) return found;
-    const auto surfaces = surfacesOf(all);
-    const auto searched = search(surfaces, points, guess, duration_s);
+PlaneTracker::View PlaneTracker::viewOf(const scan::PointCloud& cloud,
+                                        const scan::Motion& motion) const {
+    View view;
+    view.points =
+        cloud.times_s.empty() ? cloud.points : scan::deskew(cloud.points, cloud.times_s, motion);
+    view.moving.resize(static_cast<std::size_t>(view.points.cols()));
+    return view;
+}
+
+/** Thins the points for map and registration. */
+void PlaneTracker::thin(View& view) const {
+    view.fine =
+        scan::voxelCentroids(unmarked(view.points, view.moving), options_.tracker.map_spacing);
+    view.thinned = scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
+}
+
+/** The same where what moves is not known yet. */
+void PlaneTracker::thinWithoutWhatMoves(View& view, const CPose3D& pose, double stamp_s) {
+    const auto voxels = scan::numberVoxels(view.points, options_.tracker.map_spacing);
+    const auto centroids = scan::centroidsOf(view.points, voxels);
+    const auto moving = movingObjects_.find(centroids, view.points, pose, stamp_s);
+    for (std::size_t i = 0; i < view.moving.size(); ++i)
+        view.moving[i] = moving[static_cast<std::size_t>(voxels.ofPoint[i])];
+    view.fine = unmarked(centroids, moving);
+    view.thinned = scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
+}
+
+PlaneEstimate PlaneTracker::place(const View& view, const CPose3D& guess, double duration_s) const {
+    if (lost_) return search(surfacesOf(view.points), view.thinned, guess, duration_s);
+    const auto found = registerToPlanes(map_, view.thinned, rotationOf(guess), translationOf(guess),
+                                        kernel(), options_.registration);
+    if (found.valid && found.share >= options_.tracker.lost_share * usualShare_) return found;
+    const auto surfaces = surfacesOf(view.points);
+    const auto searched = search(surfaces, view.thinned, guess, duration_s);
     const auto agreed = [&](const PlaneEstimate& estimate) {
         return agreement(map_, surfaces, estimate.rotation.rotation,
-                         estimate.translation.translation, 2 * registrationOptions_.last_kernel);
+                         estimate.translation.translation, 2 * options_.registration.last_kernel);
     };
     return agreed(searched) > agreed(found) ? searched : found;
+}
+
+/** Once more, with the points where the motion that was found puts them. (It is the mean since the
+ *  last stamp. Extrapolated to this one it did worse: vehicles shake.) */
+void PlaneTracker::refine(const scan::PointCloud& cloud, double duration_s, View& view,
+                          PlaneEstimate& estimate) {
+    const auto motion = scan::Motion::of(poseOf(estimate) - pose_, duration_s);
+    if (skewed_) {
+        map_.clear();
+        View first = viewOf(*skewed_, motion);
+        thin(first);
+        insert(first, latestPose_);
+        skewed_.reset();
+    }
+    View again = viewOf(cloud, motion);
+    again.moving = view.moving;
+    thin(again);
+    const auto better = registerToPlanes(
+        map_, again.thinned, estimate.rotation.rotation, estimate.translation.translation,
+        2 * options_.registration.last_kernel, options_.registration);
+    if (!better.valid) return;
+    view = std::move(again);
+    estimate = better;
 }
 
 void PlaneTracker::learn(const CPose3D& pose, const CPose3D& guess, const PlaneEstimate& estimate) {
@@ -89,63 +150,83 @@ void PlaneTracker::learn(const CPose3D& pose, const CPose3D& guess, const PlaneE
         usualShare_ == 0 ? estimate.share : (1 - kForget) * usualShare_ + kForget * estimate.share;
 }
 
-Tracked PlaneTracker::track(const Eigen::Matrix3Xf& points, double stamp_s) {
+void PlaneTracker::insert(const View& view, const CPose3D& pose) {
+    map_.add((rotationOf(pose) * view.fine.cast<double>()).colwise() + translationOf(pose));
+    map_.forgetFarFrom(translationOf(pose));
+    latest_ = view.points;
+    latestPose_ = pose;
+}
+
+/** The first scan of a map. */
+void PlaneTracker::begin(const scan::PointCloud& cloud, Tracked& result) {
+    View view = viewOf(cloud, {});
+    thin(view);
+    insert(view, pose_);
+    if (!cloud.times_s.empty()) skewed_ = cloud;
+    started_ = map_.planes() > 0;
+    result.estimate =
+        predictedEstimate(rotationOf(pose_), translationOf(pose_), options_.registration);
+    // What was driven since scans that could not be used is not known.
+    if (!first_) result.reason = "no usable scan before it";
+    if (!started_) result.reason = cloud.points.cols() == 0 ? "no points" : "no surfaces";
+    result.points = std::move(view.points);
+    result.moving = std::move(view.moving);
+}
+
+/** Every other scan. */
+void PlaneTracker::follow(const scan::PointCloud& cloud, double stamp_s, Tracked& result) {
     mrpt::system::CTicTac clock;
-    Tracked result;
-    const Eigen::Matrix3Xf fine = scan::voxelCentroids(points, options_.map_spacing);
-    const Eigen::Matrix3Xd thinned =
-        scan::voxelCentroids(fine, options_.scan_spacing).cast<double>();
-    if (started_) {
-        const double elapsed = stamp_s - stamp_s_;
-        const double duration_s = elapsed > 0 ? elapsed : 0.1;
-        const CPose3D guess = pose_ + prediction_.predict(duration_s);
-        result.estimate = place(points, thinned, duration_s);
-        result.predicted = !result.estimate.valid;
-        if (result.predicted) result.reason = points.cols() == 0 ? "no points" : "too few planes";
-        const CPose3D pose = result.predicted ? guess
-                                              : CPose3D(result.estimate.rotation.rotation,
-                                                        result.estimate.translation.translation);
-        if (!result.predicted && prediction_.hasMotion()) learn(pose, guess, result.estimate);
-        if (!result.predicted || prediction_.hasMotion())
-            prediction_.observe(pose - pose_, duration_s);
-        pose_ = pose;
-        lost_ = result.predicted;
-        constexpr unsigned kPatience = 3;
-        if (!result.predicted)
-            misses_ = 0;
-        else if (points.cols() > 0 && ++misses_ == kPatience) {
-            misses_ = 0;
-            map_.clear();
-            started_ = false;
-        }
-    } else {
-        result.estimate =
-            predictedEstimate(rotationOf(pose_), translationOf(pose_), registrationOptions_);
-        // What was driven since scans that could not be used is not known.
-        result.predicted = !first_;
-        if (!first_) result.reason = "no usable scan before it";
-    }
-    first_ = false;
+    const double elapsed = stamp_s - stamp_s_;
+    const double duration_s = elapsed > 0 ? elapsed : 0.1;
+    const CPose3D step = prediction_.predict(duration_s), guess = pose_ + step;
+    View view = viewOf(cloud, scan::Motion::of(step, duration_s));
+    if (options_.moving.enabled && !lost_)
+        thinWithoutWhatMoves(view, guess, stamp_s);
+    else
+        thin(view);
+    result.moving_ms = 1e3 * clock.Tac();
+    clock.Tic();
+    result.estimate = place(view, guess, duration_s);
+    if (result.estimate.valid && !cloud.times_s.empty())
+        refine(cloud, duration_s, view, result.estimate);
+    const bool found = result.estimate.valid;
+    if (!found) result.reason = cloud.points.cols() == 0 ? "no points" : "too few planes";
+    const CPose3D pose = found ? poseOf(result.estimate) : guess;
+    if (found && prediction_.hasMotion()) learn(pose, guess, result.estimate);
+    if (found || prediction_.hasMotion()) prediction_.observe(pose - pose_, duration_s);
+    pose_ = pose;
     result.register_ms = 1e3 * clock.Tac();
     clock.Tic();
-    if (!started_ || !result.predicted) {
-        const Eigen::Matrix3Xd placed =
-            (rotationOf(pose_) * fine.cast<double>()).colwise() + translationOf(pose_);
-        map_.add(placed);
-        map_.forgetFarFrom(translationOf(pose_));
-        latest_ = points;
-        latestPose_ = pose_;
-    }
-    if (!started_) {
-        started_ = map_.planes() > 0;
-        if (!started_) {
-            result.predicted = true;
-            result.reason = points.cols() == 0 ? "no points" : "no surfaces";
-        }
-    }
-    stamp_s_ = stamp_s;
-    result.pose = pose_;
+    if (found) {
+        if (options_.moving.enabled && !lost_) movingObjects_.remember(pose);
+        insert(view, pose);
+        misses_ = 0;
+    } else if (cloud.points.cols() > 0)
+        ++misses_;
+    lost_ = !found;
+    result.points = std::move(view.points);
+    result.moving = std::move(view.moving);
     result.map_ms = 1e3 * clock.Tac();
+}
+
+Tracked PlaneTracker::track(const scan::PointCloud& cloud, double stamp_s) {
+    Tracked result;
+    if (started_)
+        follow(cloud, stamp_s, result);
+    else
+        begin(cloud, result);
+    constexpr unsigned kPatience = 3;
+    if (misses_ == kPatience) {
+        misses_ = 0;
+        map_.clear();
+        movingObjects_.clear();
+        Tracked ofNewMap;
+        begin(cloud, ofNewMap);
+    }
+    first_ = false;
+    stamp_s_ = stamp_s;
+    result.predicted = !result.reason.empty();
+    result.pose = pose_;
     return result;
 }
 }  // namespace delio::localmap

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "delio/scan/deskew.h"
 #include "delio/scan/rings.h"
 
 namespace delio::scan {
@@ -10,7 +11,13 @@ std::vector<OptionField> PreprocessOptions::fields() {
             {"max_range", &max_range, "m; farther points are dropped", 1, 1e4},
             {"vertical_correction_deg", &vertical_correction_deg,
              "deg added to each point's vertical angle; where absent: what DRIVE.meta.yaml says",
-             -5, 5}};
+             -5, 5},
+            {"deskew", &deskew,
+             "true: points are brought to the stamp of their scan, where their times are known; "
+             "where absent: not if DRIVE.meta.yaml says that they are there already"},
+            {"sweep_s", &sweep_s,
+             "s; time of a turn, by which points that come without times get them from their "
+             "azimuth (clockwise, stamped at the front); 0: such points stay as they are", 0, 10}};
 }
 
 PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
@@ -41,9 +48,13 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
         cloud.points.col(kept) << p.head<2>() * (flat > 0 ? flatNow / flat : 1.0F),
             s * flat + c * p.z();
         if (!scan.rings.empty()) cloud.rings.push_back(scan.rings[i]);
+        if (options.deskew && !scan.times_s.empty()) cloud.times_s.push_back(scan.times_s[i]);
+        cloud.indices.push_back(static_cast<std::uint32_t>(i));
         ++kept;
     }
     cloud.points.conservativeResize(3, kept);
+    if (options.deskew && scan.times_s.empty() && options.sweep_s > 0)
+        cloud.times_s = azimuthTimes(cloud.points, options.sweep_s);
     cloud.rings =
         scan.rings.empty() ? ringsOf(cloud.points) : ringsFromTop(cloud.points, cloud.rings);
     return cloud;

@@ -19,17 +19,23 @@ VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
     numbers.reserve(static_cast<std::size_t>(points.cols()));
     VoxelNumbers result;
     result.ofPoint.reserve(static_cast<std::size_t>(points.cols()));
+    // Most points lie in the voxel of the one before: a sensor gives neighbours after each other.
+    std::uint64_t latestKey = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const auto [entry, isNew] =
-            numbers.emplace(voxelKey(points.col(i).cast<double>(), size), result.voxels);
+        const std::uint64_t key = voxelKey(points.col(i).cast<double>(), size);
+        if (i > 0 && key == latestKey) {
+            result.ofPoint.push_back(result.ofPoint.back());
+            continue;
+        }
+        const auto [entry, isNew] = numbers.emplace(key, result.voxels);
         result.voxels += isNew;
         result.ofPoint.push_back(entry->second);
+        latestKey = key;
     }
     return result;
 }
 
-Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size) {
-    const VoxelNumbers numbers = numberVoxels(points, size);
+Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers& numbers) {
     Eigen::Matrix3Xf centroids = Eigen::Matrix3Xf::Zero(3, numbers.voxels);
     Eigen::VectorXf counts = Eigen::VectorXf::Zero(numbers.voxels);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -39,5 +45,9 @@ Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size) {
     }
     centroids.array().rowwise() /= counts.transpose().array();
     return centroids;
+}
+
+Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size) {
+    return centroidsOf(points, numberVoxels(points, size));
 }
 }  // namespace delio::scan

@@ -181,6 +181,27 @@ TEST(VelodynePackets, ElevationsAndIntensitiesOfTheLasers) {
     }
 }
 
+TEST(VelodynePackets, TimesRunFromTheFirstPacketOn) {
+    auto packets = vlp16().scan();  // a packet, 12 blocks, a millisecond
+    const Scan scan = io::decodeObservation(packets);
+    ASSERT_EQ(scan.times_s.size(), scan.points->size());
+    for (std::size_t i = 0; i < scan.times_s.size(); ++i)
+        ASSERT_NEAR(scan.times_s[i], static_cast<double>(i / 32) * 1e-3 / 12, 1e-6) << i;
+
+    // The clock begins anew with every hour.
+    auto* bytes = reinterpret_cast<std::uint8_t*>(packets.scan_packets.data());
+    for (std::size_t i = 0; i < packets.scan_packets.size(); ++i) {
+        const auto time_us = static_cast<std::uint32_t>((3599998000 + i * 1000) % 3600000000);
+        std::memcpy(bytes + i * sizeof(Packet) + 1200, &time_us, 4);
+    }
+    EXPECT_EQ(io::decodeObservation(packets).times_s, scan.times_s);
+
+    // A clock that stands tells nothing.
+    for (std::size_t i = 0; i < packets.scan_packets.size(); ++i)
+        std::memset(bytes + i * sizeof(Packet) + 1200, 0, 4);
+    EXPECT_TRUE(io::decodeObservation(packets).times_s.empty());
+}
+
 TEST(VelodynePackets, ASecondReturnCountsWhereItIsAnother) {
     for (Spinner spinner : {vlp16(), hdl32()}) {
         spinner.dual = true;
@@ -273,6 +294,16 @@ TEST(RotatingScan, TurnsTheWayItsSpanSays) {
             EXPECT_NEAR(z, 10 * std::sin(elevation), 1e-5);
         }
     }
+}
+
+TEST(RotatingScan, TimesFollowTheColumnsWhereTheSweepsDurationIsKnown) {
+    auto image = cross();
+    EXPECT_TRUE(io::decodeObservation(image).times_s.empty());
+    image.sweepDuration = 0.1;
+    const Scan scan = io::decodeObservation(image);
+    ASSERT_EQ(scan.times_s.size(), 64U);
+    for (std::size_t i = 0; i < 64; ++i)
+        EXPECT_FLOAT_EQ(scan.times_s[i], 0.025F * static_cast<float>(i % 4));
 }
 
 TEST(RotatingScan, IntensitiesAndMissingReturns) {

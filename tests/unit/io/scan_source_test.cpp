@@ -154,6 +154,49 @@ TEST(ScanSource, ExternalCloudsAndWhereTheyAreLookedFor) {
     EXPECT_NE(faultOf(cut, scans).find("multiple of 16"), std::string::npos);
 }
 
+template <typename Value>
+void writeValues(const std::filesystem::path& file, const std::vector<Value>& values) {
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<const char*>(values.data()),
+               static_cast<std::streamsize>(values.size() * sizeof(Value)));
+}
+
+TEST(ScanSource, RingsAndTimesOfPointsLieBesideTheExternalFiles) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "a_Images");
+    auto external = cloudObservation(0);
+    writeValues<float>(folder / "a_Images/first.bin", {1, 2, 3, 0, 4, 5, 6, 0});
+    external->setAsExternalStorage("first.bin",
+                                   CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+    writeValues<std::uint16_t>(folder / "a_Images/first.ring", {7, 300});
+    writeValues<float>(folder / "a_Images/first.time", {-0.05F, 0.03F});
+    // An embedded scan has no file of its own: its extras are named by its number.
+    writeValues<float>(folder / "a_Images/000001.time", std::vector<float>(50, 0.01F));
+    writeRawlog(folder / "a.rawlog", {external, cloudObservation(1), cloudObservation(2)});
+    io::ScanSource source(folder / "a.rawlog");
+    const auto first = source.next(), second = source.next(), third = source.next();
+    ASSERT_TRUE(third);
+    EXPECT_EQ(first->rings, (std::vector<std::uint16_t>{7, 300}));
+    EXPECT_EQ(first->times_s, (std::vector<float>{-0.05F, 0.03F}));
+    EXPECT_EQ(second->times_s, std::vector<float>(50, 0.01F));
+    EXPECT_TRUE(second->rings.empty());
+    EXPECT_TRUE(third->times_s.empty());
+}
+
+TEST(ScanSource, ExtrasThatDoNotFitTheirScanAreNamed) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "a_Images");
+    writeValues<float>(folder / "a_Images/000001.time", {0, 0, 0});
+    writeRawlog(folder / "a.rawlog", {cloudObservation(0), cloudObservation(1)});
+    io::ScanSource source(folder / "a.rawlog");
+    std::size_t scans = 0;
+    const auto fault = faultOf(source, scans);
+    EXPECT_EQ(scans, 1U);
+    EXPECT_NE(fault.find("000001.time"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("12 bytes"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("50 points"), std::string::npos) << fault;
+}
+
 TEST(ScanSource, WhatCameBeforeACutComesOutThenOneError) {
     const test::TemporaryFolder folder;
     const std::string whole = folder / "whole.rawlog", cut = folder / "cut.rawlog";

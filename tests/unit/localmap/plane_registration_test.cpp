@@ -5,8 +5,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "delio/odometry.h"
-#include "delio/profile.h"
 #include "delio/rotation/plane_rotation.h"
 #include "delio/scan/voxel_grid.h"
 #include "delio/translation/plane_translation.h"
@@ -197,55 +195,4 @@ TEST(PlaneRegistration, WithoutPlanesThePredictionStays) {
     }
 }
 
-/** Scans of a drive through the yard that is moving from the first scan on. */
-std::vector<Scan> driveScans(const std::vector<double>& x, test::Noise& noise) {
-    std::vector<Scan> scans;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        scans.push_back(
-            test::scanOf(pointsSeenFrom(test::yard(), {x[i], 0, 0, 0.01 * x[i], 0, 0}, noise)));
-        scans.back().stamp_s = x[i] / 10;  // at 10 m/s
-    }
-    return scans;
-}
-
-// The recording pauses for a quarter of an hour: what the prediction says then is far off.
-TEST(OdometryWithMap, BeginsANewMapAfterALongPause) {
-    test::Noise noise;
-    const std::vector<double> x = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
-    auto scans = driveScans(x, noise);
-    for (std::size_t i = 4; i < scans.size(); ++i) scans[i].stamp_s += 900;
-    Odometry odometry(Options::ofProfile("accurate").odometry);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const auto result = odometry.process(scans[i]);
-        EXPECT_EQ(result.predicted, i >= 4 && i <= 6) << i << " " << result.reason;
-        const Eigen::Matrix<double, 6, 6> C = result.increment.covariance.asEigen();
-        EXPECT_TRUE(C.allFinite());
-        if (i == 0 || result.predicted) continue;
-        const CPose3D truth =
-            CPose3D(x[i], 0, 0, 0.01 * x[i], 0, 0) - CPose3D(x[i - 1], 0, 0, 0.01 * x[i - 1], 0, 0);
-        EXPECT_LT(result.increment.pose.distanceTo(truth), 0.03) << i;
-    }
-}
-
-TEST(OdometryWithMap, FollowsADriveAlsoWhereScansAreMissingOrEmpty) {
-    test::Noise noise;
-    const std::vector<double> x = {0, 1, 2, 3, 6, 7, 8, 9, 10};  // two are lost after 3
-    auto scans = driveScans(x, noise);
-    scans[6] = test::scanOf(Eigen::Matrix3Xf(3, 0));
-    scans[6].stamp_s = 0.8;
-    Odometry odometry(Options::ofProfile("accurate").odometry);
-    CPose3D pose;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const auto result = odometry.process(scans[i]);
-        pose = pose + result.increment.pose;
-        EXPECT_EQ(result.predicted, i == 6) << i;
-        EXPECT_EQ(result.reason.empty(), i != 6);
-        const CPose3D truth(x[i], 0, 0, 0.01 * x[i], 0, 0);
-        EXPECT_LT(pose.distanceTo(truth), i == 6 ? 0.1 : 0.02) << i;
-        EXPECT_LT(degreesBetween(pose, truth), 0.1) << i;
-        const Eigen::Matrix<double, 6, 6> C = result.increment.covariance.asEigen();
-        if (i == 0) continue;
-        EXPECT_EQ(C.llt().info(), Eigen::Success) << C;
-    }
-}
 }  // namespace

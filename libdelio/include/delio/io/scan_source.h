@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "delio/scan/scan.h"
 
@@ -14,8 +15,10 @@ namespace delio::io {
 class GzInput;
 
 /** Gives the LiDAR scans of a rawlog one at a time, whatever class they were recorded as (see
- *  isScan()), bare or inside CSensoryFrames, embedded or in external files. Memory does not grow
- *  with the length of the rawlog. */
+ *  isScan()), bare or inside CSensoryFrames, embedded or in external files. Rings and times of
+ *  points are taken from `.ring` and `.time` files beside the external ones (synth2rawlog writes
+ *  them), from packets and from range images. Memory does not grow with the length of the
+ *  rawlog. */
 class ScanSource {
  public:
     /** `label`: the sensor to read; empty: that of the first scan in the rawlog.
@@ -46,7 +49,11 @@ class ScanSource {
  private:
     mrpt::obs::CObservation::Ptr nextObservation();
     bool readEntry();
-    void loadExternal(const mrpt::obs::CObservation& observation) const;
+    std::vector<std::string> imagesFolders() const;
+    /** Where the extras of an embedded scan's points would lie, without the extension. */
+    std::string embeddedStem(std::size_t scan) const;
+    /** Returns the file that the points came from; empty where they are embedded. */
+    std::string loadExternal(const mrpt::obs::CObservation& observation) const;
 
     std::string path_, label_, imagesFolder_;
     double epoch_s_;

@@ -12,6 +12,8 @@ struct PreprocessOptions : public StageOptions {
     double min_range = 2.5;
     double max_range = 80;
     double vertical_correction_deg = 0;
+    bool deskew = true;
+    double sweep_s = 0;
 
  protected:
     std::vector<OptionField> fields() override;
@@ -21,6 +23,8 @@ struct PreprocessOptions : public StageOptions {
 struct PointCloud {
     Eigen::Matrix3Xf points;           //!< metres, in the sensor's frame, in the sensor's order
     std::vector<std::uint16_t> rings;  //!< ring of each point, from 0; see ringsOf()
+    std::vector<float> times_s;         //!< of each point from the stamp; empty: all at the stamp
+    std::vector<std::uint32_t> indices;  //!< of each point in the scan
     std::size_t notFinite = 0;         //!< points dropped because a coordinate was NaN or infinite
     std::size_t outOfRange = 0;        //!< points dropped by min_range and max_range
 };

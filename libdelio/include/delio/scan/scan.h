@@ -21,6 +21,10 @@ struct Scan {
     /** Ring (laser) of each point where the source knows it, otherwise empty. */
     std::vector<std::uint16_t> rings;
 
+    /** When each point was measured, in seconds from the stamp (before it: negative), where the
+     *  source knows it, otherwise empty. */
+    std::vector<float> times_s;
+
     /** Pose of the sensor in the vehicle: maps sensor coordinates to vehicle coordinates. */
     mrpt::poses::CPose3D sensorPose;
 };

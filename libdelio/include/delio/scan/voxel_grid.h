@@ -15,6 +15,9 @@ struct VoxelNumbers {
 };
 VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size);
 
+/** The centroid of the points in each voxel, in the order of their numbers. */
+Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers& numbers);
+
 /** One point a voxel: the centroid of the points in it, in the order of their numbers. */
 Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size);
 }  // namespace delio::scan

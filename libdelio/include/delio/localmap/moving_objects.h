@@ -1,0 +1,71 @@
+#pragma once
+#include <mrpt/poses/CPose3D.h>
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "delio/localmap/range_image.h"
+#include "delio/localmap/segments.h"
+#include "delio/stage_options.h"
+
+namespace delio::localmap {
+struct MovingObjectsOptions : public StageOptions {
+    bool enabled = true;
+    double cell_deg = 0.5;
+    double margin = 0.4;
+    double interval_s = 0.1;
+    double memory_s = 0.8;
+    double min_share = 0.5;
+    double min_known = 0.3;
+
+ protected:
+    std::vector<OptionField> fields() override;
+};
+
+/** Tells what moves. A segment of a scan moves where
+ *  - earlier scans saw through most of the place that it takes (it came from elsewhere), or
+ *  - it is the third of a row of segments of one size at equal distances in equal times, through
+ *    the first two of which later scans see (it drives ahead, where it hides its way). */
+class MovingObjects {
+ public:
+    MovingObjects(const MovingObjectsOptions& options, const SegmentOptions& segments)
+        : options_(options), segmentOptions_(segments) {}
+
+    /** Which of `points` move: 1 or 0 each. `all`: the whole scan, of which `points` is a thinned
+     *  view (metres, sensor's frame); `pose`: sensor to map, good to a part of the margin. */
+    std::vector<std::uint8_t> find(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xf& all,
+                                   const mrpt::poses::CPose3D& pose, double stamp_s);
+
+    /** Keeps the scan that find() was asked of last, at its final pose, to judge later ones by. */
+    void remember(const mrpt::poses::CPose3D& pose);
+
+    /** Forgets all earlier scans. */
+    void clear() { views_.clear(); }
+
+ private:
+    /** What is kept of a scan: all in its sensor's frame. */
+    struct Object {
+        Eigen::Matrix3Xf points;
+        Eigen::Vector3f centre, size;
+    };
+    struct View {
+        double stamp_s = 0;
+        Eigen::Isometry3f toMap = Eigen::Isometry3f::Identity();
+        RangeImage image;
+        std::vector<Object> objects;
+    };
+    bool moves(const Object& object) const;
+    bool came(const Object& object) const;
+    bool droveAhead(const Object& object) const;
+    /** True where scan `by` saw through the place that `object` took in scan `seen`. `minKnown`:
+     *  the share of its points whose places it has to know of. */
+    bool isFree(const Object& object, const View& seen, const View& by, double minKnown) const;
+
+    MovingObjectsOptions options_;
+    SegmentOptions segmentOptions_;
+    View latest_;
+    std::deque<View> views_;  //!< earlier scans, latest first
+};
+}  // namespace delio::localmap

@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+
+#include "delio/scan/scan.h"
+
+namespace delio::io {
+/** Takes rings and times of the points from the files STEM.ring (uint16) and STEM.time (float32,
+ *  seconds from the stamp), one value a point, where they are there. Throws Error where a file
+ *  cannot be read or has not one value for each point. */
+void readPointExtras(const std::string& stem, Scan& scan);
+}  // namespace delio::io

@@ -1,0 +1,127 @@
+#include "delio/localmap/moving_objects.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace delio::localmap {
+namespace {
+Eigen::Isometry3f isometryOf(const mrpt::poses::CPose3D& pose) {
+    Eigen::Isometry3d isometry = Eigen::Isometry3d::Identity();
+    isometry.linear() = pose.getRotationMatrix().asEigen();
+    isometry.translation() = Eigen::Vector3d(pose.x(), pose.y(), pose.z());
+    return isometry.cast<float>();
+}
+
+/** As alike as two views of one thing from about the same side. */
+bool alike(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+    constexpr float kMetres = 0.5F, kShare = 0.3F;
+    return ((a - b).array().abs() < kMetres + kShare * a.cwiseMax(b).array()).all();
+}
+}  // namespace
+
+std::vector<OptionField> MovingObjectsOptions::fields() {
+    return {
+        {"enabled", &enabled, "true: what moves is kept out of registration and map"},
+        {"cell_deg", &cell_deg, "deg; directions are told apart by this", 0.05, 10},
+        {"margin", &margin, "m; a beam that went on by this saw a place free", 0, 10},
+        {"interval_s", &interval_s, "s; between the earlier scans that are looked at", 0, 100},
+        {"memory_s", &memory_s, "s; the earliest of them", 0, 100},
+        {"min_share", &min_share,
+         "of a segment's points in places of which something is known, those seen free", 0, 1},
+        {"min_known", &min_known, "share of its points of whose places something is known", 0, 1}};
+}
+
+bool MovingObjects::isFree(const Object& object, const View& seen, const View& by,
+                           double minKnown) const {
+    const Eigen::Isometry3f toSensor = by.toMap.inverse() * seen.toMap;
+    int free = 0, taken = 0;
+    for (Eigen::Index i = 0; i < object.points.cols(); ++i) {
+        const Place place = by.image.at(toSensor * Eigen::Vector3f(object.points.col(i)),
+                                        static_cast<float>(options_.margin));
+        free += place == Place::kFree;
+        taken += place == Place::kTaken;
+    }
+    const double known = free + taken;
+    return free > 0 && free >= options_.min_share * known &&
+           known >= minKnown * static_cast<double>(object.points.cols());
+}
+
+bool MovingObjects::came(const Object& object) const {
+    // Leaves and edges let beams through now and then: two scans have to agree where there are two.
+    constexpr std::size_t kWitnesses = 2;
+    std::size_t witnesses = 0;
+    for (const auto& view : views_) {
+        witnesses += isFree(object, latest_, view, options_.min_known);
+        if (witnesses == kWitnesses) return true;
+    }
+    return witnesses > 0 && witnesses == views_.size();
+}
+
+bool MovingObjects::droveAhead(const Object& object) const {
+    constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTolerance = 0.15F;
+    constexpr double kLeastKnown = 0.05;  // near the vehicle places are left below all beams
+    const auto gone = [&](const Object& earlier, const View& view) {
+        return alike(earlier.size, object.size) && isFree(earlier, view, latest_, kLeastKnown);
+    };
+    const Eigen::Vector3f here = latest_.toMap * object.centre;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+        const View& second = views_[i];
+        const auto later_s = static_cast<float>(latest_.stamp_s - second.stamp_s);
+        for (const auto& there : second.objects) {
+            const Eigen::Vector3f place = second.toMap * there.centre;
+            const Eigen::Vector3f step = here - place;
+            if (step.norm() < static_cast<float>(options_.margin) ||
+                step.norm() > kFastest_m_s * later_s || !gone(there, second))
+                continue;
+            for (std::size_t j = i + 1; j < views_.size(); ++j) {
+                const View& first = views_[j];
+                const auto earlier_s = static_cast<float>(second.stamp_s - first.stamp_s);
+                if (earlier_s < 0.75F * later_s || earlier_s > 1.5F * later_s) continue;
+                const Eigen::Vector3f expected = place - step * earlier_s / later_s;
+                for (const auto& start : first.objects)
+                    if ((first.toMap * start.centre - expected).norm() <
+                            kTolerance_m + kTolerance * step.norm() &&
+                        gone(start, first))
+                        return true;
+            }
+        }
+    }
+    return false;
+}
+
+bool MovingObjects::moves(const Object& object) const { return came(object) || droveAhead(object); }
+
+std::vector<std::uint8_t> MovingObjects::find(const Eigen::Matrix3Xf& points,
+                                              const Eigen::Matrix3Xf& all,
+                                              const mrpt::poses::CPose3D& pose, double stamp_s) {
+    while (!views_.empty() && stamp_s - views_.back().stamp_s > options_.memory_s)
+        views_.pop_back();
+    latest_ = {stamp_s, isometryOf(pose), RangeImage(all, options_.cell_deg), {}};
+    const auto segments = segmentsOf(points, segmentOptions_);
+    for (const auto& segment : segments) {
+        Object object{Eigen::Matrix3Xf(3, segment.points.size()), segment.box.center(),
+                      segment.box.sizes()};
+        for (std::size_t i = 0; i < segment.points.size(); ++i)
+            object.points.col(static_cast<Eigen::Index>(i)) = points.col(segment.points[i]);
+        latest_.objects.push_back(std::move(object));
+    }
+    std::vector<std::uint8_t> moving(segments.size());
+    tbb::parallel_for(std::size_t{0}, segments.size(),
+                      [&](std::size_t i) { moving[i] = moves(latest_.objects[i]); });
+    std::vector<std::uint8_t> result(static_cast<std::size_t>(points.cols()));
+    for (std::size_t i = 0; i < segments.size(); ++i)
+        for (const Eigen::Index point : segments[i].points)
+            result[static_cast<std::size_t>(point)] = moving[i];
+    return result;
+}
+
+void MovingObjects::remember(const mrpt::poses::CPose3D& pose) {
+    // A little less: stamps are rounded.
+    if (!views_.empty() && latest_.stamp_s - views_.front().stamp_s < 0.99 * options_.interval_s)
+        return;
+    latest_.toMap = isometryOf(pose);
+    views_.push_front(std::move(latest_));
+}
+}  // namespace delio::localmap
