@@ -49,6 +49,7 @@ std::vector<Scan> readScans(const std::string& rawlog) {
 Scan half(const Scan& scan, std::size_t parity) {
     Scan result = scan;
     result.rings.clear();
+    result.times_s.clear();
     result.points = mrpt::maps::CSimplePointsMap::Create();
     const auto& x = scan.points->getPointsBufferRef_x();
     const auto& y = scan.points->getPointsBufferRef_y();
@@ -56,6 +57,7 @@ Scan half(const Scan& scan, std::size_t parity) {
     for (std::size_t i = parity; i < x.size(); i += 2) {
         result.points->insertPointFast(x[i], y[i], z[i]);
         if (!scan.rings.empty()) result.rings.push_back(scan.rings[i]);
+        if (!scan.times_s.empty()) result.times_s.push_back(scan.times_s[i]);
     }
     return result;
 }
@@ -69,7 +71,10 @@ Poses run(const std::vector<Scan>& scans, std::size_t every, bool backwards,
     if (backwards) {
         std::reverse(order.begin(), order.end());
         const double last = order.front().stamp_s;
-        for (auto& scan : order) scan.stamp_s = last - scan.stamp_s;
+        for (auto& scan : order) {
+            scan.stamp_s = last - scan.stamp_s;
+            for (auto& time : scan.times_s) time = -time;
+        }
     }
     Odometry odometry(options);
     Poses poses;
