@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "increment_of.h"
+
 namespace delio {
 using mrpt::poses::CPose3D;
 
@@ -22,24 +24,6 @@ auto timed(double& ms, const Work& work) {
 CPose3D orthonormalised(const CPose3D& pose) {
     const Eigen::Quaterniond q(Eigen::Matrix3d(pose.getRotationMatrix().asEigen()));
     return {q.normalized().toRotationMatrix(), Eigen::Vector3d(pose.x(), pose.y(), pose.z())};
-}
-
-/** The covariance of both stages in the right tangent, which is the later frame's: the translation
- *  has its own noise, and through the lever also that of the rotation it was unrotated by. */
-Increment incrementOf(const rotation::RotationEstimate& rotation,
-                      const translation::TranslationEstimate& translation) {
-    const Eigen::Matrix3d& R = rotation.rotation;
-    Increment increment;
-    increment.pose = CPose3D(R, translation.translation);
-    increment.covariance.setZero();
-    auto covariance = increment.covariance.asEigen();
-    const Eigen::Matrix3d lever = R.transpose() * translation.lever * R;
-    covariance.topLeftCorner<3, 3>() = R.transpose() * translation.covariance * R +
-                                       lever * rotation.covariance * lever.transpose();
-    covariance.topRightCorner<3, 3>() = lever * rotation.covariance;
-    covariance.bottomLeftCorner<3, 3>() = rotation.covariance * lever.transpose();
-    covariance.bottomRightCorner<3, 3>() = rotation.covariance;
-    return increment;
 }
 }  // namespace
 

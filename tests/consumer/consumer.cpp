@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "delio/aligner.h"
 #include "delio/odometry.h"
 #include "delio/profile.h"
 
@@ -40,7 +41,12 @@ int main() {
     const auto& pose = result.increment.pose;
     std::printf("installed library: turned %.3f deg, moved %.3f m\n", pose.yaw() * 180 / M_PI,
                 pose.norm());
-    const bool right =
-        !result.predicted && std::abs(pose.yaw() - kYaw) < 0.2 * M_PI / 180 && pose.norm() < 0.02;
-    return right ? 0 : 1;
+    const auto isRight = [&](const mrpt::poses::CPose3D& found) {
+        return std::abs(found.yaw() - kYaw) < 0.2 * M_PI / 180 && found.norm() < 0.02;
+    };
+    const auto aligned =
+        delio::Aligner()
+            .Align3D(scanAt(0).points.get(), scanAt(kYaw).points.get(), mrpt::poses::CPose3D())
+            ->getMeanVal();
+    return !result.predicted && isRight(pose) && isRight(aligned) ? 0 : 1;
 }

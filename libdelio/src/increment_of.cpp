@@ -1,0 +1,19 @@
+#include "increment_of.h"
+
+namespace delio {
+Increment incrementOf(const rotation::RotationEstimate& rotation,
+                      const translation::TranslationEstimate& translation) {
+    const Eigen::Matrix3d& R = rotation.rotation;
+    Increment increment;
+    increment.pose = mrpt::poses::CPose3D(R, translation.translation);
+    increment.covariance.setZero();
+    auto covariance = increment.covariance.asEigen();
+    const Eigen::Matrix3d lever = R.transpose() * translation.lever * R;
+    covariance.topLeftCorner<3, 3>() = R.transpose() * translation.covariance * R +
+                                       lever * rotation.covariance * lever.transpose();
+    covariance.topRightCorner<3, 3>() = lever * rotation.covariance;
+    covariance.bottomLeftCorner<3, 3>() = rotation.covariance * lever.transpose();
+    covariance.bottomRightCorner<3, 3>() = rotation.covariance;
+    return increment;
+}
+}  // namespace delio
