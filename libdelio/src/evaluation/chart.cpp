@@ -110,7 +110,7 @@ std::string Chart::script() const {
            "set encoding utf8\n"
            "set border 3 lc rgb '#666666'\n"
            "set tics nomirror textcolor rgb '#333333'\n"
-           "set grid lc rgb '#dddddd' lw 0.7 dt 1\n"
+           "set grid lc rgb '#cccccc' lw 0.5 lt 1\n"
            "set key outside top center horizontal Left reverse samplen 1.6\n" +
            settings_ +
            "set terminal svg size 560,420 noenhanced font 'sans-serif,15' lw 1.5 "

@@ -22,7 +22,7 @@ namespace {
 const char* const kStyle = R"(
 :root { color-scheme: light; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 1200px; padding: 1rem; background: #fff; color: #222;
+body { margin: 0 auto; max-width: 1200px; padding: 1rem; overflow-wrap: break-word; background: #fff; color: #222;
        font: 16px/1.45 system-ui, sans-serif; }
 h1 { font-size: 1.6rem; margin: .2em 0; }
 h2 { font-size: 1.25rem; margin: 2em 0 .4em; border-bottom: 1px solid #ddd; }
@@ -33,7 +33,8 @@ p { margin: .4em 0; max-width: 75ch; }
 table { border-collapse: collapse; font-size: .95rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .25em .7em; text-align: right; border-bottom: 1px solid #e5e5e5; }
 th { vertical-align: bottom; color: #555; font-weight: 600; }
-th.word, td.word { text-align: left; overflow-wrap: anywhere; }
+th.word, td.word { text-align: left; }
+td.word { max-width: 18em; overflow-wrap: break-word; }
 tr.first td { border-top: 2px solid #bbb; }
 td.best { font-weight: 700; }
 .swatch { display: inline-block; width: .8em; height: .8em; margin-right: .4em; border-radius: 2px; }
@@ -47,8 +48,11 @@ nav a { margin-right: .8em; }
   body { padding: .5rem; font-size: 15px; }
   table { font-size: .8rem; }
   th, td { padding: .25em .4em; }
+  td.word { max-width: 10em; }
 }
 )";
+
+const char* const kMean = "mean";  // heading of the rows of averages
 
 std::string html(const std::string& text) {
     std::string result;
@@ -104,7 +108,9 @@ struct Column {
 
 class Page {
  public:
-    Page(const std::string& plotFolder, std::ostream& out) : plots_(plotFolder), out_(out) {}
+    /** `groupNotCompared`: name of rows that are not compared with each other. */
+    Page(const std::string& plotFolder, std::string groupNotCompared, std::ostream& out)
+        : plots_(plotFolder), groupNotCompared_(std::move(groupNotCompared)), out_(out) {}
 
     /** `groups`: rows of one group are compared with each other; group and estimate by row. */
     void table(const std::vector<std::string>& groups, const std::vector<std::string>& names,
@@ -141,9 +147,11 @@ class Page {
     }
 
  private:
-    static bool isBest(const std::vector<std::string>& groups, const Column& column,
-                       std::size_t row) {
-        if (!column.lowestIsBest || !std::isfinite(column.values[row])) return false;
+    bool isBest(const std::vector<std::string>& groups, const Column& column,
+                std::size_t row) const {
+        if (!column.lowestIsBest || groups[row] == groupNotCompared_ ||
+            !std::isfinite(column.values[row]))
+            return false;
         bool compared = false;
         for (std::size_t i = 0; i < groups.size(); ++i) {
             if (i == row || groups[i] != groups[row] || !std::isfinite(column.values[i])) continue;
@@ -153,7 +161,7 @@ class Page {
         return compared;
     }
 
-    std::string plots_;
+    std::string plots_, groupNotCompared_;
     std::ostream& out_;
 };
 
@@ -179,7 +187,7 @@ Lines linesOf(const std::vector<Section>& sections, const std::vector<Group>& by
                 section.sequence.estimates[i]);
     for (const auto& average : averages)
         for (const auto& group : byEstimate)
-            if (group.name == average.name) add("mean", average, group.estimates.front());
+            if (group.name == average.name) add(kMean, average, group.estimates.front());
     return lines;
 }
 
@@ -236,7 +244,8 @@ bool setsDiffer(const std::vector<Group>& byEstimate) {
 void writeHtml(const std::vector<Group>& byEstimate, const std::vector<Section>& sections,
                const std::vector<Chart>& overview, const std::vector<ReportRow>& averages,
                const ReportNotes& notes, const std::string& plotFolder, std::ostream& out) {
-    const Page page(plotFolder, out);
+    const bool unlike = setsDiffer(byEstimate);
+    const Page page(plotFolder, unlike ? kMean : "", out);
     out << "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
            "<title>Trajectory evaluation</title>\n<style>"
@@ -251,9 +260,9 @@ void writeHtml(const std::vector<Group>& byEstimate, const std::vector<Section>&
     const Lines lines = linesOf(sections, byEstimate, averages);
     out << "<h2>KITTI's metric</h2>\n<p class=\"note\">Mean error of segments, per length. The "
            "mean of sequences is the plain one, however long they are.</p>\n";
-    if (!averages.empty() && setsDiffer(byEstimate))
-        out << "<p><b>The estimates cover different sequences: do not compare their "
-               "means.</b></p>\n";
+    if (unlike)
+        out << "<p><b>The estimates cover different sequences: do not compare their means, nor "
+               "their curves over all sequences.</b></p>\n";
     page.table(
         lines.groups, lines.names, lines.estimates,
         {column("translation [%]", 3, lines, [](const auto& r) { return r.kitti.t_percent; }),

@@ -149,6 +149,7 @@ Chart trajectoryChart(const Group& sequence, const std::string& prefix) {
 Chart heightChart(const Group& sequence, const std::string& prefix) {
     Chart chart(prefix + "height", "Height over the distance driven");
     chart.label("distance [m]", "height [m]");
+    chart.set("set autoscale xfix");
     const auto overDistance = [](const std::vector<Place>& places,
                                  const std::vector<CPose3D>& driven) {
         const auto distance = travelled_m(driven);
@@ -217,9 +218,15 @@ struct StepErrors {
 
 Chart overTimeChart(const std::vector<StepErrors>& all, const std::string& name,
                     const std::string& what, const std::string& unit) {
-    Chart chart(name, what +
-                          " error from scan to scan, and its running median; triangles are "
-                          "scans that were predicted, not registered");
+    const bool anyPredicted = std::any_of(all.begin(), all.end(), [](const StepErrors& e) {
+        const auto& flags = e.comparison->predicted;
+        return std::find(flags.begin(), flags.end(), true) != flags.end();
+    });
+    Chart chart(
+        name,
+        what + " error from scan to scan, and its running median" +
+            (anyPredicted ? "; triangles are scans that were predicted, not registered" : ""));
+    chart.set("set autoscale xfix");
     const bool assumed = std::any_of(
         all.begin(), all.end(), [](const StepErrors& e) { return e.comparison->timesAreAssumed; });
     chart.label(assumed ? "time, at ten scans a second [s]" : "time [s]",
