@@ -6,6 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -21,11 +24,17 @@ namespace fs = std::filesystem;
 namespace {
 constexpr std::size_t kLongestTitle = 32;  // characters; longer ones push the key off the plot
 
-/** As a string of gnuplot: between single quotes nothing but the quote has a meaning. */
+/** As a string of gnuplot. What has a meaning to it somewhere in a string (quotes, which no
+ * doubling makes safe at the beginning, backquotes, backslashes ...) is written as its code. */
 std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? "''" : std::string(1, c);
-    return result + "'";
+    std::string result = "\"";
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        const bool plain = code >= 0x80 || std::isalnum(code) != 0 ||
+                           std::string(" -_.,:;/()[]%<>&").find(c) != std::string::npos;
+        result += plain ? std::string(1, c) : mrpt::format("\\%03o", code);
+    }
+    return result + "\"";
 }
 
 /** The first characters of a long text. */

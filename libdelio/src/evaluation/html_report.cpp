@@ -34,10 +34,12 @@ table { border-collapse: collapse; font-size: .95rem; font-variant-numeric: tabu
 th, td { padding: .25em .7em; text-align: right; border-bottom: 1px solid #e5e5e5; }
 th { vertical-align: bottom; color: #555; font-weight: 600; }
 th.word, td.word { text-align: left; }
-td.word { max-width: 18em; overflow-wrap: break-word; }
+td.word { max-width: 18em; min-width: 4em; overflow-wrap: break-word; }
 tr.first td { border-top: 2px solid #bbb; }
 td.best { font-weight: 700; }
-.swatch { display: inline-block; width: .8em; height: .8em; margin-right: .4em; border-radius: 2px; }
+.swatch { display: inline-block; width: .8em; height: .8em; margin-right: .4em;
+          border-radius: 2px; }
+.name { white-space: nowrap; }
 .plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 460px), 1fr));
          gap: 1rem; }
 figure { margin: 0; }
@@ -124,7 +126,7 @@ class Page {
             const bool first = i == 0 || groups[i] != groups[i - 1];
             out_ << (first ? "<tr class=\"first\">" : "<tr>") << "<td class=\"word\">"
                  << (first ? html(groups[i]) : "") << "</td><td class=\"word\">"
-                 << swatch(estimates[i]) << html(names[i]) << "</td>";
+                 << estimate(names[i], estimates[i]) << "</td>";
             for (const auto& column : columns)
                 out_ << (isBest(groups, column, i) ? "<td class=\"best\">" : "<td>")
                      << number(column.values[i], column.decimals) << "</td>";
@@ -140,6 +142,12 @@ class Page {
                  << dataAddress(plots_ + "/" + chart.name() + ".svg") << "\"><figcaption>"
                  << html(chart.caption()) << ".</figcaption></figure>\n";
         out_ << "</div>\n";
+    }
+
+    /** Its colour and its name: on one line where that is short. */
+    static std::string estimate(const std::string& name, std::size_t index) {
+        const std::string text = swatch(index) + html(name);
+        return name.size() > 24 ? text : "<span class=\"name\">" + text + "</span>";
     }
 
     static std::string swatch(std::size_t estimate) {

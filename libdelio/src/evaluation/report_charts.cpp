@@ -247,11 +247,13 @@ Chart overTimeChart(const std::vector<StepErrors>& all, const std::string& name,
     for (const auto& own : all)
         chart.curve(own.comparison->row.name, line(colourOf(own.estimate), 1.6),
                     rowsOf(own, runningMedian(own.errors), false));
-    for (const auto& own : all)
-        if (!own.comparison->predicted.empty())
-            chart.curve("predicted",
-                        "with points pt 9 ps 0.9 lc rgb '" + colourOf(own.estimate) + "'",
-                        rowsOf(own, own.errors, true));
+    std::string title = "predicted";  // once in the key, in whatever colour comes first
+    for (const auto& own : all) {
+        if (own.comparison->predicted.empty()) continue;
+        const auto rows = rowsOf(own, own.errors, true);
+        chart.curve(title, "with points pt 9 ps 0.9 lc rgb '" + colourOf(own.estimate) + "'", rows);
+        if (!rows.empty()) title.clear();
+    }
     return chart;
 }
 
