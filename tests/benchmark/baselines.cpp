@@ -132,7 +132,7 @@ void printRow(const std::string& name, const Drive& drive,
     const double path = evaluation::pathLength_m(truth);
     if (path < 2 * lengths.front()) lengths = evaluation::suggestedLengths_m(path);
     const auto row = evaluation::score(truth, poses, lengths, 1);
-    std::printf("%-20s %-14s %7.1f %9s %9s %9s %9s %9s %7s\n", drive.name.c_str(), name.c_str(),
+    std::printf("%-18s %-20s %7.1f %9s %9s %9s %9s %9s %7s\n", drive.name.c_str(), name.c_str(),
                 row.length_m, number(row.kitti.t_percent, 3).c_str(),
                 number(row.kitti.r_deg_per_100m, 3).c_str(), number(row.rpe_m, 4).c_str(),
                 number(row.rpe_deg, 4).c_str(), number(ms, 1).c_str(), number(mb, 0).c_str());
@@ -211,7 +211,7 @@ int main(int argc, char** argv) try {
     tsv << "drive\tmethod\tlength_m\tt_percent\tr_deg_per_100m\trpe_m\trpe_deg\tms_per_scan\tpeak_"
            "mb"
         << std::endl;
-    std::printf("%-20s %-14s %7s %9s %9s %9s %9s %9s %7s\n", "drive", "method", "m", "transl. %",
+    std::printf("%-18s %-20s %7s %9s %9s %9s %9s %9s %7s\n", "drive", "method", "m", "transl. %",
                 "deg/100 m", "RPE m", "RPE deg", "ms/scan", "MB");
     for (const auto& rawlog : drives) measure(openDrive(rawlog), settings, tsv);
     if (!tsv.flush()) throw Error("cannot write baselines.tsv");
