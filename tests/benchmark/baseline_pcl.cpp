@@ -69,7 +69,7 @@ class PclPlaneIcp : public Pcl<pcl::PointNormal, PlaneIcp> {
 
  protected:
     Cloud<pcl::PointNormal> extract(const scan::PointCloud& cloud) override {
-        const auto points = Pcl::extract(cloud);
+        auto points = Pcl::extract(cloud);
         pcl::NormalEstimation<pcl::PointNormal, pcl::PointNormal> normals;
         normals.setInputCloud(points);
         normals.setKSearch(kNormalNeighbours);
