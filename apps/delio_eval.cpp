@@ -5,34 +5,19 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <optional>
 #include <set>
 
 #include "cli.h"
 #include "delio/error.h"
-#include "delio/evaluation/association.h"
-#include "delio/evaluation/frame_check.h"
-#include "delio/evaluation/report.h"
-#include "delio/io/output_file.h"
+#include "delio/evaluation/report_folder.h"
 #include "delio/io/trajectory.h"
 #include "delio/version.h"
+#include "eval_inputs.h"
 
 namespace {
 namespace fs = std::filesystem;
 using namespace delio;
 using evaluation::ReportRow;
-
-struct Estimate {
-    std::string name;
-    std::string path;
-};
-
-struct Settings {
-    std::optional<mrpt::poses::CPose3D> Tr;  // set: estimates are brought from LiDAR to cam0
-    std::vector<double> lengths_m;
-    std::size_t delta = 1;
-    bool verbose = false;
-};
 
 /** "100,200,300": rising positive numbers; nothing where the text is anything else. */
 std::vector<double> lengthsOf(const std::string& text) {
@@ -51,13 +36,6 @@ std::vector<double> lengthsOf(const std::string& text) {
     }
 }
 
-std::string textOf(const std::vector<double>& lengths) {
-    std::string text;
-    for (const double length : lengths)
-        text += (text.empty() ? "" : ",") + mrpt::format("%g", length);
-    return text;
-}
-
 struct LengthsConstraint : TCLAP::Constraint<std::string> {
     std::string description() const override { return "rising lengths in metres, as 100,200,400"; }
     std::string shortID() const override { return "100,200,..."; }
@@ -70,144 +48,6 @@ struct DeltaConstraint : TCLAP::Constraint<int> {
     bool check(const int& delta) const override { return delta >= 1; }
 };
 
-/** `[NAME=]PATH`, named after the file or folder where no name is given. */
-Estimate estimateOf(const std::string& text) {
-    const auto equals = text.find('=');
-    if (equals != std::string::npos && !fs::exists(text))
-        return {text.substr(0, equals), text.substr(equals + 1)};
-    const fs::path path = fs::path(text).lexically_normal();
-    const fs::path last = path.has_filename() ? path : path.parent_path();
-    return {last.stem().string(), text};
-}
-
-/** What is wrong with the names of the estimates; empty if nothing. */
-std::string faultOfNames(const std::vector<Estimate>& estimates) {
-    std::set<std::string> names;
-    for (const auto& estimate : estimates) {
-        if (estimate.name.empty() || estimate.path.empty() ||
-            estimate.name.find_first_of("\t\n\r") != std::string::npos)
-            return "--est wants NAME=PATH with a NAME of one line, without tabs";
-        if (!names.insert(estimate.name).second)
-            return "two estimates are called '" + estimate.name +
-                   "'; tell them apart with --est NAME=PATH";
-    }
-    return "";
-}
-
-/** The pose file of an estimate: a folder that delio-slam has written stands for the trajectory in
- *  it that is, or after --calib will be, in the frame of cam0. */
-std::string poseFile(const std::string& path, bool calibrationGiven) {
-    if (!fs::is_directory(path)) return path;
-    for (const char* name : {"trajectory_kitti_cam0.txt", "trajectory_kitti.txt"}) {
-        const fs::path file = fs::path(path) / name;
-        const bool inCam0 = std::string(name) == "trajectory_kitti_cam0.txt";
-        if (fs::exists(file) && !(inCam0 && calibrationGiven)) return file.string();
-    }
-    throw Error("'" + path +
-                "' is a folder without a trajectory_kitti.txt; give --ref a folder too to score "
-                "every NN.txt in it, or name a pose file");
-}
-
-/** Names of the pose files that lie in both folders. */
-std::vector<std::string> sharedFiles(const fs::path& reference, const fs::path& estimate) {
-    if (!fs::is_directory(estimate))
-        throw Error("'" + estimate.string() + "' is no folder, but the reference is one ('" +
-                    reference.string() + "'); give two folders or two files");
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(reference))
-        if (entry.path().extension() == ".txt" && fs::exists(estimate / entry.path().filename()))
-            names.push_back(entry.path().filename().string());
-    if (names.empty())
-        throw Error("'" + estimate.string() + "' has no pose file (NN.txt) that is in '" +
-                    reference.string() + "' too");
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
-std::string faultOfFrames(evaluation::FrameMismatch mismatch, bool calibrationGiven) {
-    switch (mismatch) {
-        case evaluation::FrameMismatch::none:
-            return "";
-        case evaluation::FrameMismatch::lidarAgainstCamera:
-            return "the estimate looks like it is in the LiDAR frame (x forward), the reference in "
-                   "the camera frame (z forward); give --calib calib.txt to bring the estimate to "
-                   "cam0";
-        case evaluation::FrameMismatch::cameraAgainstLidar:
-            break;
-    }
-    return calibrationGiven
-               ? "the estimate looks like it is in cam0's frame already, or the reference in the "
-                 "LiDAR frame; leave --calib out"
-               : "the estimate looks like it is in the camera frame (z forward), the reference in "
-                 "the LiDAR frame (x forward); give both in the same frame";
-}
-
-/** Scores one pose file against another. */
-ReportRow rowOf(const std::string& name, const std::string& referenceFile,
-                const std::string& estimateFile, const Settings& settings) {
-    const auto reference = io::readTrajectory(referenceFile);
-    auto estimate = io::readTrajectory(estimateFile);
-    if (settings.Tr) estimate = io::lidarToCam0(estimate, *settings.Tr);
-
-    const std::string pair = "'" + estimateFile + "' against '" + referenceFile + "': ";
-    evaluation::Association matched;
-    try {
-        matched = evaluation::associate(reference, estimate);
-    } catch (const Error& e) {
-        throw Error(pair + e.what());
-    }
-    if (matched.unmatchedReference + matched.unmatchedEstimate > 0)
-        cli::warn(pair + std::to_string(matched.estimate.size()) + " poses match in time; " +
-                  std::to_string(matched.unmatchedEstimate) + " of the estimate and " +
-                  std::to_string(matched.unmatchedReference) +
-                  " of the reference have no partner and are left out");
-    else if (settings.verbose)
-        cli::inform(pair + std::to_string(matched.estimate.size()) + " poses");
-    const std::string fault =
-        faultOfFrames(evaluation::findFrameMismatch(matched.reference, matched.estimate),
-                      settings.Tr.has_value());
-    if (!fault.empty()) throw Error(pair + fault);
-
-    ReportRow row =
-        evaluation::score(matched.reference, matched.estimate, settings.lengths_m, settings.delta);
-    row.name = name;
-    row.sequence = fs::path(referenceFile).stem().string();
-    if (row.kitti.segments == 0) {
-        const std::string lengths = textOf(evaluation::suggestedLengths_m(row.length_m));
-        cli::inform(pair +
-                    mrpt::format("the path of %.1f m is too short for the lengths asked for",
-                                 row.length_m) +
-                    (lengths.empty() ? "" : "; try --lengths " + lengths));
-    }
-    return row;
-}
-
-std::vector<ReportRow> rowsOf(const std::string& reference, const std::vector<Estimate>& estimates,
-                              const Settings& settings) {
-    std::vector<ReportRow> rows;
-    if (!fs::is_directory(reference)) {
-        for (const auto& [name, path] : estimates)
-            rows.push_back(
-                rowOf(name, reference, poseFile(path, settings.Tr.has_value()), settings));
-        return rows;
-    }
-    std::set<std::vector<std::string>> sets;
-    for (const auto& [name, path] : estimates) {
-        const auto files = sharedFiles(reference, path);
-        sets.insert(files);
-        std::vector<ReportRow> own;
-        own.reserve(files.size());
-        for (const auto& file : files)
-            own.push_back(rowOf(name, (fs::path(reference) / file).string(),
-                                (fs::path(path) / file).string(), settings));
-        rows.insert(rows.end(), own.begin(), own.end());
-        rows.push_back(evaluation::averageOf(own));
-    }
-    if (sets.size() > 1)
-        cli::warn("the estimates cover different sequences: do not compare their averages");
-    return rows;
-}
-
 void refuseReport(const std::string& folder, bool force) {
     if (folder.empty() || !fs::exists(folder)) return;
     if (!fs::is_directory(folder))
@@ -215,14 +55,26 @@ void refuseReport(const std::string& folder, bool force) {
     if (!fs::is_empty(folder)) cli::refuseExisting(folder, force);
 }
 
-void writeReport(const std::vector<ReportRow>& rows, const fs::path& folder) {
-    std::error_code fault;
-    fs::create_directories(folder, fault);
-    if (fault) throw Error("cannot make folder '" + folder.string() + "': " + fault.message());
-    io::replaceTextFile((folder / "metrics.tsv").string(),
-                        [&](std::ostream& out) { evaluation::writeMetricsTsv(rows, out); });
-    io::replaceTextFile((folder / "lengths.tsv").string(),
-                        [&](std::ostream& out) { evaluation::writeLengthsTsv(rows, out); });
+/** The rows of all results: of folders, the mean of each estimate's sequences after them. */
+std::vector<ReportRow> rowsOf(const std::vector<evaluation::Comparison>& comparisons,
+                              bool withAverages) {
+    std::vector<ReportRow> rows, own;
+    std::set<std::set<std::string>> sets;
+    for (std::size_t i = 0; i < comparisons.size(); ++i) {
+        own.push_back(comparisons[i].row);
+        const bool last =
+            i + 1 == comparisons.size() || comparisons[i + 1].row.name != comparisons[i].row.name;
+        if (!last) continue;
+        rows.insert(rows.end(), own.begin(), own.end());
+        if (withAverages) rows.push_back(evaluation::averageOf(own));
+        std::set<std::string> sequences;
+        for (const auto& row : own) sequences.insert(row.sequence);
+        sets.insert(sequences);
+        own.clear();
+    }
+    if (withAverages && sets.size() > 1)
+        cli::warn("the estimates cover different sequences: do not compare their averages");
+    return rows;
 }
 }  // namespace
 
@@ -242,7 +94,7 @@ int main(int argc, char** argv) {
     TCLAP::MultiArg<std::string> estimates(
         "e", "est",
         "Estimate: a pose file, a folder that delio-slam has written, or, if --ref is a folder, a "
-        "folder of pose files; may be given again",
+        "folder of pose files or of such folders; may be given again",
         true, "[NAME=]EST.txt|DIR", cmd);
     TCLAP::ValueArg<std::string> calibration(
         "c", "calib",
@@ -261,12 +113,14 @@ int main(int argc, char** argv) {
     TCLAP::ValueArg<std::string> format("f", "format", "Form of the results (default table)", false,
                                         "table", &formatsConstraint, cmd);
     TCLAP::ValueArg<std::string> output(
-        "o", "output", "Folder for metrics.tsv, and lengths.tsv with the errors per segment length",
+        "o", "output",
+        "Folder for the report: report.html (one page, pictures inside), plots/ (SVG, PNG, data, "
+        "gnuplot scripts), metrics.tsv, lengths.tsv; needs gnuplot",
         false, "", "REPORT_DIR", cmd);
     TCLAP::SwitchArg force("", "force", "Write into a report folder that is not empty", cmd);
     TCLAP::SwitchArg verbose("", "verbose", "Say what is compared with what", cmd);
 
-    Settings settings;
+    EvalSettings settings;
     return cli::run(cmd, argc, argv, verbose, [&] {
         settings.verbose = verbose.getValue();
         std::vector<Estimate> compared;
@@ -286,8 +140,16 @@ int main(int argc, char** argv) {
                             "' has no Tr, which brings the LiDAR frame to cam0");
             settings.Tr = read.Tr;
         }
-        const auto rows = rowsOf(reference.getValue(), compared, settings);
-        if (!output.getValue().empty()) writeReport(rows, output.getValue());
+        std::vector<evaluation::Comparison> comparisons;
+        for (const auto& estimate : compared)
+            for (auto& comparison : compare(reference.getValue(), estimate, settings))
+                comparisons.push_back(std::move(comparison));
+        const auto rows = rowsOf(comparisons, fs::is_directory(reference.getValue()));
+        if (!output.getValue().empty())
+            evaluation::writeReportFolder(
+                comparisons, rows,
+                {std::string("delio-eval ") + kVersion, textOf(settings.lengths_m), settings.delta},
+                output.getValue());
         if (format.getValue() == "tsv")
             evaluation::writeMetricsTsv(rows, std::cout);
         else

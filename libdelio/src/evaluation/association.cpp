@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "delio/error.h"
 
@@ -21,7 +22,13 @@ Association byRow(const io::Trajectory& reference, const io::Trajectory& estimat
         throw Error("the estimate has " + std::to_string(found) + " poses, the reference " +
                     std::to_string(wanted) +
                     "; without time stamps in both (TUM files) they must be as many");
-    return {reference.poses, estimate.poses, 0, 0};
+    Association result;
+    result.reference = reference.poses;
+    result.estimate = estimate.poses;
+    result.estimateRows.resize(found);
+    std::iota(result.estimateRows.begin(), result.estimateRows.end(), std::size_t{0});
+    result.stamps_s = reference.stamps_s.empty() ? estimate.stamps_s : reference.stamps_s;
+    return result;
 }
 
 Association byStamp(const io::Trajectory& reference, const io::Trajectory& estimate,
@@ -35,6 +42,8 @@ Association byStamp(const io::Trajectory& reference, const io::Trajectory& estim
             continue;
         result.reference.push_back(reference.poses[j]);
         result.estimate.push_back(estimate.poses[i]);
+        result.estimateRows.push_back(i);
+        result.stamps_s.push_back(tReference);
     }
     result.unmatchedReference = reference.poses.size() - result.reference.size();
     result.unmatchedEstimate = estimate.poses.size() - result.estimate.size();

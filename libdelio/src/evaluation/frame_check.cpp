@@ -1,6 +1,7 @@
 #include "delio/evaluation/frame_check.h"
 
 #include <Eigen/Dense>
+#include <cmath>
 
 namespace delio::evaluation {
 using mrpt::poses::CPose3D;
@@ -39,5 +40,18 @@ FrameMismatch findFrameMismatch(const std::vector<CPose3D>& reference,
     if (fromLidar > kAgree * steps) return FrameMismatch::lidarAgainstCamera;
     if (fromCamera > kAgree * steps) return FrameMismatch::cameraAgainstLidar;
     return FrameMismatch::none;
+}
+
+bool movesAlongZ(const std::vector<CPose3D>& poses) {
+    double alongX = 0, alongZ = 0;
+    std::size_t begin = 0;
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+        if (poses[i].distanceTo(poses[begin]) < kStep_m) continue;
+        const Eigen::Vector3d step = direction(poses[begin], poses[i]);
+        alongX += std::abs(step.x());
+        alongZ += std::abs(step.z());
+        begin = i;
+    }
+    return alongZ > alongX;
 }
 }  // namespace delio::evaluation

@@ -14,8 +14,40 @@ using mrpt::poses::CPose3D;
 namespace {
 constexpr std::size_t kStep = 10;  // KITTI's: one second of its drives
 
-/** Distance travelled up to each pose. */
-std::vector<double> distances(const std::vector<CPose3D>& poses) {
+/** All segments of one length. */
+std::vector<Segment> segmentsOf(const std::vector<CPose3D>& reference,
+                                const std::vector<CPose3D>& estimate,
+                                const std::vector<double>& travelled, double length) {
+    std::vector<Segment> segments;
+    for (std::size_t first = 0; first < travelled.size(); first += kStep) {
+        const auto beyond =
+            std::upper_bound(travelled.begin(), travelled.end(), travelled[first] + length);
+        if (beyond == travelled.end()) break;  // nor is there one for any later start
+        const auto last = static_cast<std::size_t>(beyond - travelled.begin());
+        const CPose3D error =
+            (reference[last] - reference[first]) - (estimate[last] - estimate[first]);
+        segments.push_back({first, last, length, 100 * error.norm() / length,
+                            100 * mrpt::RAD2DEG(rotationAngle_rad(error)) / length});
+    }
+    return segments;
+}
+}  // namespace
+
+SegmentErrors meanOf(const std::vector<Segment>& segments) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (segments.empty()) return {0, none, none};
+    SegmentErrors mean;
+    mean.segments = segments.size();
+    for (const auto& segment : segments) {
+        mean.t_percent += segment.t_percent;
+        mean.r_deg_per_100m += segment.r_deg_per_100m;
+    }
+    mean.t_percent /= static_cast<double>(segments.size());
+    mean.r_deg_per_100m /= static_cast<double>(segments.size());
+    return mean;
+}
+
+std::vector<double> travelled_m(const std::vector<CPose3D>& poses) {
     std::vector<double> result;
     double sum = 0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -25,19 +57,10 @@ std::vector<double> distances(const std::vector<CPose3D>& poses) {
     return result;
 }
 
-/** Turns sums over segments into means. */
-void divide(SegmentErrors& sums) {
-    const auto n = static_cast<double>(sums.segments);
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    sums.t_percent = sums.segments ? sums.t_percent / n : none;
-    sums.r_deg_per_100m = sums.segments ? sums.r_deg_per_100m / n : none;
-}
-}  // namespace
-
 std::vector<double> kittiLengths_m() { return {100, 200, 300, 400, 500, 600, 700, 800}; }
 
 double pathLength_m(const std::vector<CPose3D>& poses) {
-    return poses.empty() ? 0 : distances(poses).back();
+    return poses.empty() ? 0 : travelled_m(poses).back();
 }
 
 std::vector<double> suggestedLengths_m(double path_m) {
@@ -51,29 +74,14 @@ std::vector<double> suggestedLengths_m(double path_m) {
 
 KittiErrors kittiErrors(const std::vector<CPose3D>& reference, const std::vector<CPose3D>& estimate,
                         const std::vector<double>& lengths_m) {
-    const auto travelled = distances(reference);
+    const auto travelled = travelled_m(reference);
     KittiErrors result;
     for (const double length : lengths_m) {
-        LengthErrors errors;
-        errors.length_m = length;
-        for (std::size_t first = 0; first < travelled.size(); first += kStep) {
-            const auto beyond =
-                std::upper_bound(travelled.begin(), travelled.end(), travelled[first] + length);
-            if (beyond == travelled.end()) break;  // nor is there one for any later start
-            const auto last = static_cast<std::size_t>(beyond - travelled.begin());
-            const CPose3D error =
-                (reference[last] - reference[first]) - (estimate[last] - estimate[first]);
-            errors.t_percent += 100 * error.norm() / length;
-            errors.r_deg_per_100m += 100 * mrpt::RAD2DEG(rotationAngle_rad(error)) / length;
-            ++errors.segments;
-        }
-        result.segments += errors.segments;
-        result.t_percent += errors.t_percent;
-        result.r_deg_per_100m += errors.r_deg_per_100m;
-        divide(errors);
-        result.perLength.push_back(errors);
+        const auto segments = segmentsOf(reference, estimate, travelled, length);
+        result.all.insert(result.all.end(), segments.begin(), segments.end());
+        result.perLength.push_back({meanOf(segments), length});
     }
-    divide(result);
+    static_cast<SegmentErrors&>(result) = meanOf(result.all);
     return result;
 }
 }  // namespace delio::evaluation

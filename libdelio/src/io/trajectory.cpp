@@ -73,7 +73,9 @@ CPose3D poseOf3x4(const std::vector<double>& numbers, std::size_t first, const s
 void appendTum(Trajectory& trajectory, const std::vector<double>& numbers,
                const std::string& where) {
     if (!trajectory.stamps_s.empty() && numbers[0] <= trajectory.stamps_s.back())
-        throw Error(where + ": the stamps do not rise; sort the file by time");
+        throw Error(where + (numbers[0] < trajectory.stamps_s.back()
+                                 ? ": the stamps do not rise; sort the file by time"
+                                 : ": the stamp of the pose before once more; remove one of them"));
     const Eigen::Quaterniond q(numbers[7], numbers[4], numbers[5], numbers[6]);
     if (std::abs(q.norm() - 1) > 1e-2) throw Error(where + ": the quaternion is not of length 1");
     trajectory.stamps_s.push_back(numbers[0]);

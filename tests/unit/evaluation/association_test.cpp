@@ -37,6 +37,16 @@ std::string messageOf(const io::Trajectory& reference, const io::Trajectory& est
     return "";
 }
 
+TEST(Association, SaysWhichRowsBelongTogetherAndWhen) {
+    const auto byRow = associate(stamped({5, 6, 7}), unstamped(3));
+    EXPECT_EQ(byRow.estimateRows, (std::vector<std::size_t>{0, 1, 2}));
+    EXPECT_EQ(byRow.stamps_s, (std::vector<double>{5, 6, 7}));
+    EXPECT_TRUE(associate(unstamped(3), unstamped(3)).stamps_s.empty());
+    const auto byStamp = associate(stamped({5, 6, 7}), stamped({4, 5.01, 7.01}));
+    EXPECT_EQ(byStamp.estimateRows, (std::vector<std::size_t>{1, 2}));
+    EXPECT_EQ(byStamp.stamps_s, (std::vector<double>{5, 7}));
+}
+
 TEST(Association, RowsMatchWhereEitherSideHasNoStamps) {
     EXPECT_EQ(associate(unstamped(3), unstamped(3)).estimate.size(), 3U);
     EXPECT_EQ(associate(stamped({5, 6, 7}), unstamped(3)).estimate.size(), 3U);

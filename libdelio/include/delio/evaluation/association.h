@@ -9,6 +9,9 @@ namespace delio::evaluation {
 struct Association {
     std::vector<mrpt::poses::CPose3D> reference;
     std::vector<mrpt::poses::CPose3D> estimate;
+    std::vector<std::size_t>
+        estimateRows;                    //!< estimate[i] is row estimateRows[i] of what was given
+    std::vector<double> stamps_s;        //!< of the pairs; empty where neither file has stamps
     std::size_t unmatchedReference = 0;  //!< poses of the reference without a partner
     std::size_t unmatchedEstimate = 0;
 };

@@ -18,4 +18,7 @@ enum class FrameMismatch {
  *  moves too little to tell. Same count of poses in both. */
 FrameMismatch findFrameMismatch(const std::vector<mrpt::poses::CPose3D>& reference,
                                 const std::vector<mrpt::poses::CPose3D>& estimate);
+
+/** True if the moving frame travels along its own z, as a camera does, rather than along x. */
+bool movesAlongZ(const std::vector<mrpt::poses::CPose3D>& poses);
 }  // namespace delio::evaluation

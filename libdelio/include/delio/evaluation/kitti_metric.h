@@ -5,6 +5,16 @@
 #include <vector>
 
 namespace delio::evaluation {
+/** A stretch of the drive from pose `first` to pose `last`, and what the estimate got wrong on it.
+ */
+struct Segment {
+    std::size_t first = 0;
+    std::size_t last = 0;
+    double length_m = 0;        //!< asked for; the last pose is the first one beyond it
+    double t_percent = 0;       //!< translation error per length, in percent
+    double r_deg_per_100m = 0;  //!< rotation error per length, in deg per 100 m
+};
+
 /** Mean errors of a number of segments; NaN where there is none. */
 struct SegmentErrors {
     std::size_t segments = 0;
@@ -12,16 +22,22 @@ struct SegmentErrors {
     double r_deg_per_100m = 0;  //!< rotation error per length of the segment, in deg per 100 m
 };
 
+SegmentErrors meanOf(const std::vector<Segment>& segments);
+
 struct LengthErrors : SegmentErrors {
     double length_m = 0;
 };
 
 struct KittiErrors : SegmentErrors {
     std::vector<LengthErrors> perLength;  //!< one per length asked for, in that order
+    std::vector<Segment> all;             //!< in order of their lengths
 };
 
 /** 100, 200, ... 800 m: what KITTI scores. */
 std::vector<double> kittiLengths_m();
+
+/** Distance travelled through the positions up to each pose, metres. */
+std::vector<double> travelled_m(const std::vector<mrpt::poses::CPose3D>& poses);
 
 /** Length of the path through the positions, metres. */
 double pathLength_m(const std::vector<mrpt::poses::CPose3D>& poses);

@@ -1,0 +1,43 @@
+#pragma once
+#include <mrpt/poses/CPose3D.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "delio/evaluation/comparison.h"
+
+namespace delio {
+/** An estimate as the command line of delio-eval names it. */
+struct Estimate {
+    std::string name;
+    std::string path;
+};
+
+/** `[NAME=]PATH`, named after the file or folder where no name is given. */
+Estimate estimateOf(const std::string& text);
+
+/** What is wrong with the names of the estimates; empty if nothing. */
+std::string faultOfNames(const std::vector<Estimate>& estimates);
+
+struct EvalSettings {
+    std::optional<mrpt::poses::CPose3D> Tr;  //!< set: estimates are brought from LiDAR to cam0
+    std::vector<double> lengths_m;
+    std::size_t delta = 1;
+    bool verbose = false;
+};
+
+/** "100,200,400". */
+std::string textOf(const std::vector<double>& lengths);
+
+/** Reads and scores one pose file against another. Flagged scans and times are taken from the
+ *  scans.csv of delio-slam where there is one beside the estimate. Warnings go to stderr; Error for
+ *  what cannot be compared. */
+evaluation::Comparison compareFiles(const std::string& name, const std::string& referenceFile,
+                                    const std::string& estimateFile, const EvalSettings& settings);
+
+/** All sequences of one estimate. `reference` is a pose file, and the estimate one too or a folder
+ *  of delio-slam; or it is a folder of NN.txt, and the estimate one of NN.txt or of folders NN. */
+std::vector<evaluation::Comparison> compare(const std::string& reference, const Estimate& estimate,
+                                            const EvalSettings& settings);
+}  // namespace delio

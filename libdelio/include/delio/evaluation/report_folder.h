@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "delio/evaluation/comparison.h"
+
+namespace delio::evaluation {
+/** What a report says about itself. */
+struct ReportNotes {
+    std::string program;  //!< name and version
+    std::string lengths;  //!< of the segments, metres
+    std::size_t delta = 1;
+};
+
+/** Writes metrics.tsv, lengths.tsv, report.html and plots/ (SVG, PNG, data and gnuplot scripts)
+ * into `folder`, which is made if it is not there; of one that is, all else stays. The page holds
+ * its pictures itself and opens without a network. Nothing is changed before everything is written:
+ *  Error where that fails, or gnuplot is not installed.
+ *  `rows`: those of the comparisons, and of averages ("avg"), in the order of the TSV. */
+void writeReportFolder(const std::vector<Comparison>& comparisons,
+                       const std::vector<ReportRow>& rows, const ReportNotes& notes,
+                       const std::string& folder);
+}  // namespace delio::evaluation

@@ -1,0 +1,42 @@
+#include "printable.h"
+
+namespace delio::evaluation {
+namespace {
+/** Bytes of the character of UTF-8 that begins with `lead`; 0 for none. */
+std::size_t lengthOf(unsigned char lead) {
+    if (lead < 0x80) return 1;
+    if (lead >= 0xC2 && lead < 0xE0) return 2;
+    if (lead >= 0xE0 && lead < 0xF0) return 3;
+    return lead >= 0xF0 && lead < 0xF5 ? 4 : 0;
+}
+
+/** True if a whole character of `length` bytes begins at `i` (surrogates and needlessly long forms
+ *  are none). */
+bool isCharacter(const std::string& text, std::size_t i, std::size_t length) {
+    if (length == 0 || i + length > text.size()) return false;
+    for (std::size_t k = 1; k < length; ++k)
+        if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return false;
+    if (length < 3) return true;
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(text[i + 1]);
+    return !(lead == 0xE0 && next < 0xA0) && !(lead == 0xED && next >= 0xA0) &&
+           !(lead == 0xF0 && next < 0x90) && !(lead == 0xF4 && next >= 0x90);
+}
+}  // namespace
+
+std::string printable(const std::string& text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size();) {
+        const auto lead = static_cast<unsigned char>(text[i]);
+        const std::size_t length = lengthOf(lead);
+        if (lead < 0x20 || lead == 0x7F || !isCharacter(text, i, length)) {
+            result += '?';
+            ++i;
+        } else {
+            result += text.substr(i, length);
+            i += length;
+        }
+    }
+    return result;
+}
+}  // namespace delio::evaluation

@@ -1,0 +1,65 @@
+#include "delio/io/scan_table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "delio/error.h"
+
+namespace delio::io {
+namespace {
+std::vector<std::string> cellsOf(const std::string& line) {
+    std::vector<std::string> cells(1);
+    for (const char c : line) {
+        if (c == ',')
+            cells.emplace_back();
+        else if (c != '\r')
+            cells.back() += c;
+    }
+    return cells;
+}
+
+std::size_t columnOf(const std::vector<std::string>& heading, const std::string& name,
+                     const std::string& path) {
+    const auto found = std::find(heading.begin(), heading.end(), name);
+    if (found == heading.end())
+        throw Error("'" + path + "' has no column '" + name + "'; is it delio-slam's scans.csv?");
+    return static_cast<std::size_t>(found - heading.begin());
+}
+}  // namespace
+
+ScanTable readScanTable(const std::string& path) {
+    std::ifstream in(path);
+    if (!in) throw Error("cannot read '" + path + "': no such file, or not readable");
+    std::string text;
+    std::getline(in, text);
+    const auto heading = cellsOf(text);
+    const std::size_t columns[] = {columnOf(heading, "scan", path),
+                                   columnOf(heading, "stamp_s", path),
+                                   columnOf(heading, "predicted", path)};
+    ScanTable table;
+    for (std::size_t line = 2; std::getline(in, text); ++line) {
+        // The reason, the last column, may hold commas: what comes after the wanted ones is free.
+        const auto cells = cellsOf(text);
+        double values[3] = {};
+        for (int i = 0; i < 3; ++i) {
+            const std::string cell = columns[i] < cells.size() ? cells[columns[i]] : "";
+            const char* const end = cell.data() + cell.size();
+            const auto result = std::from_chars(cell.data(), end, values[i]);
+            if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(values[i]))
+                throw Error("'" + path + "', line " + std::to_string(line) + ": '" +
+                            heading[columns[i]] + "' is not a number");
+        }
+        const double scan = values[0];
+        if (scan < 0 || scan > 1e9 || scan != std::floor(scan) ||
+            (!table.scans.empty() && scan <= static_cast<double>(table.scans.back())))
+            throw Error("'" + path + "', line " + std::to_string(line) +
+                        ": the numbers of the scans do not rise");
+        table.scans.push_back(static_cast<std::size_t>(scan));
+        table.stamps_s.push_back(values[1]);
+        table.predicted.push_back(values[2] != 0);
+    }
+    return table;
+}
+}  // namespace delio::io

@@ -1,0 +1,73 @@
+#include "baseline.h"
+#include "delio/profile.h"
+#include "delio/slam.h"
+#include "delio/translation/coupled_registration.h"
+
+namespace delio::benchmark {
+using mrpt::poses::CPose3D;
+
+namespace {
+/** DeLiO as delio-slam --no-map runs it. */
+class Delio : public Baseline {
+ public:
+    Delio(const Options& options, const std::string& label) : slam_(options, true, false, label) {}
+
+    void process(const Scan& scan) override {
+        slam_.process(scan);
+        sensorPoses_.push_back(scan.sensorPose);
+    }
+    std::vector<CPose3D> poses() override {
+        slam_.optimise();
+        auto poses = slam_.trajectory().poses;
+        for (std::size_t i = 0; i < poses.size(); ++i)
+            poses[i] = (-sensorPoses_[0]) + poses[i] + sensorPoses_[i];
+        return poses;
+    }
+
+ private:
+    Slam slam_;
+    std::vector<CPose3D> sensorPoses_;
+};
+
+/** Rotation and translation together from line clouds, as Velas et al., with the lines of profile
+ *  paper. Of the first pair the motion is searched for, as DeLiO does: without it, line clouds do
+ *  not find a vehicle that is moving already. */
+class CoupledLines : public ScanToScan<translation::LineCloud> {
+ public:
+    CoupledLines(const DriveFacts& facts, const OdometryOptions& options)
+        : ScanToScan(facts), draw_(options.lines), registration_(options.lineRegistration) {}
+
+ protected:
+    translation::LineCloud extract(const scan::PointCloud& cloud) override {
+        ++draw_.seed;  // the same draw twice would pair lines with themselves
+        return translation::drawLines(cloud.points, cloud.rings, draw_);
+    }
+    CPose3D align(const translation::LineCloud& from, const translation::LineCloud& to,
+                  const CPose3D& guess) override {
+        Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
+        start.linear() = guess.getRotationMatrix().asEigen();
+        const Eigen::Vector3d t(guess.x(), guess.y(), guess.z());
+        start.translation() =
+            first_ ? translation::searchTranslation(from, to, t, registration_).translation : t;
+        first_ = false;
+        const auto found = translation::registerCoupled(from, to, start, registration_);
+        return {Eigen::Matrix3d(found.pose.linear()), Eigen::Vector3d(found.pose.translation())};
+    }
+
+ private:
+    translation::LineCloudOptions draw_;
+    translation::LineRegistrationOptions registration_;
+    bool first_ = true;
+};
+}  // namespace
+
+std::unique_ptr<Baseline> makeDelio(const std::string& profile, const DriveFacts& facts) {
+    auto options = Options::ofProfile(profile);
+    options.odometry.preprocess.vertical_correction_deg = facts.verticalCorrection_deg;
+    return std::make_unique<Delio>(options, facts.label);
+}
+
+std::unique_ptr<Baseline> makeCoupledLines(const DriveFacts& facts) {
+    return std::make_unique<CoupledLines>(facts, Options::ofProfile("paper").odometry);
+}
+}  // namespace delio::benchmark
