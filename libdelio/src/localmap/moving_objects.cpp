@@ -59,8 +59,9 @@ bool MovingObjects::came(const Object& object) const {
     return witnesses > 0 && witnesses == views_.size();
 }
 
-bool MovingObjects::droveAhead(const Object& object) const {
-    constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTolerance = 0.15F;
+/** Its speed over the ground, where it left places behind; m/s, the map's frame. */
+std::optional<Eigen::Vector3f> MovingObjects::velocityOf(const Object& object) const {
+    constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTolerance = 0.15F, kTurn = 0.3F;
     constexpr double kLeastKnown = 0.05;  // near the vehicle places are left below all beams
     const auto gone = [&](const Object& earlier, const View& view) {
         return alike(earlier.size, object.size) && isFree(earlier, view, latest_, kLeastKnown);
@@ -72,9 +73,15 @@ bool MovingObjects::droveAhead(const Object& object) const {
         for (const auto& there : second.objects) {
             const Eigen::Vector3f place = second.toMap * there.centre;
             const Eigen::Vector3f step = here - place;
-            if (step.norm() < static_cast<float>(options_.margin) ||
-                step.norm() > kFastest_m_s * later_s || !gone(there, second))
+            const float length = step.norm();
+            if (length < static_cast<float>(options_.margin) || length > kFastest_m_s * later_s ||
+                !gone(there, second))
                 continue;
+            // It goes on as it did.
+            if (there.velocity &&
+                (step - later_s * *there.velocity).norm() < kTolerance_m + kTurn * length)
+                return step / later_s;
+            // Or it comes from a place before that one.
             for (std::size_t j = i + 1; j < views_.size(); ++j) {
                 const View& first = views_[j];
                 const auto earlier_s = static_cast<float>(second.stamp_s - first.stamp_s);
@@ -82,16 +89,14 @@ bool MovingObjects::droveAhead(const Object& object) const {
                 const Eigen::Vector3f expected = place - step * earlier_s / later_s;
                 for (const auto& start : first.objects)
                     if ((first.toMap * start.centre - expected).norm() <
-                            kTolerance_m + kTolerance * step.norm() &&
+                            kTolerance_m + kTolerance * length &&
                         gone(start, first))
-                        return true;
+                        return step / later_s;
             }
         }
     }
-    return false;
+    return {};
 }
-
-bool MovingObjects::moves(const Object& object) const { return came(object) || droveAhead(object); }
 
 std::vector<std::uint8_t> MovingObjects::find(const Eigen::Matrix3Xf& points,
                                               const Eigen::Matrix3Xf& all,
@@ -101,15 +106,20 @@ std::vector<std::uint8_t> MovingObjects::find(const Eigen::Matrix3Xf& points,
     latest_ = {stamp_s, isometryOf(pose), RangeImage(all, options_.cell_deg), {}};
     const auto segments = segmentsOf(points, segmentOptions_);
     for (const auto& segment : segments) {
-        Object object{Eigen::Matrix3Xf(3, segment.points.size()), segment.box.center(),
-                      segment.box.sizes()};
+        Object object{Eigen::Matrix3Xf(3, segment.points.size()),
+                      segment.box.center(),
+                      segment.box.sizes(),
+                      {}};
         for (std::size_t i = 0; i < segment.points.size(); ++i)
             object.points.col(static_cast<Eigen::Index>(i)) = points.col(segment.points[i]);
         latest_.objects.push_back(std::move(object));
     }
     std::vector<std::uint8_t> moving(segments.size());
-    tbb::parallel_for(std::size_t{0}, segments.size(),
-                      [&](std::size_t i) { moving[i] = moves(latest_.objects[i]); });
+    tbb::parallel_for(std::size_t{0}, segments.size(), [&](std::size_t i) {
+        Object& object = latest_.objects[i];
+        object.velocity = velocityOf(object);
+        moving[i] = object.velocity || came(object);
+    });
     std::vector<std::uint8_t> result(static_cast<std::size_t>(points.cols()));
     for (std::size_t i = 0; i < segments.size(); ++i)
         for (const Eigen::Index point : segments[i].points)

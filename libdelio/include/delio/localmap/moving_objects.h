@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "delio/localmap/range_image.h"
@@ -27,7 +28,8 @@ struct MovingObjectsOptions : public StageOptions {
 /** Tells what moves. A segment of a scan moves where
  *  - earlier scans saw through most of the place that it takes (it came from elsewhere), or
  *  - it is the third of a row of segments of one size at equal distances in equal times, through
- *    the first two of which later scans see (it drives ahead, where it hides its way). */
+ *    the first two of which this scan sees (it drives ahead, where it hides its way), or goes on
+ *    from such a row as it did. */
 class MovingObjects {
  public:
     MovingObjects(const MovingObjectsOptions& options, const SegmentOptions& segments)
@@ -49,6 +51,7 @@ class MovingObjects {
     struct Object {
         Eigen::Matrix3Xf points;
         Eigen::Vector3f centre, size;
+        std::optional<Eigen::Vector3f> velocity;  //!< m/s, in the map's frame
     };
     struct View {
         double stamp_s = 0;
@@ -56,9 +59,8 @@ class MovingObjects {
         RangeImage image;
         std::vector<Object> objects;
     };
-    bool moves(const Object& object) const;
     bool came(const Object& object) const;
-    bool droveAhead(const Object& object) const;
+    std::optional<Eigen::Vector3f> velocityOf(const Object& object) const;
     /** True where scan `by` saw through the place that `object` took in scan `seen`. `minKnown`:
      *  the share of its points whose places it has to know of. */
     bool isFree(const Object& object, const View& seen, const View& by, double minKnown) const;
