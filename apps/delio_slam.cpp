@@ -91,7 +91,9 @@ void process(const Request& request, io::ScanSource& source, std::optional<Slam>
             const auto scan = source.next();
             if (!scan) break;
             const double read_ms = 1e3 * clock.Tac();
-            if (!slam) slam.emplace(options, request.withGraph, request.withMap, source.label());
+            if (!slam)
+                slam.emplace(options, request.withGraph, request.withMap, source.label(),
+                             request.output);
             run.addScan(*scan, slam->process(*scan), read_ms);
             if (request.verbose) cli::inform(run.describeLastScan());
             progress.update(run.reports.size(), source.fraction());

@@ -27,15 +27,16 @@ Increment ofVehicle(const Increment& ofSensor, const CPose3D& sensorFrom, const 
 }
 }  // namespace
 
-Slam::Slam(const Options& options, bool withGraph, bool withMap, const std::string& sensorLabel)
+Slam::Slam(const Options& options, bool withGraph, bool withMap, const std::string& sensorLabel,
+           const std::string& folder)
     : options_(options),
       withGraph_(withGraph),
       withMap_(withMap),
       odometry_(options.odometry),
-      map_(options.map, sensorLabel) {}
+      map_(options.map, sensorLabel, folder) {}
 
 ScanReport Slam::process(const Scan& scan) {
-    ScanReport report{scan.index, scan.stamp_s, odometry_.process(scan), 0};
+    ScanReport report{scan.index, scan.stamp_s, odometry_.process(scan), 0, 0};
     auto& poses = odometryTrajectory_.poses;
     Recent latest{poses.size(), report.odometry.features, scan.sensorPose};
     if (recent_.empty()) {
@@ -49,7 +50,12 @@ ScanReport Slam::process(const Scan& scan) {
         graph_.addEdge({latest.node - 1, latest.node, increment});
     }
     odometryTrajectory_.stamps_s.push_back(scan.stamp_s);
-    if (withMap_) map_.add(latest.node, poses.back(), *scan.points, scan.sensorPose, scan.time);
+    // Where a scan was taken that could not be registered is a guess.
+    if (withMap_ && !report.odometry.predicted) {
+        mrpt::system::CTicTac clock;
+        map_.add(latest.node, poses.back(), *scan.points, scan.sensorPose, scan.time);
+        report.map_ms = 1e3 * clock.Tac();
+    }
     if (withGraph_ && !report.odometry.predicted && report.odometry.features) {
         mrpt::system::CTicTac clock;
         addSkipEdges(latest);

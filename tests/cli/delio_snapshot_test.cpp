@@ -37,7 +37,7 @@ class SnapshotTool : public testing::Test {
         const auto points = builder.points(poses);
         count_ = points.size();
         map::savePly(points, at("map.ply"));
-        map::saveScene(*map::mapScene(points, poses), at("map.3Dscene"));
+        map::saveScene(*map::mapScene(points, {poses, {}, {}}), at("map.3Dscene"));
     }
     std::string at(const std::string& name) const { return folder_ / name; }
 
