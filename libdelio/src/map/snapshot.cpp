@@ -1,5 +1,6 @@
 #include "delio/map/snapshot.h"
 
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/opengl/CCamera.h>
 #include <mrpt/opengl/CFBORender.h>
 #include <mrpt/opengl/CGridPlaneXY.h>
@@ -7,6 +8,7 @@
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/poses/CPose3D.h>
+#include <mrpt/serialization/CArchive.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -354,16 +356,18 @@ class PreparedScene {
                                      : points->getPointSize() * wider * (isCloud ? nearer : 1));
         });
         texts_ = viewport_->getTextMessages().messages;
+        constexpr double kNothing = 1e-9;  // a share of the picture; MRPT does not take 0
         for (const auto& viewport : scene_.viewports()) {
-            Place place{viewport, 0, 0, 0, 0};
             if (viewport == viewport_) continue;
-            viewport->getViewportPosition(place.x, place.y, place.width, place.height);
-            places_.push_back(place);
+            auto& kept =
+                others_.emplace_back(viewport, std::make_unique<mrpt::io::CMemoryStream>());
+            mrpt::serialization::archiveFrom(*kept.second) << *viewport;
+            double x = 0, y = 0, w = 0, h = 0;
+            viewport->getViewportPosition(x, y, w, h);
             if (hasLegend(options))
-                viewport->setViewportPosition(larger(place.x), larger(place.y), larger(place.width),
-                                              larger(place.height));
+                viewport->setViewportPosition(larger(x), larger(y), larger(w), larger(h));
             else
-                viewport->setViewportPosition(0, 0, 0, 0);
+                viewport->setViewportPosition(0, 0, kNothing, kNothing);
         }
     }
     ~PreparedScene() {
@@ -373,8 +377,11 @@ class PreparedScene {
             points->setPointSize(size);
             points->enableVariablePointSize(variable);
         }
-        for (const auto& [viewport, x, y, width, height] : places_)
-            viewport->setViewportPosition(x, y, width, height);
+        // MRPT would keep the textures of these, too, of a context that is gone.
+        for (const auto& [viewport, kept] : others_) {
+            kept->Seek(0);
+            mrpt::serialization::archiveFrom(*kept) >> *viewport;
+        }
         viewport_->clearTextMessages();
         for (const auto& [id, text] : texts_)
             viewport_->addTextMessage(text.x, text.y, text.text, id, text);
@@ -437,11 +444,9 @@ class PreparedScene {
         bool variable;
     };
     std::vector<Size> sizes_;
-    struct Place {
-        mrpt::opengl::COpenGLViewport::Ptr viewport;
-        double x, y, width, height;
-    };
-    std::vector<Place> places_;
+    std::vector<
+        std::pair<mrpt::opengl::COpenGLViewport::Ptr, std::unique_ptr<mrpt::io::CMemoryStream>>>
+        others_;
     std::map<uint32_t, mrpt::opengl::CTextMessageCapable::DataPerText> texts_;
 };
 

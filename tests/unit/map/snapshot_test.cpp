@@ -1,6 +1,7 @@
 #include "delio/map/snapshot.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/opengl/CPointCloud.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
