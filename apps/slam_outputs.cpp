@@ -145,9 +145,14 @@ void SlamRun::write(const Slam& slam, const Options& options, bool withMap) {
     writeConfig(options);
     mrpt::system::CTicTac clock;
     for (const char* name : kFilesOfMap) forget(name);
-    if (withMap) writeMap(slam, final_);
-    const auto scene = map::trajectoryScene(final_.poses, truthInPicture_);
-    map::savePicture(*scene, map::topView(), path("trajectory.png"));
+    try {
+        if (withMap) writeMap(slam, final_);
+        const auto scene = map::trajectoryScene(final_.poses, truthInPicture_);
+        map::savePicture(*scene, map::topView(), path("trajectory.png"));
+    } catch (const Error& e) {
+        // A full disk or a missing renderer: the rest of the results is good all the same.
+        if (fault.empty()) fault = e.what();
+    }
     map_ms_ = 1e3 * clock.Tac();
     writeSummary(options);
 }

@@ -65,10 +65,11 @@ std::size_t MapBuilder::keyScans() const { return keyScans_.size(); }
 bool MapBuilder::add(std::size_t poseIndex, const CPose3D& approximatePose,
                      const CPointsMap& sensorPoints, const CPose3D& sensorPose,
                      mrpt::Clock::time_point stamp, const std::vector<std::uint8_t>& moving) {
-    const bool isKeyScan =
-        keyScans_.empty() ||
-        approximatePose.distanceTo(lastKeyPose_) >= options_.keyframeDistance_m ||
-        angleBetween_deg(lastKeyPose_, approximatePose) >= options_.keyframeAngle_deg;
+    const auto farFromLast = [&] {
+        return approximatePose.distanceTo(lastKeyPose_) >= options_.keyframeDistance_m ||
+               angleBetween_deg(lastKeyPose_, approximatePose) >= options_.keyframeAngle_deg;
+    };
+    const bool isKeyScan = spoolFault_.empty() && (keyScans_.empty() || farFromLast());
     const Eigen::Matrix4d toWorld = (approximatePose + sensorPose)
                                         .getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>()
                                         .asEigen();
@@ -96,16 +97,22 @@ bool MapBuilder::add(std::size_t poseIndex, const CPose3D& approximatePose,
     fresh.shrink_to_fit();
     if (!fresh.empty()) scans_.push_back({poseIndex, sensorPose, std::move(fresh)});
     if (whole.empty()) return false;
-    if (!spool_)
-        spool_ = std::make_shared<ScanSpool>(
-            folder_.empty() ? std::filesystem::temp_directory_path().string() : folder_);
-    keyScans_.push_back(
-        {poseIndex, sensorPose, stamp, withIntensity != nullptr, spool_->append(whole)});
+    try {
+        if (!spool_)
+            spool_ = std::make_shared<ScanSpool>(
+                folder_.empty() ? std::filesystem::temp_directory_path().string() : folder_);
+        keyScans_.push_back(
+            {poseIndex, sensorPose, stamp, withIntensity != nullptr, spool_->append(whole)});
+    } catch (const Error& e) {
+        spoolFault_ = e.what();
+        return false;
+    }
     lastKeyPose_ = approximatePose;
     return true;
 }
 
 mrpt::maps::CSimpleMap MapBuilder::simplemap(const std::vector<CPose3D>& poses) const {
+    if (!spoolFault_.empty()) throw Error(spoolFault_);
     mrpt::maps::CSimpleMap map;
     for (const auto& scan : keyScans_) {
         auto pose = mrpt::poses::CPose3DPDFGaussian::Create();

@@ -9,13 +9,13 @@
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/poses/CPose3D.h>
 #include <mrpt/serialization/CArchive.h>
+#include <png.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -537,17 +537,20 @@ void checkPngName(const std::string& path) {
 
 void savePng(const CImage& image, const std::string& path) {
     checkPngName(path);
-    // The writer does not notice a disk that is full by the time the file is closed.
-    const auto endsAsPng = [](const std::string& file) {
-        constexpr std::array<char, 8> kEnd = {'I', 'E', 'N', 'D', '\xae', 'B', '`', '\x82'};
-        std::array<char, 8> end{};
-        std::ifstream in(file, std::ios::binary);
-        in.seekg(-8, std::ios::end);
-        in.read(end.data(), end.size());
-        return in && end == kEnd;
-    };
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = static_cast<png_uint_32>(image.getWidth());
+    png.height = static_cast<png_uint_32>(image.getHeight());
+    png.format = PNG_FORMAT_BGR;
+    png.flags = PNG_IMAGE_FLAG_FAST;
+    // Not MRPT's writer: it tells stderr of a full disk by itself, or nobody.
     io::replaceFile(path, [&](const std::string& temporary) {
-        return image.saveToFile(temporary) && endsAsPng(temporary);
+        std::FILE* const file = std::fopen(temporary.c_str(), "wb");
+        if (!file) return false;
+        const int written =
+            png_image_write_to_stdio(&png, file, 0, image.ptrLine<std::uint8_t>(0),
+                                     static_cast<png_int_32>(image.getRowStride()), nullptr);
+        return (std::fclose(file) == 0) && written != 0;
     });
 }
 

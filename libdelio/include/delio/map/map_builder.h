@@ -49,7 +49,8 @@ class MapBuilder {
      *  keyframeDistance_m or keyframeAngle_deg away from the key scan before it. Its points between
      *  minRange_m and maxRange_m of the sensor are used, the first of each voxel of voxelSize_m
      *  (0: all); points that are not finite, and those that move, are left out. A scan without any
-     *  usable point is never a key scan. Throws Error if the disk is full.
+     *  usable point is never a key scan. If the disk is full, there are no more key scans, and
+     *  simplemap() says so.
      *  @param poseIndex which of the final poses will be this scan's
      *  @param approximatePose decides whether this is a key scan, and which of its points are in
      *  voxels that were seen before
@@ -66,10 +67,12 @@ class MapBuilder {
 
     /** The key scans at the given poses, one CObservationPointCloud each; load() fetches its points
      *  from the disk, and saveSimplemap() embeds them. The poses' covariances are 0 ("not stated").
-     *  Throws Error if a key scan's poseIndex is outside `poses`. */
+     *  Throws Error if a key scan's poseIndex is outside `poses`, or if one could not be put aside.
+     */
     mrpt::maps::CSimpleMap simplemap(const std::vector<mrpt::poses::CPose3D>& poses) const;
 
-    /** Those of the poses that belong to key scans, in their order. Throws Error as above. */
+    /** Those of the poses that belong to key scans, in their order. Throws Error for a poseIndex
+     *  outside `poses`. */
     std::vector<mrpt::poses::CPose3D> keyPoses(
         const std::vector<mrpt::poses::CPose3D>& poses) const;
 
@@ -95,6 +98,7 @@ class MapBuilder {
     std::unique_ptr<VoxelSet> seen_;
     std::vector<KeyScan> keyScans_;
     std::shared_ptr<ScanSpool> spool_;  //!< made with the first key scan
+    std::string spoolFault_;            //!< why a key scan could not be put aside
     mrpt::poses::CPose3D lastKeyPose_;
 };
 }  // namespace delio::map
