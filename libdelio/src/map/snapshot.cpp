@@ -351,9 +351,10 @@ class PreparedScene {
             points->enableVariablePointSize(false);
             const bool isCloud = !std::dynamic_pointer_cast<mrpt::opengl::CSetOfLines>(object) &&
                                  object->getName() != "start" && object->getName() != "end";
-            points->setPointSize(isCloud && options.pointSize_px
-                                     ? *options.pointSize_px * enlarged
-                                     : points->getPointSize() * wider * (isCloud ? nearer : 1));
+            if (isCloud && options.pointSize_px)
+                points->setPointSize(*options.pointSize_px * enlarged);
+            else
+                points->setPointSize(points->getPointSize() * (isCloud ? wider * nearer : marks_));
         });
         texts_ = viewport_->getTextMessages().messages;
         constexpr double kNothing = 1e-9;  // a share of the picture; MRPT does not take 0

@@ -6,8 +6,10 @@
 #include <mrpt/opengl/CPointCloud.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/stock_objects.h>
+#include <mrpt/system/CTicTac.h>
 
 #include <cmath>
+#include <iostream>
 #include <set>
 
 #include "delio/error.h"
@@ -230,6 +232,32 @@ TEST(Snapshot, TheScaleBarIsTrue) {
     EXPECT_NEAR(longest, 100, 2);
     options.scaleBar = false;
     EXPECT_NE(bytesOf(map::picture(*scene, options)), bytesOf(image));
+}
+
+// Takes a while: run with --gtest_also_run_disabled_tests.
+TEST(Snapshot, DISABLED_FiveMillionPointsTakeLessThanFifteenSeconds) {
+    mrpt::maps::CSimplePointsMap points;
+    constexpr std::int64_t kPoints = 5000000;
+    points.reserve(static_cast<std::size_t>(kPoints));
+    for (std::int64_t i = 0; i < kPoints; ++i) {
+        const double along = 2e-4 * static_cast<double>(i);
+        const double across = 0.01 * static_cast<double>(i * 7919 % 3000);
+        const double height = i % 5 == 0 ? 0.01 * static_cast<double>(i * 31 % 800) : 0;
+        points.insertPointFast(static_cast<float>(along),
+                               static_cast<float>(across + 50 * std::sin(along / 80)),
+                               static_cast<float>(height));
+    }
+    const test::TemporaryFolder folder;
+    for (const auto& [width, height] : {std::pair{1920U, 1080U}, {3840U, 2160U}}) {
+        SnapshotOptions options;
+        options.width_px = width;
+        options.height_px = height;
+        mrpt::system::CTicTac clock;
+        map::savePicture(*map::mapScene(points, {}), options, folder / "five.png");
+        const double time_s = clock.Tac();
+        std::cout << width << "x" << height << ": " << time_s << " s\n";
+        EXPECT_LT(time_s, 15);
+    }
 }
 
 TEST(Snapshot, BadRequestsAreErrorsAndLeaveNothing) {
