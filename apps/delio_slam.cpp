@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -18,6 +19,7 @@
 #include "delio/profile.h"
 #include "delio/slam.h"
 #include "delio/version.h"
+#include "live_view.h"
 #include "slam_outputs.h"
 
 namespace {
@@ -29,7 +31,7 @@ struct Request {
     std::string input, output, profile, configText, label, images, truth, truthFrame;
     std::vector<std::string> assignments;
     std::size_t start = 0, count = 0, every = 1;
-    bool withMap = true, withGraph = true, verbose = false;
+    bool withMap = true, withGraph = true, withView = false, verbose = false;
 };
 
 std::string textOf(const std::string& path) {
@@ -81,7 +83,7 @@ OutputFolder::OutputFolder(const std::string& folder, bool force) : folder_(fold
 
 /** Scans into `slam` until the end, the wanted count, an interrupt or a fault in the rawlog. */
 void process(const Request& request, io::ScanSource& source, std::optional<Slam>& slam,
-             const Options& options, SlamRun& run) {
+             const Options& options, SlamRun& run, std::optional<LiveView>& view) {
     cli::Progress progress("scans", request.count);
     try {
         for (std::size_t i = 0; i < request.start; ++i)
@@ -91,8 +93,13 @@ void process(const Request& request, io::ScanSource& source, std::optional<Slam>
             const auto scan = source.next();
             if (!scan) break;
             const double read_ms = 1e3 * clock.Tac();
-            if (!slam) slam.emplace(options, request.withGraph, request.withMap, source.label());
-            run.addScan(*scan, slam->process(*scan), read_ms);
+            if (!slam)
+                slam.emplace(options, request.withGraph, request.withMap, source.label(),
+                             request.output);
+            const ScanReport report = slam->process(*scan);
+            run.addScan(*scan, report, read_ms);
+            if (view)
+                view->show(*scan, report.odometry.increment.pose, slam->odometry().poses.back());
             if (request.verbose) cli::inform(run.describeLastScan());
             progress.update(run.reports.size(), source.fraction());
             for (std::size_t i = 1; i < request.every; ++i)
@@ -114,7 +121,9 @@ int slamRawlog(const Request& request, SlamRun& run) {
     run.readSideFiles(request.input, request.truth, request.truthFrame);
     io::ScanSource source(request.input, request.label, request.images, meta ? meta->epoch_s : 0);
     std::optional<Slam> slam;
-    process(request, source, slam, options, run);
+    std::optional<LiveView> view;
+    if (request.withView) view.emplace(options.odometry);
+    process(request, source, slam, options, run, view);
     if (!slam) {
         if (cli::interrupted()) return cli::kExitInterrupted;
         if (!run.fault.empty()) throw Error(run.fault);
@@ -132,7 +141,11 @@ int slamRawlog(const Request& request, SlamRun& run) {
     run.write(*slam, options, request.withMap && anyUsed);
     run.printTable(std::cout);
     if (!run.fault.empty()) throw Error(run.fault);
-    return cli::interrupted() ? cli::kExitInterrupted : cli::kExitSuccess;
+    if (cli::interrupted()) return cli::kExitInterrupted;
+    if (view && view->isOpen()) cli::inform("done; close the window to end");
+    while (view && view->isOpen() && !cli::interrupted())
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return cli::kExitSuccess;
 }
 
 /** IN may be a pose graph: it is optimised again. */
@@ -172,6 +185,7 @@ int main(int argc, char** argv) {
                                             false, "cam0", &frameNames, cmd);
     TCLAP::SwitchArg noMap("", "no-map", "Leave out map, scene and map.png", cmd);
     TCLAP::SwitchArg noGraph("", "no-graph", "Leave out the pose graph's optimisation", cmd);
+    TCLAP::SwitchArg gui("", "gui", "Show the drive in a window while it is processed", cmd);
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
     TCLAP::SwitchArg verbose("", "verbose", "A line for each scan, and all the text of errors",
                              cmd);
@@ -192,6 +206,7 @@ int main(int argc, char** argv) {
         request.every = every.getValue();
         request.withMap = !noMap.getValue();
         request.withGraph = !noGraph.getValue();
+        request.withView = gui.getValue();
         request.verbose = verbose.getValue();
         try {
             if (config.isSet()) request.configText = textOf(config.getValue());

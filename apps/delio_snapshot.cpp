@@ -1,5 +1,6 @@
 /** delio-snapshot: a picture of a map or a scene, without a display. */
 #include <mrpt/3rdparty/tclap/CmdLine.h>
+#include <mrpt/core/format.h>
 
 #include <charconv>
 #include <cmath>
@@ -87,16 +88,18 @@ mrpt::opengl::COpenGLScene::Ptr open(const std::string& path, const map::SceneOp
                                      bool colormapGiven) {
     const std::string kind = std::filesystem::path(path).extension().string();
     if (kind == ".3Dscene") {
-        if (colormapGiven)
-            delio::cli::warn("--colormap has no effect on a .3Dscene: its colours are in the file");
-        return map::loadScene(path);
+        if (options.colourBy == map::ColourBy::Intensity)
+            throw delio::Error("a .3Dscene has no intensities: take the .ply or the .simplemap");
+        auto scene = map::loadScene(path);
+        if (colormapGiven) map::recolour(*scene, options.colormap);
+        return scene;
     }
     mrpt::maps::CPointsMapXYZI points;
-    std::vector<mrpt::poses::CPose3D> poses;
+    map::MapWays ways;
     if (kind == ".simplemap") {
         const auto simplemap = map::loadSimplemap(path);
         points = map::pointsOf(simplemap);
-        poses = map::posesOf(simplemap);
+        ways.trajectory = ways.keyframes = map::posesOf(simplemap);
     } else if (kind == ".ply") {
         points = map::loadPly(path);
     } else {
@@ -104,7 +107,14 @@ mrpt::opengl::COpenGLScene::Ptr open(const std::string& path, const map::SceneOp
                            "': its name has to end in .3Dscene, .simplemap or .ply");
     }
     if (points.empty()) throw delio::Error("'" + path + "' is an empty map: nothing to show");
-    return map::mapScene(points, poses, options);
+    return map::mapScene(points, ways, options);
+}
+/** OUT_000.png, OUT_001.png ... for OUT.png. */
+std::string frameName(const std::string& path, unsigned frame) {
+    std::filesystem::path name(path);
+    name.replace_filename(name.stem().string() + mrpt::format("_%03u", frame) +
+                          name.extension().string());
+    return name.string();
 }
 }  // namespace
 
@@ -117,8 +127,8 @@ int main(int argc, char** argv) {
     ColourConstraint colours;
     RangeConstraint degrees("DEG", -360, 360), elevations("DEG", -90, 90);
     RangeConstraint metres("M", 1e-3, 1e6), pixels("P", 0.1, 100);
-    auto names = map::colormapNames();
-    TCLAP::ValuesConstraint<std::string> colormaps(names);
+    auto colormapNames = map::colormapNames();
+    TCLAP::ValuesConstraint<std::string> colormaps(colormapNames);
 
     ValueArg<std::string> input("i", "input", "Map or scene to show", true, "",
                                 "FILE.3Dscene|FILE.simplemap|FILE.ply", cmd);
@@ -131,29 +141,45 @@ int main(int argc, char** argv) {
                              false, 0, &degrees, cmd);
     ValueArg<double> elevation("", "elevation",
                                "Of the camera above the horizon; 90 looks straight down "
-                               "(default 55)",
+                               "(default 55, with --ortho 90)",
                                false, 55, &elevations, cmd);
     ValueArg<double> zoom("", "zoom", "Metres across the picture (default: everything)", false, 0,
                           &metres, cmd);
-    SwitchArg ortho("", "ortho", "Parallel projection instead of perspective", cmd);
-    ValueArg<double> pointSize("", "point-size", "Size of the points, pixels (default 2)", false, 0,
-                               &pixels, cmd);
-    ValueArg<std::string> colormap("", "colormap", "Colours of the heights (default turbo)", false,
+    SwitchArg ortho("", "ortho", "Parallel projection with a scale bar, from above", cmd);
+    ValueArg<double> pointSize("", "point-size",
+                               "Size of the points, pixels (default: 2 for 1080 lines, larger in "
+                               "larger pictures)",
+                               false, 0, &pixels, cmd);
+    ValueArg<std::string> colormap("", "colormap", "Colours of the points (default turbo)", false,
                                    "turbo", &colormaps, cmd);
+    std::vector<std::string> values = {"height", "intensity"};
+    TCLAP::ValuesConstraint<std::string> valueNames(values);
+    ValueArg<std::string> colourBy("", "color-by", "What the colours say (default height)", false,
+                                   "height", &valueNames, cmd);
     ValueArg<std::string> background("", "background", "Colour behind (default: the scene's)",
                                      false, "", &colours, cmd);
+    ValueArg<delio::cli::Count> frames(
+        "", "orbit", "Write N pictures around the content: OUT_000.png ...", false, {}, "N", cmd);
     SwitchArg force("", "force", "Overwrite an existing picture", cmd);
     SwitchArg verbose("", "verbose", "Say more about what is done and what went wrong", cmd);
 
     return delio::cli::run(cmd, argc, argv, verbose, [&] {
-        delio::cli::refuseExisting(output.getValue(), force.getValue());
+        const unsigned count = frames.getValue();
+        if (frames.isSet() && (count < 1 || count > 1000)) {
+            delio::cli::inform("--orbit takes 1 to 1000 pictures; see --help");
+            return delio::cli::kExitBadCommandLine;
+        }
+        std::vector<std::string> names;
+        for (unsigned i = 0; i < count; ++i) names.push_back(frameName(output.getValue(), i));
+        if (!frames.isSet()) names.push_back(output.getValue());
+        for (const auto& name : names) delio::cli::refuseExisting(name, force.getValue());
         map::SnapshotOptions options;
         map::SceneOptions sceneOptions;
         parseSize(size.getValue(), options.width_px, options.height_px);
         if (azimuth.isSet()) options.azimuth_deg = azimuth.getValue();
-        options.elevation_deg = elevation.getValue();
+        options.ortho = options.scaleBar = ortho.getValue();
+        options.elevation_deg = options.ortho && !elevation.isSet() ? 90 : elevation.getValue();
         if (zoom.isSet()) options.zoom_m = zoom.getValue();
-        options.ortho = ortho.getValue();
         if (pointSize.isSet()) options.pointSize_px = static_cast<float>(pointSize.getValue());
         if (background.isSet()) {
             TColor colour;
@@ -161,12 +187,17 @@ int main(int argc, char** argv) {
             options.background = colour;
             sceneOptions.background = colour;
         }
+        if (colourBy.getValue() == "intensity") sceneOptions.colourBy = map::ColourBy::Intensity;
         sceneOptions.colormap = map::colormapNamed(colormap.getValue());
 
         const auto scene = open(input.getValue(), sceneOptions, colormap.isSet());
         if (verbose.getValue()) delio::cli::inform("read '" + input.getValue() + "'");
-        map::savePicture(*scene, options, output.getValue());
-        if (verbose.getValue()) delio::cli::inform("wrote '" + output.getValue() + "'");
+        map::checkPngName(output.getValue());
+        map::orbit(*scene, options, static_cast<unsigned>(names.size()),
+                   [&](unsigned i, const mrpt::img::CImage& image) {
+                       map::savePng(image, names[i]);
+                       if (verbose.getValue()) delio::cli::inform("wrote '" + names[i] + "'");
+                   });
         return delio::cli::kExitSuccess;
     });
 }

@@ -146,9 +146,14 @@ void SlamRun::write(const Slam& slam, const Options& options, bool withMap) {
     writeConfig(options);
     mrpt::system::CTicTac clock;
     for (const char* name : kFilesOfMap) forget(name);
-    if (withMap) writeMap(slam, final_);
-    const auto scene = map::trajectoryScene(final_.poses, truthInPicture_);
-    map::savePicture(*scene, map::topView(), path("trajectory.png"));
+    try {
+        if (withMap) writeMap(slam, final_);
+        const auto scene = map::trajectoryScene(final_.poses, truthInPicture_);
+        map::savePicture(*scene, map::topView(), path("trajectory.png"));
+    } catch (const Error& e) {
+        // A full disk or a missing renderer: the rest of the results is good all the same.
+        if (fault.empty()) fault = e.what();
+    }
     map_ms_ = 1e3 * clock.Tac();
     writeSummary(options);
 }
@@ -234,7 +239,8 @@ void SlamRun::writeMap(const Slam& slam, const io::Trajectory& final) {
     map::saveSimplemap(builder.simplemap(final.poses), path("map.simplemap"));
     const auto points = builder.points(final.poses);
     map::savePly(points, path("map.ply"));
-    const auto scene = map::mapScene(points, final.poses);
+    const auto scene =
+        map::mapScene(points, {final.poses, truthInPicture_, builder.keyPoses(final.poses)});
     map::saveScene(*scene, path("map.3Dscene"));
     map::savePicture(*scene, map::SnapshotOptions(), path("map.png"));
 }
@@ -306,17 +312,19 @@ void SlamRun::writeSummary(const Options& options) const {
                                         [](const auto& r) { return r.odometry.deskewed; });
     summary["ms_per_scan"] = msPerScan();
     yaml stages = yaml::Map();
-    double read = 0, graph = 0;
+    double read = 0, graph = 0, map = 0;
     StageTimes sums{};
     for (std::size_t i = 0; i < reports.size(); ++i) {
         read += read_ms_[i];
         graph += reports[i].graph_ms;
+        map += reports[i].map_ms;
         for (std::size_t k = 0; k < kStages; ++k) sums[k] += reports[i].odometry.times_ms[k];
     }
     stages["read"] = read / scans;
     for (std::size_t k = 0; k < kStages; ++k) stages[kStageNames[k]] = sums[k] / scans;
     stages["graph"] = graph / scans;
     summary["ms_per_scan_of_stages"] = stages;
+    summary["map_ms_per_scan"] = map / scans;
     summary["optimisation_ms"] = optimise_ms_;
     summary["optimisation_iterations"] = optimisation_.iterations;
     summary["optimisation_cost_before"] = optimisation_.initial_cost;

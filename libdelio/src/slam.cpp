@@ -28,8 +28,7 @@ Increment ofVehicle(const Increment& ofSensor, const CPose3D& sensorFrom, const 
     return result;
 }
 
-/** What belongs into a map: the points that were used, without what moves, with the intensities
- *  that the scan came with. */
+/** The points that were used, with the intensities that the scan came with. */
 mrpt::maps::CPointsMap::Ptr pointsForMap(const Scan& scan, const UsedPoints& used) {
     using mrpt::maps::CPointsMapXYZI;
     const auto* bright = dynamic_cast<const CPointsMapXYZI*>(scan.points.get());
@@ -37,7 +36,6 @@ mrpt::maps::CPointsMap::Ptr pointsForMap(const Scan& scan, const UsedPoints& use
     if (bright) points = CPointsMapXYZI::Create();
     points->reserve(used.indices.size());
     for (std::size_t i = 0; i < used.indices.size(); ++i) {
-        if (!used.moving.empty() && used.moving[i]) continue;
         const Eigen::Vector3f p = used.points.col(static_cast<Eigen::Index>(i));
         if (bright)
             points->insertPointRGB(p.x(), p.y(), p.z(),
@@ -49,15 +47,16 @@ mrpt::maps::CPointsMap::Ptr pointsForMap(const Scan& scan, const UsedPoints& use
 }
 }  // namespace
 
-Slam::Slam(const Options& options, bool withGraph, bool withMap, const std::string& sensorLabel)
+Slam::Slam(const Options& options, bool withGraph, bool withMap, const std::string& sensorLabel,
+           const std::string& folder)
     : options_(options),
       withGraph_(withGraph),
       withMap_(withMap),
       odometry_(options.odometry),
-      map_(options.map, sensorLabel) {}
+      map_(options.map, sensorLabel, folder) {}
 
 ScanReport Slam::process(const Scan& scan) {
-    ScanReport report{scan.index, scan.stamp_s, odometry_.process(scan), 0};
+    ScanReport report{scan.index, scan.stamp_s, odometry_.process(scan), 0, 0};
     auto& poses = odometryTrajectory_.poses;
     Recent latest{poses.size(), report.odometry.features, scan.sensorPose};
     if (recent_.empty()) {
@@ -71,9 +70,13 @@ ScanReport Slam::process(const Scan& scan) {
         graph_.addEdge({latest.node - 1, latest.node, increment});
     }
     odometryTrajectory_.stamps_s.push_back(scan.stamp_s);
-    if (withMap_)
+    // Where a scan was taken that could not be registered is a guess.
+    if (withMap_ && !report.odometry.predicted) {
+        mrpt::system::CTicTac clock;
         map_.add(latest.node, poses.back(), *pointsForMap(scan, report.odometry.used),
-                 scan.sensorPose, scan.time);
+                 scan.sensorPose, scan.time, report.odometry.used.moving);
+        report.map_ms = 1e3 * clock.Tac();
+    }
     if (withGraph_ && !report.odometry.predicted && report.odometry.features) {
         mrpt::system::CTicTac clock;
         addSkipEdges(latest);

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "command.h"
@@ -27,7 +28,8 @@ class SnapshotTool : public testing::Test {
             for (int j = -5; j <= 5; ++j)
                 cloud.insertPointRGB(static_cast<float>(std::cos(0.02 * i) * (10 + j)),
                                      static_cast<float>(std::sin(0.02 * i) * (10 + j)),
-                                     static_cast<float>(j % 3), 0.5F, 0, 0);
+                                     static_cast<float>(j % 3), static_cast<float>(i % 100) / 100,
+                                     0, 0);
         map::MapBuilder builder((map::MapOptions()), "velodyne");
         const std::vector<CPose3D> poses = {CPose3D(), CPose3D::FromTranslation(5, 0, 0)};
         for (std::size_t i = 0; i < poses.size(); ++i)
@@ -37,7 +39,7 @@ class SnapshotTool : public testing::Test {
         const auto points = builder.points(poses);
         count_ = points.size();
         map::savePly(points, at("map.ply"));
-        map::saveScene(*map::mapScene(points, poses), at("map.3Dscene"));
+        map::saveScene(*map::mapScene(points, {poses, {}, {}}), at("map.3Dscene"));
     }
     std::string at(const std::string& name) const { return folder_ / name; }
 
@@ -99,8 +101,51 @@ TEST_F(SnapshotTool, EveryOptionChangesThePicture) {
                                                    {"--background", "#ff8000"},
                                                    {"--background", "white"},
                                                    {"--colormap", "viridis"},
+                                                   {"--color-by", "intensity"},
                                                    {"--colormap", "gray"}})
         EXPECT_NE(render(option), plain) << option[0];
+}
+
+TEST_F(SnapshotTool, OrbitWritesAsManyPictures) {
+    const auto result = runTool("delio-snapshot", {"-i", at("map.3Dscene"), "-o", at("round.png"),
+                                                   "--orbit", "3", "--size", "120x90"});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    std::set<std::string> pictures;
+    for (const char* name : {"round_000.png", "round_001.png", "round_002.png"}) {
+        expectPicture(name, 120, 90);
+        pictures.insert(test::readText(at(name)));
+    }
+    EXPECT_EQ(pictures.size(), 3U);
+    EXPECT_FALSE(std::filesystem::exists(at("round.png")));
+    EXPECT_FALSE(std::filesystem::exists(at("round_003.png")));
+    // None of them is overwritten unless that is wanted.
+    std::filesystem::remove(at("round_000.png"));
+    const auto again = runTool("delio-snapshot", {"-i", at("map.3Dscene"), "-o", at("round.png"),
+                                                  "--orbit", "3", "--size", "120x90"});
+    test::expectFailure(again, 1, {"round_001.png", "--force"});
+    EXPECT_FALSE(std::filesystem::exists(at("round_000.png")));
+}
+
+TEST_F(SnapshotTool, ASceneTakesAnotherColourmap) {
+    const auto render = [&](const std::string& colormap) {
+        const auto result =
+            runTool("delio-snapshot", {"-i", at("map.3Dscene"), "-o", at("p.png"), "--force",
+                                       "--size", "200x150", "--colormap", colormap});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        EXPECT_EQ(result.err, "");
+        return test::readText(at("p.png"));
+    };
+    EXPECT_NE(render("turbo"), render("gray"));
+}
+
+TEST_F(SnapshotTool, AFullDiskLeavesNothing) {
+    for (const std::size_t bytes : {0, 1024, 20 * 1024}) {
+        const auto result = test::runToolOnFullDisk(
+            "delio-snapshot", {"-i", at("map.ply"), "-o", at("out.png")}, bytes);
+        test::expectFailure(result, 1, {"cannot write", "out.png"});
+        for (const auto& file : std::filesystem::directory_iterator(folder_.path()))
+            EXPECT_EQ(file.path().filename().string().find("out"), std::string::npos);
+    }
 }
 
 TEST_F(SnapshotTool, RefusesBadInput) {
@@ -126,6 +171,7 @@ TEST_F(SnapshotTool, RefusesBadInput) {
     expectRefusal({"-i", at("empty.ply"), "-o", out}, 1);
     map::saveScene(mrpt::opengl::COpenGLScene(), at("empty.3Dscene"));
     expectRefusal({"-i", at("empty.3Dscene"), "-o", out}, 1);
+    expectRefusal({"-i", at("map.3Dscene"), "-o", out, "--color-by", "intensity"}, 1);
 }
 
 TEST_F(SnapshotTool, RefusesBadOutput) {
@@ -145,8 +191,9 @@ TEST_F(SnapshotTool, RefusesABadCommandLine) {
     const std::string in = at("map.ply"), out = at("out.png");
     expectRefusal({}, 2);
     expectRefusal({"-i", in}, 2);
-    for (const char* size : {"640", "640x", "x480", "0x480", "640x480x3", "-1x5", "640X480",
-                             "99999x10", "a", "640x480 ", "99999999999999999999x1"})
+    for (const char* size :
+         {"640", "640x", "x480", "0x480", "640x480x3", "-1x5", "640X480", "99999x10", "0x0",
+          "100000x100000", "a", "640x480 ", "99999999999999999999x1"})
         expectRefusal({"-i", in, "-o", out, "--size", size}, 2);
     for (const char* colour : {"red", "#12345", "#12345g", "#1234567", "123456", ""})
         expectRefusal({"-i", in, "-o", out, "--background", colour}, 2);
@@ -158,6 +205,8 @@ TEST_F(SnapshotTool, RefusesABadCommandLine) {
     expectRefusal({"-i", in, "-o", out, "--zoom", "-5"}, 2);
     expectRefusal({"-i", in, "-o", out, "--point-size", "0"}, 2);
     expectRefusal({"-i", in, "-o", out, "--colormap", "jet"}, 2);
+    for (const char* count : {"0", "-3", "1001", "many"})
+        expectRefusal({"-i", in, "-o", out, "--orbit", count}, 2);
     expectRefusal({"-i", in, "-o", out, "--no-such-option"}, 2);
 }
 

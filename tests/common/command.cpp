@@ -59,6 +59,15 @@ CommandResult runTool(const std::string& tool, const std::vector<std::string>& a
     return result;
 }
 
+CommandResult runToolOnFullDisk(const std::string& tool, const std::vector<std::string>& arguments,
+                                std::size_t bytes) {
+    // Through a pipe: what the tool says goes into a file as well.
+    std::string line = "set -o pipefail; (trap '' XFSZ; ulimit -f " + std::to_string(bytes / 1024) +
+                       "; exec '" + toolPath(tool) + "'";
+    for (const auto& word : arguments) line += " '" + word + "'";
+    return runTool("bash", {"-c", line + ") 2>&1 | cat >&2"});
+}
+
 bool isOneLine(const std::string& err) {
     return !err.empty() && err.back() == '\n' && std::count(err.begin(), err.end(), '\n') == 1;
 }

@@ -17,6 +17,11 @@ std::string toolPath(const std::string& tool);
 CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments,
                       const std::string& interruptAt = "");
 
+/** The same on a disk that is full as soon as a file has `bytes` (a multiple of 1024): writing
+ * fails from there on. stdout goes to stderr. */
+CommandResult runToolOnFullDisk(const std::string& tool, const std::vector<std::string>& arguments,
+                                std::size_t bytes);
+
 /** True if `err` is one plain line: what the contract asks of every error. */
 bool isOneLine(const std::string& err);
 

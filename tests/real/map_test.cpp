@@ -74,7 +74,7 @@ void expectAPictureOfStreets(const std::string& name, std::size_t minKeyScans) {
     EXPECT_GE(drive.builder.keyScans(), minKeyScans);
     const auto points = drive.builder.points(drive.poses);
     EXPECT_GT(points.size(), 50000U);
-    const auto scene = map::mapScene(points, drive.poses);
+    const auto scene = map::mapScene(points, {drive.poses, {}, {}});
     const auto coverage = coverageOf(map::picture(*scene, {}));
     EXPECT_GT(coverage.share, 0.1);
     EXPECT_GT(coverage.colours, 1000U);

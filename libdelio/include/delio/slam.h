@@ -17,6 +17,7 @@ struct ScanReport {
     double stamp_s = 0;
     OdometryResult odometry;
     double graph_ms = 0;  //!< for the edges to scans before the last one
+    double map_ms = 0;    //!< for its points in the map
 };
 
 /** Odometry, pose graph and map: scans in, optimised trajectory and map out. Poses are the
@@ -24,8 +25,9 @@ struct ScanReport {
 class Slam {
  public:
     /** Without `withGraph` the final trajectory is the odometry's; without `withMap` no points are
-     *  kept and memory grows by the poses alone. */
-    Slam(const Options& options, bool withGraph, bool withMap, const std::string& sensorLabel);
+     *  kept and memory grows by the poses alone. `folder`: see MapBuilder. */
+    Slam(const Options& options, bool withGraph, bool withMap, const std::string& sensorLabel,
+         const std::string& folder = "");
 
     ScanReport process(const Scan& scan);
 

@@ -22,6 +22,14 @@ using mrpt::obs::CObservation;
 using mrpt::obs::CObservationPointCloud;
 
 namespace {
+/** How a cloud is stored outside of its rawlog: MRPT tells it to derived classes only. */
+CObservationPointCloud::ExternalStorageFormat formatOf(const CObservationPointCloud& cloud) {
+    struct Access : CObservationPointCloud {
+        static auto member() { return &Access::m_externally_stored; }
+    };
+    return cloud.*Access::member();
+}
+
 double secondsSince(double epoch_s, const mrpt::Clock::time_point& stamp) {
     // In MRPT's ticks of 100 ns, so that the digits of times.txt come back.
     const double wholeEpoch = std::floor(epoch_s);
@@ -140,7 +148,8 @@ std::string ScanSource::loadExternal(const CObservation& observation) const {
             // MRPT does not see that compressed data is damaged or cut off, and KITTI's format has
             // no header: only its size can tell.
             const auto size = unpackedSize(file.string());
-            if (file.extension() == ".bin" && size % (4 * sizeof(float)) != 0)
+            if (formatOf(*cloud) == CObservationPointCloud::ExternalStorageFormat::KittiBinFile &&
+                size % (4 * sizeof(float)) != 0)
                 throw Error("'" + file.string() +
                             "' is cut off: its size is no multiple of 16 bytes");
             observation.load();

@@ -9,6 +9,7 @@
 
 #include "../translation/line_matches.h"
 #include "delio/map/colormap.h"
+#include "legend.h"
 
 namespace delio::map {
 using mrpt::img::TColor;
@@ -17,6 +18,7 @@ using mrpt::opengl::COpenGLScene;
 
 namespace {
 constexpr double kSpacing = 2.4;  // of the spheres, whose radius is 1
+constexpr float kPiece_m = 0.04F;
 const TColor kWhite(255, 255, 255), kInk(40, 40, 40), kGridGray(190, 190, 195);
 const TColor kBlue(31, 119, 180), kRed(214, 39, 40), kGreen(44, 160, 44);
 
@@ -30,15 +32,33 @@ mrpt::math::TPoint3D pointOf(const Eigen::Vector3f& p) {
     return {static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(p.z())};
 }
 
+/** A line in short pieces: MRPT draws lines one pixel wide, but their ends as dots of any size, so
+ *  that it looks wider. */
+void appendWide(mrpt::opengl::CSetOfLines& set, const Eigen::Vector3f& from,
+                const Eigen::Vector3f& to) {
+    const int pieces = static_cast<int>((to - from).norm() / kPiece_m) + 1;
+    const auto at = [&](int k) {
+        return pointOf(from + static_cast<float>(k) / static_cast<float>(pieces) * (to - from));
+    };
+    for (int k = 0; k < pieces; ++k) set.appendLine(at(k), at(k + 1));
+}
+
+mrpt::opengl::CSetOfLines::Ptr wideLines(const TColor& colour) {
+    auto set = mrpt::opengl::CSetOfLines::Create();
+    set->setColor_u8(colour);
+    set->setVerticesPointSize(2);
+    set->enableVariablePointSize(false);
+    return set;
+}
+
 mrpt::opengl::CSetOfLines::Ptr linesOf(const translation::LineCloud& lines,
                                        const Eigen::Vector3f& t, const TColor& colour) {
-    auto set = mrpt::opengl::CSetOfLines::Create();
+    auto set = wideLines(colour);
     for (Eigen::Index i = 0; i < lines.midpoints.cols(); ++i) {
         const Eigen::Vector3f half = lines.lengths[i] / 2 * lines.directions.col(i);
         const Eigen::Vector3f middle = lines.midpoints.col(i) + t;
-        set->appendLine(pointOf(middle - half), pointOf(middle + half));
+        appendWide(*set, middle - half, middle + half);
     }
-    set->setColor_u8(colour);
     return set;
 }
 
@@ -90,7 +110,9 @@ COpenGLScene::Ptr sphereScene(const std::vector<Eigen::Matrix3Xf>& patterns,
         auto text = mrpt::opengl::CText3D::Create(captions[i], "sans", 0.16);
         text->setColor_u8(kInk);
         // Upright, to be read by who looks along +x.
-        text->setPose(mrpt::poses::CPose3D(-1.0, place + 0.8, -1.3, -M_PI / 2, 0, M_PI / 2));
+        constexpr double kHalfLetter = 0.065;
+        const double begin = place + kHalfLetter * static_cast<double>(captions[i].size());
+        text->setPose(mrpt::poses::CPose3D(-1.0, begin, -1.3, -M_PI / 2, 0, M_PI / 2));
         scene->insert(text);
     }
     return scene;
@@ -129,6 +151,7 @@ COpenGLScene::Ptr lineScene(const translation::LineCloud& lines) {
         const TColor colour = colourAt(Colormap::Turbo, (band + 0.5) / kBands);
         scene->insert(linesOf(some, Eigen::Vector3f::Zero(), colour));
     }
+    addColourBar(*scene, 0, Colormap::Turbo, range, " m", "height from the sensor", kInk);
     return scene;
 }
 
@@ -140,15 +163,19 @@ COpenGLScene::Ptr matchScene(const translation::LineCloud& from, const translati
     const KdTree tree(from.midpoints);
     const auto matches = translation::nearestMidpoints(tree, to, t, 5);
     const double mean = translation::meanDistance(matches);
-    auto joins = mrpt::opengl::CSetOfLines::Create();
+    auto joins = wideLines(kGreen);
     for (std::size_t i = 0; i < matches.size(); ++i) {
         if (matches[i].distance < 0 || static_cast<double>(matches[i].distance) > mean) continue;
         const Eigen::Vector3f moved =
             to.midpoints.col(static_cast<Eigen::Index>(i)) + t.cast<float>();
-        joins->appendLine(pointOf(moved), pointOf(from.midpoints.col(matches[i].from)));
+        // Above the lines that it joins, to be seen from there.
+        const Eigen::Vector3f above(0, 0, 0.3F);
+        appendWide(*joins, moved + above, from.midpoints.col(matches[i].from) + above);
     }
-    joins->setColor_u8(kGreen);
     scene->insert(joins);
+    addLegendText(*scene, 2, "lines of the first scan", kBlue);
+    addLegendText(*scene, 1, "lines of the second scan", kRed);
+    addLegendText(*scene, 0, "midpoints of a pair", kGreen);
     return scene;
 }
 }  // namespace delio::map

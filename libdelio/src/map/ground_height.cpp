@@ -17,19 +17,13 @@ std::uint64_t keyOf(std::int64_t column, std::int64_t row) {
 }
 }  // namespace
 
-GroundHeight::GroundHeight(const mrpt::maps::CPointsMap& points) {
-    const auto& x = points.getPointsBufferRef_x();
-    const auto& y = points.getPointsBufferRef_y();
-    const auto& z = points.getPointsBufferRef_z();
-    std::unordered_map<std::uint64_t, std::vector<float>> heights;
-    for (std::size_t i = 0; i < x.size(); ++i)
-        heights[keyOf(cellIndex(x[i]), cellIndex(y[i]))].push_back(z[i]);
-    for (auto& [key, values] : heights) {
-        const auto low = values.begin() + static_cast<std::ptrdiff_t>(
-                                              kLowShare * static_cast<double>(values.size() - 1));
-        std::nth_element(values.begin(), low, values.end());
-        cells_[key] = *low;
-    }
+std::uint64_t GroundHeight::cellOf(double x, double y) { return keyOf(cellIndex(x), cellIndex(y)); }
+
+double GroundHeight::lowOf(std::vector<float>& heights) {
+    const auto low = heights.begin() + static_cast<std::ptrdiff_t>(
+                                           kLowShare * static_cast<double>(heights.size() - 1));
+    std::nth_element(heights.begin(), low, heights.end());
+    return *low;
 }
 
 double GroundHeight::ofCell(std::int64_t column, std::int64_t row, double otherwise) const {

@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../io/gz_output.h"
 #include "delio/error.h"
+#include "delio/io/output_file.h"
 
 namespace delio::map {
 namespace {
@@ -42,5 +44,13 @@ void loadWhole(const std::string& path, const std::string& what,
         // MRPT's message is a stack of nested exceptions; what matters is said below.
     }
     if (!whole) throw Error("'" + path + "' is not " + what + ", or it is cut off; write it again");
+}
+
+void saveWhole(const mrpt::serialization::CSerializable& object, const std::string& path) {
+    io::replaceFile(path, [&](const std::string& temporary) {
+        io::GzOutput out(temporary);
+        mrpt::serialization::archiveFrom(out) << object;
+        return out.close();
+    });
 }
 }  // namespace delio::map

@@ -8,4 +8,8 @@ namespace delio::map {
  *  anything else than `what`, or is cut off anywhere. */
 void loadWhole(const std::string& path, const std::string& what,
                mrpt::serialization::CSerializable& object);
+
+/** Writes one MRPT object into a file, with gzip. Throws Error if that fails; then there is no such
+ *  file, or the one that was there before. */
+void saveWhole(const mrpt::serialization::CSerializable& object, const std::string& path);
 }  // namespace delio::map

@@ -1,21 +1,18 @@
 #include "delio/map/map_builder.h"
 
-#include <mrpt/maps/CSimplePointsMap.h>
-#include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <mrpt/poses/Lie/SO.h>
 
-#include <cmath>
-#include <unordered_set>
+#include <filesystem>
 
 #include "delio/error.h"
-#include "delio/scan/voxel_grid.h"
+#include "spooled_scan.h"
+#include "voxel_set.h"
 
 namespace delio::map {
 using mrpt::maps::CPointsMap;
 using mrpt::maps::CPointsMapXYZI;
-using mrpt::maps::CSimplePointsMap;
 using mrpt::poses::CPose3D;
 
 namespace {
@@ -23,19 +20,6 @@ double angleBetween_deg(const CPose3D& a, const CPose3D& b) {
     const auto rotation = (b - a).getRotationMatrix();
     return mrpt::RAD2DEG(mrpt::poses::Lie::SO<3>::log(rotation).norm());
 }
-
-/** Lets through the first point of each voxel; every point if the size is 0. */
-class Thinning {
- public:
-    explicit Thinning(double voxelSize_m) : voxelSize_m_(voxelSize_m) {}
-    bool keeps(double x, double y, double z) {
-        return voxelSize_m_ == 0 || taken_.insert(scan::voxelKey({x, y, z}, voxelSize_m_)).second;
-    }
-
- private:
-    double voxelSize_m_;
-    std::unordered_set<std::uint64_t> taken_;
-};
 
 const CPose3D& poseOf(std::size_t index, const std::vector<CPose3D>& poses) {
     if (index >= poses.size())
@@ -58,55 +42,85 @@ std::vector<OptionField> MapOptions::fields() {
     };
 }
 
-MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel)
-    : options_(options), sensorLabel_(std::move(sensorLabel)) {}
+struct MapBuilder::KeyScan {
+    std::size_t poseIndex = 0;
+    CPose3D sensorPose;
+    mrpt::Clock::time_point stamp;
+    bool withIntensity = false;
+    ScanSpool::Place points;
+};
+
+MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel, std::string folder)
+    : options_(options),
+      sensorLabel_(std::move(sensorLabel)),
+      folder_(std::move(folder)),
+      seen_(std::make_unique<VoxelSet>(options.voxelSize_m)) {}
+
+MapBuilder::~MapBuilder() = default;
+MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
+MapBuilder& MapBuilder::operator=(MapBuilder&&) noexcept = default;
+
+std::size_t MapBuilder::keyScans() const { return keyScans_.size(); }
 
 bool MapBuilder::add(std::size_t poseIndex, const CPose3D& approximatePose,
                      const CPointsMap& sensorPoints, const CPose3D& sensorPose,
-                     mrpt::Clock::time_point stamp) {
+                     mrpt::Clock::time_point stamp, const std::vector<std::uint8_t>& moving) {
     const auto farFromLast = [&] {
         return approximatePose.distanceTo(lastKeyPose_) >= options_.keyframeDistance_m ||
                angleBetween_deg(lastKeyPose_, approximatePose) >= options_.keyframeAngle_deg;
     };
-    if (!keyScans_.empty() && !farFromLast()) return false;
+    const bool isKeyScan = spoolFault_.empty() && (keyScans_.empty() || farFromLast());
+    const Eigen::Matrix4d toWorld = (approximatePose + sensorPose)
+                                        .getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>()
+                                        .asEigen();
+    const Eigen::Matrix3d R = toWorld.topLeftCorner<3, 3>();
+    const Eigen::Vector3d t = toWorld.topRightCorner<3, 1>();
 
     const auto* withIntensity = dynamic_cast<const CPointsMapXYZI*>(&sensorPoints);
-    CPointsMap::Ptr kept;
-    if (withIntensity)
-        kept = CPointsMapXYZI::Create();
-    else
-        kept = CSimplePointsMap::Create();
     const auto& x = sensorPoints.getPointsBufferRef_x();
     const auto& y = sensorPoints.getPointsBufferRef_y();
     const auto& z = sensorPoints.getPointsBufferRef_z();
-    Thinning thinning(options_.voxelSize_m);
+    VoxelSet ofThisScan(options_.voxelSize_m);
+    std::vector<Point> fresh;
+    ScanSpool::Floats whole;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const double range = std::hypot(double{x[i]}, double{y[i]}, double{z[i]});
+        const Eigen::Vector3d p(double{x[i]}, double{y[i]}, double{z[i]});
+        const double range = p.norm();
         // Written so that a NaN is left out as well.
         const bool usable = range >= options_.minRange_m && range <= options_.maxRange_m;
-        if (!usable || !thinning.keeps(x[i], y[i], z[i])) continue;
-        if (withIntensity)
-            kept->insertPointRGB(x[i], y[i], z[i], withIntensity->getPointIntensity_fast(i), 0, 0);
-        else
-            kept->insertPointFast(x[i], y[i], z[i]);
+        if (!usable || (!moving.empty() && moving[i])) continue;
+        const float intensity = withIntensity ? withIntensity->getPointIntensity_fast(i) : 0;
+        if (isKeyScan && ofThisScan.insert(p))
+            whole.insert(whole.end(), {x[i], y[i], z[i], intensity});
+        if (seen_->insert(R * p + t)) fresh.push_back({x[i], y[i], z[i], intensity});
     }
-    if (kept->empty()) return false;
-    kept->mark_as_modified();
+    fresh.shrink_to_fit();
+    if (!fresh.empty()) scans_.push_back({poseIndex, sensorPose, std::move(fresh)});
+    if (whole.empty()) return false;
+    try {
+        if (!spool_)
+            spool_ = std::make_shared<ScanSpool>(
+                folder_.empty() ? std::filesystem::temp_directory_path().string() : folder_);
+        keyScans_.push_back(
+            {poseIndex, sensorPose, stamp, withIntensity != nullptr, spool_->append(whole)});
+    } catch (const Error& e) {
+        spoolFault_ = e.what();
+        return false;
+    }
     lastKeyPose_ = approximatePose;
-    keyScans_.push_back({poseIndex, sensorPose, stamp, kept});
     return true;
 }
 
 mrpt::maps::CSimpleMap MapBuilder::simplemap(const std::vector<CPose3D>& poses) const {
+    if (!spoolFault_.empty()) throw Error(spoolFault_);
     mrpt::maps::CSimpleMap map;
     for (const auto& scan : keyScans_) {
         auto pose = mrpt::poses::CPose3DPDFGaussian::Create();
         pose->mean = poseOf(scan.poseIndex, poses);
-        auto observation = mrpt::obs::CObservationPointCloud::Create();
+        auto observation = std::make_shared<SpooledScan>(spool_, scan.points, scan.withIntensity);
         observation->sensorLabel = sensorLabel_;
         observation->timestamp = scan.stamp;
         observation->sensorPose = scan.sensorPose;
-        observation->pointcloud = scan.points;
         auto frame = mrpt::obs::CSensoryFrame::Create();
         frame->insert(observation);
         map.insert(pose, frame);
@@ -114,21 +128,27 @@ mrpt::maps::CSimpleMap MapBuilder::simplemap(const std::vector<CPose3D>& poses) 
     return map;
 }
 
+std::vector<CPose3D> MapBuilder::keyPoses(const std::vector<CPose3D>& poses) const {
+    std::vector<CPose3D> result;
+    for (const auto& scan : keyScans_) result.push_back(poseOf(scan.poseIndex, poses));
+    return result;
+}
+
 CPointsMapXYZI MapBuilder::points(const std::vector<CPose3D>& poses) const {
+    std::size_t most = 0;
+    for (const auto& scan : scans_) most += scan.points.size();
     CPointsMapXYZI map;
-    Thinning thinning(options_.voxelSize_m);
-    for (const auto& scan : keyScans_) {
+    map.reserve(most);
+    VoxelSet taken(options_.voxelSize_m);
+    for (const auto& scan : scans_) {
         const CPose3D sensorInWorld = poseOf(scan.poseIndex, poses) + scan.sensorPose;
-        const auto* withIntensity = dynamic_cast<const CPointsMapXYZI*>(scan.points.get());
-        const auto& xs = scan.points->getPointsBufferRef_x();
-        const auto& ys = scan.points->getPointsBufferRef_y();
-        const auto& zs = scan.points->getPointsBufferRef_z();
-        for (std::size_t i = 0; i < xs.size(); ++i) {
-            double x, y, z;
-            sensorInWorld.composePoint(double{xs[i]}, double{ys[i]}, double{zs[i]}, x, y, z);
-            if (!thinning.keeps(x, y, z)) continue;
-            map.insertPointRGB(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z),
-                               withIntensity ? withIntensity->getPointIntensity_fast(i) : 0, 0, 0);
+        for (const Point& p : scan.points) {
+            Eigen::Vector3d at;
+            sensorInWorld.composePoint(double{p.x}, double{p.y}, double{p.z}, at.x(), at.y(),
+                                       at.z());
+            if (taken.insert(at))
+                map.insertPointRGB(static_cast<float>(at.x()), static_cast<float>(at.y()),
+                                   static_cast<float>(at.z()), p.intensity, 0, 0);
         }
     }
     return map;

@@ -1,5 +1,6 @@
 #include "delio/map/scene.h"
 
+#include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/opengl/CGridPlaneXY.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CSetOfLines.h>
@@ -9,9 +10,10 @@
 #include <cmath>
 
 #include "delio/error.h"
-#include "delio/io/output_file.h"
 #include "ground_height.h"
 #include "gz_object.h"
+#include "legend.h"
+#include "round_length.h"
 
 namespace delio::map {
 using mrpt::img::TColor;
@@ -21,7 +23,7 @@ using mrpt::poses::CPose3D;
 
 namespace {
 const TColor kWhite(255, 255, 255), kRed(214, 39, 40), kBlue(31, 119, 180);
-const TColor kGreen(60, 200, 80), kGridGray(150, 150, 150);
+const TColor kGreen(60, 200, 80), kYellow(255, 210, 0), kGridGray(150, 150, 150);
 
 /** Extent over the ground, and a height for the grid. */
 struct Extent {
@@ -50,26 +52,8 @@ Extent extentOf(const mrpt::maps::CPointsMap& points) {
     return {x.low, x.high, y.low, y.high, range(points.getPointsBufferRef_z()).low};
 }
 
-/** 1, 2 or 5 times a power of ten, so that six to fifteen steps cover the length. */
-double roundStep(double length_m) {
-    const double raw = std::max(length_m, 1.0) / 8;
-    const double power = std::pow(10, std::floor(std::log10(raw)));
-    for (const double factor : {1.0, 2.0, 5.0})
-        if (raw <= factor * power * 1.3) return factor * power;
-    return 10 * power;
-}
-
-void addText(COpenGLScene& scene, unsigned row, const std::string& text, const TColor& colour) {
-    mrpt::opengl::TFontParams font;
-    font.vfont_name = "sans";
-    font.vfont_scale = 14;
-    font.color = TColorf(colour);
-    // From the lower left corner upwards, in pixels.
-    scene.getViewport()->addTextMessage(15, 15 + 24 * row, text, row, font);
-}
-
 void addGrid(COpenGLScene& scene, const Extent& extent, double beyond_m, const TColor& textColour) {
-    const double step = roundStep(extent.longer());
+    const double step = roundLength(std::max(extent.longer(), 1.0) / 8);
     const auto down = [&](double v) { return static_cast<float>(std::floor(v / step) * step); };
     const auto up = [&](double v) { return static_cast<float>(std::ceil(v / step) * step); };
     auto grid = mrpt::opengl::CGridPlaneXY::Create(
@@ -78,10 +62,7 @@ void addGrid(COpenGLScene& scene, const Extent& extent, double beyond_m, const T
     grid->setColor_u8(kGridGray);
     grid->setName("grid");
     scene.insert(grid);
-    std::string text = std::to_string(step);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    addText(scene, 0, "grid " + text + " m", textColour);
+    addLegendText(scene, 0, "grid " + metresText(step), textColour);
 }
 
 /** The way as a line that looks thick: MRPT draws every line one pixel wide, but the ends of its
@@ -119,24 +100,55 @@ void addMark(COpenGLScene& scene, const CPose3D& pose, const TColor& colour, dou
     axes->setName(name + "_axes");
     scene.insert(axes);
 }
+
+/** Axes at each keyframe; all x in one object, all y in another, all z in a third. */
+void addKeyframes(COpenGLScene& scene, const std::vector<CPose3D>& poses, double length_m) {
+    const TColor colours[] = {TColor(255, 80, 80), TColor(80, 220, 80), TColor(90, 140, 255)};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        auto lines = mrpt::opengl::CSetOfLines::Create();
+        mrpt::math::TPoint3D tip(0, 0, 0);
+        tip[axis] = length_m;
+        for (const auto& pose : poses)
+            lines->appendLine(pose.translation(), pose.composePoint(tip));
+        lines->setColor_u8(colours[axis]);
+        lines->setName(std::string("keyframes_") + "xyz"[axis]);
+        scene.insert(lines);
+    }
+}
+
+/** Heights of points above the ground around them. */
+template <typename Floats>
+std::vector<float> heightsOf(const Floats& x, const Floats& y, const Floats& z) {
+    const GroundHeight ground(x, y, z);
+    std::vector<float> heights(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+        heights[i] = static_cast<float>(
+            z[i] - ground.at(static_cast<double>(x[i]), static_cast<double>(y[i])));
+    return heights;
+}
+
+std::vector<float> intensitiesOf(const mrpt::maps::CPointsMap& points) {
+    const auto* cloud = dynamic_cast<const mrpt::maps::CPointsMapXYZI*>(&points);
+    if (!cloud) throw Error("the map's points have no intensity to be coloured by");
+    const auto& values = cloud->getPointsBufferRef_intensity();
+    return {values.begin(), values.end()};
+}
 }  // namespace
 
-COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const std::vector<CPose3D>& poses,
+COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
                            const SceneOptions& options) {
     if (points.empty()) throw Error("the map has no points, so there is nothing to show");
+    const bool byHeight = options.colourBy == ColourBy::Height;
     const auto& x = points.getPointsBufferRef_x();
     const auto& y = points.getPointsBufferRef_y();
     const auto& z = points.getPointsBufferRef_z();
-    const GroundHeight ground(points);
-    std::vector<float> heights(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i)
-        heights[i] = static_cast<float>(z[i] - ground.at(x[i], y[i]));
-    const ValueRange range = robustRange(heights);
+    const auto values = byHeight ? heightsOf(x, y, z) : intensitiesOf(points);
+    const ValueRange range = robustRange(values);
 
     auto cloud = mrpt::opengl::CPointCloudColoured::Create();
     cloud->reserve(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const TColor c = colourAt(options.colormap, range.fractionAt(heights[i]));
+        const TColor c = colourAt(options.colormap, range.fractionAt(double{values[i]}));
         cloud->insertPoint({x[i], y[i], z[i], c.R, c.G, c.B});
     }
     cloud->setPointSize(options.pointSize_px);
@@ -148,14 +160,55 @@ COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const std::vect
     const Extent extent = extentOf(points);
     const TColor& b = options.background;
     const TColor ink = b.R + b.G + b.B > 3 * 128 ? TColor(0, 0, 0) : kWhite;
+    unsigned row = 0;
     addGrid(*scene, extent, extent.longer() / 20, ink);
     scene->insert(cloud);
-    if (!poses.empty()) {
-        addWay(*scene, poses, extent.longer(), ink, 4, "trajectory");
-        addMark(*scene, poses.front(), kGreen, extent.longer(), "start");
-        addMark(*scene, poses.back(), kRed, extent.longer(), "end");
+    if (!ways.keyframes.empty()) {
+        addKeyframes(*scene, ways.keyframes, std::clamp(extent.longer() / 100, 0.5, 3.0));
+        addLegendText(*scene, ++row, "axes: keyframes", ink);
     }
+    if (!ways.groundTruth.empty()) {
+        auto below = ways.groundTruth;
+        const double lower_m = std::clamp(extent.longer() / 600, 0.2, 1.2);
+        for (auto& pose : below) pose.z_incr(-lower_m);
+        addWay(*scene, below, extent.longer(), kRed, 6, "ground_truth");
+        addLegendText(*scene, ++row, "ground truth", TColor(255, 90, 90));
+    }
+    if (!ways.trajectory.empty()) {
+        addWay(*scene, ways.trajectory, extent.longer(), ink, 4, "trajectory");
+        addMark(*scene, ways.trajectory.front(), kGreen, extent.longer(), "start");
+        addMark(*scene, ways.trajectory.back(), kYellow, extent.longer(), "end");
+        addLegendText(*scene, ++row, "trajectory, from green to yellow", ink);
+    }
+    addColourBar(*scene, row + 1, options.colormap, range, byHeight ? " m" : "",
+                 byHeight ? "height above ground" : "intensity", ink);
     return scene;
+}
+
+void recolour(COpenGLScene& scene, Colormap colormap) {
+    std::vector<mrpt::opengl::CPointCloudColoured::Ptr> clouds;
+    scene.visitAllObjects([&](const mrpt::opengl::CRenderizable::Ptr& object) {
+        const auto cloud = std::dynamic_pointer_cast<mrpt::opengl::CPointCloudColoured>(object);
+        if (cloud && cloud->size() > 1) clouds.push_back(cloud);
+    });
+    if (clouds.empty()) throw Error("the scene has no coloured cloud that could be recoloured");
+    for (const auto& cloud : clouds) {
+        std::vector<float> x, y, z;
+        for (std::size_t i = 0; i < cloud->size(); ++i) {
+            const auto& p = cloud->getPoint3Df(i);
+            x.push_back(p.x);
+            y.push_back(p.y);
+            z.push_back(p.z);
+        }
+        const auto heights = heightsOf(x, y, z);
+        const ValueRange range = robustRange(heights);
+        for (std::size_t i = 0; i < cloud->size(); ++i) {
+            const TColor c = colourAt(colormap, range.fractionAt(double{heights[i]}));
+            cloud->setPointColor_u8_fast(i, c.R, c.G, c.B);
+        }
+        cloud->notifyChange();
+    }
+    recolourBar(scene, colormap);
 }
 
 COpenGLScene::Ptr trajectoryScene(const std::vector<CPose3D>& estimate,
@@ -176,19 +229,16 @@ COpenGLScene::Ptr trajectoryScene(const std::vector<CPose3D>& estimate,
         auto below = groundTruth;
         for (auto& pose : below) pose.z_incr(std::min(0.0, bottom - top - size_m / 100));
         addWay(*scene, below, size_m, kBlue, 7, "ground_truth");
-        addText(*scene, 2, "ground truth", kBlue);
+        addLegendText(*scene, 2, "ground truth", kBlue);
     }
     addWay(*scene, estimate, size_m, kRed, 3, "trajectory");
-    addText(*scene, 1, "estimate", kRed);
+    addLegendText(*scene, 1, "estimate", kRed);
     addMark(*scene, estimate.front(), kGreen, size_m, "start");
     addMark(*scene, estimate.back(), kRed, size_m, "end");
     return scene;
 }
 
-void saveScene(const COpenGLScene& scene, const std::string& path) {
-    io::replaceFile(path,
-                    [&](const std::string& temporary) { return scene.saveToFile(temporary); });
-}
+void saveScene(const COpenGLScene& scene, const std::string& path) { saveWhole(scene, path); }
 
 COpenGLScene::Ptr loadScene(const std::string& path) {
     auto scene = COpenGLScene::Create();

@@ -5,7 +5,6 @@
 #include <mrpt/obs/CSensoryFrame.h>
 
 #include "delio/error.h"
-#include "delio/io/output_file.h"
 #include "gz_object.h"
 
 namespace delio::map {
@@ -13,9 +12,7 @@ using mrpt::maps::CPointsMapXYZI;
 using mrpt::maps::CSimpleMap;
 using mrpt::poses::CPose3D;
 
-void saveSimplemap(const CSimpleMap& map, const std::string& path) {
-    io::replaceFile(path, [&](const std::string& temporary) { return map.saveToFile(temporary); });
-}
+void saveSimplemap(const CSimpleMap& map, const std::string& path) { saveWhole(map, path); }
 
 CSimpleMap loadSimplemap(const std::string& path) {
     CSimpleMap map;
@@ -49,6 +46,7 @@ CPointsMapXYZI pointsOf(const CSimpleMap& map) {
                 }
                 if (scan->pointcloud)
                     all.insertAnotherMap(scan->pointcloud.get(), poses[i] + scan->sensorPose);
+                scan->unload();
             } else {
                 mrpt::maps::CSimplePointsMap points;
                 points.insertionOptions.minDistBetweenLaserPoints = 0;

@@ -1,5 +1,6 @@
 #include "delio/map/snapshot.h"
 
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/opengl/CCamera.h>
 #include <mrpt/opengl/CFBORender.h>
 #include <mrpt/opengl/CGridPlaneXY.h>
@@ -7,18 +8,24 @@
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/poses/CPose3D.h>
+#include <mrpt/serialization/CArchive.h>
+#include <png.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 
 #include "delio/error.h"
 #include "delio/io/output_file.h"
+#include "round_length.h"
 
 namespace delio::map {
+namespace fs = std::filesystem;
 using Eigen::Vector3d;
 using mrpt::img::CImage;
 using mrpt::img::TColorf;
@@ -146,53 +153,97 @@ struct View {
     Vector3d middle;
     double distance = 1;               //!< of the camera from the middle
     double metresAcross = 1;           //!< at the middle
+    double magnification = 1;          //!< by zoom_m, beyond what shows everything
     double nearest = 0, farthest = 0;  //!< depth of the whole content, from the camera
 };
 
-View viewOf(const Content& content, const SnapshotOptions& options) {
+std::function<double(const Vector3d&)> along(const Vector3d& axis) {
+    return [axis](const Vector3d& p) { return axis.dot(p); };
+}
+
+View viewFrom(double azimuth_deg, double elevation_deg) {
     View view;
-    const bool fromAbove = options.elevation_deg == 90;
-    const double az = mrpt::DEG2RAD(options.azimuth_deg ? *options.azimuth_deg
-                                                        : acrossAzimuth_deg(content, fromAbove));
-    const double el = mrpt::DEG2RAD(options.elevation_deg);
+    const double az = mrpt::DEG2RAD(azimuth_deg), el = mrpt::DEG2RAD(elevation_deg);
     view.right = {-std::sin(az), std::cos(az), 0};
     view.back = {std::cos(az) * std::cos(el), std::sin(az) * std::cos(el), std::sin(el)};
     view.up = view.back.cross(view.right);
+    return view;
+}
 
-    const double aspect = double(options.width_px) / options.height_px;
-    const auto along = [](const Vector3d& axis) {
-        return [axis](const Vector3d& p) { return axis.dot(p); };
+/** Half of what is seen at a distance of 1. */
+struct Lens {
+    explicit Lens(const SnapshotOptions& options)
+        : aspect(double(options.width_px) / options.height_px),
+          tanY(std::tan(mrpt::DEG2RAD(kVerticalView_deg) / 2)),
+          tanX(tanY * aspect) {}
+    double aspect, tanY, tanX;
+};
+
+/** Distance from the view's middle from which all content is seen in perspective. */
+double distanceFor(const Content& content, const View& view, const Lens& lens) {
+    const auto needed = [&](const Vector3d& p) {
+        const Vector3d q = p - view.middle;
+        return view.back.dot(q) + std::max(std::abs(view.right.dot(q)) / lens.tanX,
+                                           std::abs(view.up.dot(q)) / lens.tanY);
     };
+    return std::max(span(content, needed).second, 0.2) * kMargin;
+}
+
+/** Lets the content fill the picture. */
+void frame(View& view, const Content& content, const SnapshotOptions& options) {
+    const Lens lens(options);
     const auto [left, right] = span(content, along(view.right));
     const auto [bottom, top] = span(content, along(view.up));
     const auto [behind, front] = span(content, along(view.back));
     view.middle = view.right * (left + right) / 2 + view.up * (bottom + top) / 2 +
                   view.back * (behind + front) / 2;
-    view.metresAcross = std::max({right - left, (top - bottom) * aspect, 0.1}) * kMargin;
-
-    const double tanY = std::tan(mrpt::DEG2RAD(kVerticalView_deg) / 2), tanX = tanY * aspect;
-    if (!options.ortho) {
-        // Perspective moves what is near outwards: step back until everything fits, centre, repeat.
-        for (int round = 0; round < 4; ++round) {
-            const auto needed = [&](const Vector3d& p) {
+    view.metresAcross = std::max({right - left, (top - bottom) * lens.aspect, 0.1}) * kMargin;
+    if (options.ortho) return;
+    // Perspective moves what is near outwards: step back until everything fits, centre, repeat.
+    for (int round = 0; round < 4; ++round) {
+        view.distance = distanceFor(content, view, lens);
+        for (const Vector3d& axis : {view.right, view.up}) {
+            const auto [low, high] = span(content, [&](const Vector3d& p) {
                 const Vector3d q = p - view.middle;
-                return view.back.dot(q) + std::max(std::abs(view.right.dot(q)) / tanX,
-                                                   std::abs(view.up.dot(q)) / tanY);
-            };
-            view.distance = std::max(span(content, needed).second, 0.2) * kMargin;
-            for (const Vector3d& axis : {view.right, view.up}) {
-                const auto [low, high] = span(content, [&](const Vector3d& p) {
-                    const Vector3d q = p - view.middle;
-                    return axis.dot(q) / std::max(view.distance - view.back.dot(q), 0.1);
-                });
-                view.middle += axis * (low + high) / 2 * view.distance;
-            }
+                return axis.dot(q) / std::max(view.distance - view.back.dot(q), 0.1);
+            });
+            view.middle += axis * (low + high) / 2 * view.distance;
         }
-        view.metresAcross = 2 * tanX * view.distance;
     }
-    if (options.zoom_m) view.metresAcross = *options.zoom_m;
-    view.distance = view.metresAcross / (2 * tanX);
+    view.metresAcross = 2 * lens.tanX * view.distance;
+}
 
+/** Lets the content fit into every one of the views, all about one middle and of one size. */
+void frameAll(std::vector<View>& views, const Content& content, const SnapshotOptions& options) {
+    const Lens lens(options);
+    Vector3d middle;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto [low, high] = span(content, along(Vector3d::Unit(axis)));
+        middle[axis] = (low + high) / 2;
+    }
+    double metresAcross = 0.1;
+    for (auto& view : views) {
+        view.middle = middle;
+        double across = 2 * lens.tanX * distanceFor(content, view, lens);
+        if (options.ortho) {
+            const auto [least, most] = span(content, [&](const Vector3d& p) {
+                const Vector3d q = p - middle;
+                return std::max(std::abs(view.right.dot(q)),
+                                std::abs(view.up.dot(q)) * lens.aspect);
+            });
+            across = 2 * most * kMargin;
+        }
+        metresAcross = std::max(metresAcross, across);
+    }
+    for (auto& view : views) view.metresAcross = metresAcross;
+}
+
+void setDepths(View& view, const Content& content, const SnapshotOptions& options) {
+    if (options.zoom_m) {
+        view.magnification = view.metresAcross / *options.zoom_m;
+        view.metresAcross = *options.zoom_m;
+    }
+    view.distance = view.metresAcross / (2 * Lens(options).tanX);
     // Strays do not count here either: MRPT keeps the camera's place in floats, so a camera that
     // stands far off looks past its content.
     const auto height = [&](const Vector3d& p) { return view.back.dot(p - view.middle); };
@@ -206,7 +257,23 @@ View viewOf(const Content& content, const SnapshotOptions& options) {
     if (options.ortho) view.distance = std::max(view.distance, closest + 2 * slack);
     view.nearest = view.distance - closest - slack;
     view.farthest = view.distance - deepest + slack;
-    return view;
+}
+
+/** `pictures` views around the content; one fills the picture as well as it can. */
+std::vector<View> viewsOf(const Content& content, const SnapshotOptions& options,
+                          unsigned pictures) {
+    const double first = options.azimuth_deg
+                             ? *options.azimuth_deg
+                             : acrossAzimuth_deg(content, options.elevation_deg == 90);
+    std::vector<View> views;
+    for (unsigned i = 0; i < pictures; ++i)
+        views.push_back(viewFrom(first + 360.0 * i / pictures, options.elevation_deg));
+    if (pictures == 1)
+        frame(views[0], content, options);
+    else
+        frameAll(views, content, options);
+    for (auto& view : views) setDepths(view, content, options);
+    return views;
 }
 
 mrpt::opengl::CCamera cameraOf(const View& view, double metresAcross, double aspect, bool ortho) {
@@ -228,19 +295,52 @@ mrpt::opengl::CCamera cameraOf(const View& view, double metresAcross, double asp
 
 double lightness(const TColorf& c) { return 0.3 * c.R + 0.6 * c.G + 0.1 * c.B; }
 
+/** How much larger than in a picture of 1080 lines marks, texts and points are. */
+double sizeOfMarks(const SnapshotOptions& options) {
+    const double lines = std::min(options.width_px / 16.0 * 9, double(options.height_px));
+    return std::clamp(lines / 1080, 0.6, 4.0);
+}
+
+/** Smaller pictures have no room for a legend. */
+bool hasLegend(const SnapshotOptions& options) {
+    return options.width_px >= 480 && options.height_px >= 320;
+}
+
+/** A bar of a round length, white or black, whatever is on the ground there. */
+struct ScaleBar {
+    ScaleBar(const View& view, const SnapshotOptions& options) {
+        const double length_m = roundLength(view.metresAcross / 8);
+        const double marks = sizeOfMarks(options);
+        width_px = static_cast<int>(std::lround(length_m / view.metresAcross * options.width_px));
+        height_px = static_cast<int>(std::lround(6 * marks));
+        right_px = static_cast<int>(options.width_px) - static_cast<int>(25 * marks);
+        bottom_px = static_cast<int>(options.height_px) - static_cast<int>(25 * marks);
+        text = metresText(length_m);
+    }
+    void drawInto(CImage& image, const mrpt::img::TColor& ink) const {
+        image.filledRectangle(right_px - width_px, bottom_px - height_px, right_px, bottom_px, ink);
+    }
+    int width_px, height_px, right_px, bottom_px;
+    std::string text;
+};
+
 /** What rendering changes in a scene, put back when it is over. Sizes in pixels (points, text) are
  *  multiplied, as the picture is rendered larger than it is wanted. */
 class PreparedScene {
  public:
-    PreparedScene(COpenGLScene& scene, const SnapshotOptions& options, const View& view,
-                  float enlarged)
-        : scene_(scene), viewport_(scene.getViewport()) {
+    PreparedScene(COpenGLScene& scene, const SnapshotOptions& options, float enlarged,
+                  double magnification)
+        : scene_(scene),
+          viewport_(scene.getViewport()),
+          options_(options),
+          enlarged_(enlarged),
+          marks_(static_cast<float>(sizeOfMarks(options)) * enlarged) {
         viewport_->getViewportClipDistances(clipNear_, clipFar_);
         background_ = viewport_->getCustomBackgroundColor();
-        const double nearClip = std::max(view.nearest, 1e-3 * view.farthest);
-        viewport_->setViewportClipDistances(static_cast<float>(nearClip),
-                                            static_cast<float>(view.farthest));
         if (options.background) viewport_->setCustomBackgroundColor(TColorf(*options.background));
+        const float wider = std::max(marks_, enlarged);
+        // From near, the gaps between points grow: let the points grow as well.
+        const float nearer = static_cast<float>(std::clamp(std::sqrt(magnification), 1.0, 3.0));
         scene_.visitAllObjects([&](const CRenderizable::Ptr& object) {
             const auto points =
                 std::dynamic_pointer_cast<mrpt::opengl::CRenderizableShaderPoints>(object);
@@ -251,12 +351,25 @@ class PreparedScene {
             points->enableVariablePointSize(false);
             const bool isCloud = !std::dynamic_pointer_cast<mrpt::opengl::CSetOfLines>(object) &&
                                  object->getName() != "start" && object->getName() != "end";
-            const float wanted =
-                isCloud && options.pointSize_px ? *options.pointSize_px : points->getPointSize();
-            points->setPointSize(wanted * enlarged);
+            if (isCloud && options.pointSize_px)
+                points->setPointSize(*options.pointSize_px * enlarged);
+            else
+                points->setPointSize(points->getPointSize() * (isCloud ? wider * nearer : marks_));
         });
         texts_ = viewport_->getTextMessages().messages;
-        showTexts(enlarged);
+        constexpr double kNothing = 1e-9;  // a share of the picture; MRPT does not take 0
+        for (const auto& viewport : scene_.viewports()) {
+            if (viewport == viewport_) continue;
+            auto& kept =
+                others_.emplace_back(viewport, std::make_unique<mrpt::io::CMemoryStream>());
+            mrpt::serialization::archiveFrom(*kept.second) << *viewport;
+            double x = 0, y = 0, w = 0, h = 0;
+            viewport->getViewportPosition(x, y, w, h);
+            if (hasLegend(options))
+                viewport->setViewportPosition(larger(x), larger(y), larger(w), larger(h));
+            else
+                viewport->setViewportPosition(0, 0, kNothing, kNothing);
+        }
     }
     ~PreparedScene() {
         viewport_->setViewportClipDistances(clipNear_, clipFar_);
@@ -264,6 +377,11 @@ class PreparedScene {
         for (const auto& [points, size, variable] : sizes_) {
             points->setPointSize(size);
             points->enableVariablePointSize(variable);
+        }
+        // MRPT would keep the textures of these, too, of a context that is gone.
+        for (const auto& [viewport, kept] : others_) {
+            kept->Seek(0);
+            mrpt::serialization::archiveFrom(*kept) >> *viewport;
         }
         viewport_->clearTextMessages();
         for (const auto& [id, text] : texts_)
@@ -277,24 +395,48 @@ class PreparedScene {
     PreparedScene(const PreparedScene&) = delete;
     PreparedScene& operator=(const PreparedScene&) = delete;
 
- private:
-    void showTexts(float enlarged) {
+    void lookFrom(const View& view) {
+        const double nearClip = std::max(view.nearest, 1e-3 * view.farthest);
+        viewport_->setViewportClipDistances(static_cast<float>(nearClip),
+                                            static_cast<float>(view.farthest));
+    }
+
+    void showTexts(const std::optional<ScaleBar>& bar) {
         viewport_->clearTextMessages();
+        if (!hasLegend(options_)) return;
         for (const auto& [id, text] : texts_) {
             mrpt::opengl::TFontParams font = text;
-            font.vfont_scale *= enlarged;
+            font.vfont_scale *= marks_;
             // On another background than the scene's own, a text must not vanish.
             const double behind = lightness(viewport_->getCustomBackgroundColor());
-            if (std::abs(lightness(font.color) - behind) < 0.3)
-                font.color = behind > 0.5 ? TColorf(0, 0, 0) : TColorf(1, 1, 1);
-            // Above 1 it is pixels, below a share of the picture.
-            const auto place = [&](double v) { return v >= 1 ? v * enlarged : v; };
-            viewport_->addTextMessage(place(text.x), place(text.y), text.text, id, font);
+            if (std::abs(lightness(font.color) - behind) < 0.3) font.color = TColorf(ink());
+            viewport_->addTextMessage(larger(text.x), larger(text.y), text.text, id, font);
         }
+        if (!bar) return;
+        mrpt::opengl::TFontParams font;
+        font.vfont_name = "sans";
+        font.vfont_scale = 14.0F * marks_;
+        font.color = TColorf(ink());
+        constexpr unsigned kId = 1000;
+        const double above = options_.height_px - bar->bottom_px + 2.5 * bar->height_px;
+        viewport_->addTextMessage((bar->right_px - bar->width_px) * double{enlarged_},
+                                  above * double{enlarged_}, bar->text, kId, font);
     }
+
+    /** Stands out against the background. */
+    mrpt::img::TColor ink() const {
+        const bool dark = lightness(viewport_->getCustomBackgroundColor()) < 0.5;
+        return dark ? mrpt::img::TColor(255, 255, 255) : mrpt::img::TColor(0, 0, 0);
+    }
+
+ private:
+    /** From 1 on it is pixels, below a share of the picture. */
+    double larger(double v) const { return v >= 1 ? v * double{marks_} : v; }
 
     COpenGLScene& scene_;
     mrpt::opengl::COpenGLViewport::Ptr viewport_;
+    const SnapshotOptions& options_;
+    float enlarged_, marks_;
     float clipNear_ = 0, clipFar_ = 0;
     TColorf background_;
     struct Size {
@@ -303,6 +445,9 @@ class PreparedScene {
         bool variable;
     };
     std::vector<Size> sizes_;
+    std::vector<
+        std::pair<mrpt::opengl::COpenGLViewport::Ptr, std::unique_ptr<mrpt::io::CMemoryStream>>>
+        others_;
     std::map<uint32_t, mrpt::opengl::CTextMessageCapable::DataPerText> texts_;
 };
 
@@ -329,10 +474,12 @@ SnapshotOptions topView() {
     SnapshotOptions options;
     options.elevation_deg = 90;
     options.ortho = true;
+    options.scaleBar = true;
     return options;
 }
 
-CImage picture(COpenGLScene& scene, const SnapshotOptions& options) {
+void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned pictures,
+           const std::function<void(unsigned, const CImage&)>& use) {
     const auto sizeIsGood = [](unsigned px) { return px >= 1 && px <= kMaxPictureSize_px; };
     if (!sizeIsGood(options.width_px) || !sizeIsGood(options.height_px))
         throw Error("a picture has 1 to " + std::to_string(kMaxPictureSize_px) +
@@ -349,31 +496,67 @@ CImage picture(COpenGLScene& scene, const SnapshotOptions& options) {
     const unsigned height = options.height_px * scale;
     const unsigned width = options.width_px * scale;
     const unsigned padded = (width + 3) / 4 * 4;
-    const View view = viewOf(content, options);
 
     const auto renderer = openRenderer(padded, height);
-    CImage large;
-    try {
-        const PreparedScene prepared(scene, options, view, static_cast<float>(scale));
-        renderer->setCamera(scene, cameraOf(view, view.metresAcross * padded / width,
-                                            double(padded) / height, options.ortho));
-        renderer->render_RGB(scene, large);
-    } catch (const std::exception& e) {
-        throw Error("cannot render the scene: " + plainMessage(e));
+    const auto views = viewsOf(content, options, pictures);
+    PreparedScene prepared(scene, options, static_cast<float>(scale), views[0].magnification);
+    for (unsigned i = 0; i < pictures; ++i) {
+        const View& view = views[i];
+        std::optional<ScaleBar> bar;
+        if (options.ortho && options.scaleBar && hasLegend(options)) bar.emplace(view, options);
+        CImage large;
+        try {
+            prepared.lookFrom(view);
+            prepared.showTexts(bar);
+            renderer->setCamera(scene, cameraOf(view, view.metresAcross * padded / width,
+                                                double(padded) / height, options.ortho));
+            renderer->render_RGB(scene, large);
+        } catch (const std::exception& e) {
+            throw Error("cannot render the scene: " + plainMessage(e));
+        }
+        CImage result = large;
+        if (padded != width) large.extract_patch(result, (padded - width) / 2, 0, width, height);
+        if (scale != 1) {
+            const CImage cut = result;
+            cut.scaleImage(result, options.width_px, options.height_px, mrpt::img::IMG_INTERP_AREA);
+        }
+        if (bar) bar->drawInto(result, prepared.ink());
+        use(i, result);
     }
-    CImage cut = large;
-    if (padded != width) large.extract_patch(cut, (padded - width) / 2, 0, width, height);
-    if (scale == 1) return cut;
+}
+
+CImage picture(COpenGLScene& scene, const SnapshotOptions& options) {
     CImage result;
-    cut.scaleImage(result, options.width_px, options.height_px, mrpt::img::IMG_INTERP_AREA);
+    orbit(scene, options, 1, [&](unsigned, const CImage& image) { result = image; });
     return result;
 }
 
+void checkPngName(const std::string& path) {
+    if (fs::path(path).extension() != ".png")
+        throw Error("cannot write '" + path + "': pictures are PNG, so give it a name in .png");
+}
+
+void savePng(const CImage& image, const std::string& path) {
+    checkPngName(path);
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = static_cast<png_uint_32>(image.getWidth());
+    png.height = static_cast<png_uint_32>(image.getHeight());
+    png.format = PNG_FORMAT_BGR;
+    png.flags = PNG_IMAGE_FLAG_FAST;
+    // Not MRPT's writer: it tells stderr of a full disk by itself, or nobody.
+    io::replaceFile(path, [&](const std::string& temporary) {
+        std::FILE* const file = std::fopen(temporary.c_str(), "wb");
+        if (!file) return false;
+        const int written =
+            png_image_write_to_stdio(&png, file, 0, image.ptrLine<std::uint8_t>(0),
+                                     static_cast<png_int_32>(image.getRowStride()), nullptr);
+        return (std::fclose(file) == 0) && written != 0;
+    });
+}
+
 void savePicture(COpenGLScene& scene, const SnapshotOptions& options, const std::string& pngPath) {
-    if (std::filesystem::path(pngPath).extension() != ".png")
-        throw Error("cannot write '" + pngPath + "': pictures are PNG, so give it a name in .png");
-    const CImage image = picture(scene, options);
-    io::replaceFile(pngPath,
-                    [&](const std::string& temporary) { return image.saveToFile(temporary); });
+    checkPngName(pngPath);
+    savePng(picture(scene, options), pngPath);
 }
 }  // namespace delio::map

@@ -4,15 +4,18 @@
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
+#include <unistd.h>
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <fstream>
 #include <random>
 #include <set>
 #include <tuple>
 
 #include "delio/error.h"
 #include "delio/map/simplemap.h"
+#include "memory_limit.h"
 #include "test_data.h"
 
 namespace {
@@ -127,14 +130,87 @@ TEST(MapBuilder, OnePointPerVoxelAsBruteForceFindsIt) {
 TEST(MapBuilder, WhatSeveralScansSawIsThereOnce) {
     MapOptions options = everything();
     options.voxelSize_m = 0.5;
-    MapBuilder builder(options);
     const auto cloud = randomCloud(5000, 3);
+    const auto pointsOfTwo = [&](const CPose3D& second) {
+        MapBuilder builder(options);
+        builder.add(0, CPose3D(), cloud, CPose3D(), kStamp);
+        builder.add(1, second, cloud, CPose3D(), kStamp);
+        return builder.points({CPose3D(), second}).size();
+    };
+    EXPECT_EQ(2 * pointsOfTwo(CPose3D()), pointsOfTwo(CPose3D::FromTranslation(100, 0, 0)));
+    // What was thought to lie apart and comes together in the end is there once as well.
+    MapBuilder builder(options);
     builder.add(0, CPose3D(), cloud, CPose3D(), kStamp);
-    builder.add(1, CPose3D::FromTranslation(10, 0, 0), cloud, CPose3D(), kStamp);
+    builder.add(1, CPose3D::FromTranslation(100, 0, 0), cloud, CPose3D(), kStamp);
     EXPECT_EQ(builder.keyScans(), 2U);
-    const auto once = builder.points({CPose3D(), CPose3D()});
-    const auto apart = builder.points({CPose3D(), CPose3D::FromTranslation(100, 0, 0)});
-    EXPECT_EQ(2 * once.size(), apart.size());
+    EXPECT_EQ(builder.points({CPose3D(), CPose3D()}).size(), pointsOfTwo(CPose3D()));
+}
+
+TEST(MapBuilder, ScansBetweenKeyScansAddWhatWasNotSeenBefore) {
+    MapOptions options = everything();
+    options.voxelSize_m = 0.5;
+    options.keyframeDistance_m = 100;
+    MapBuilder builder(options);
+    const std::vector<CPose3D> poses = {CPose3D(), CPose3D::FromTranslation(1, 0, 0)};
+    EXPECT_TRUE(builder.add(0, poses[0], oneCloud({{10.1F, 0, 0}}), CPose3D(), kStamp));
+    EXPECT_FALSE(
+        builder.add(1, poses[1], oneCloud({{9.1F, 0, 0}, {20.1F, 0, 0}}), CPose3D(), kStamp));
+    const auto points = builder.points(poses);
+    ASSERT_EQ(points.size(), 2U) << "the first place is one voxel, seen twice";
+    EXPECT_NEAR(points.getPointsBufferRef_x()[1], 21.1, 1e-4);
+    EXPECT_EQ(builder.keyScans(), 1U);
+    EXPECT_EQ(builder.keyPoses(poses).size(), 1U);
+}
+
+TEST(MapBuilder, WhatMovesIsLeftOut) {
+    MapBuilder builder(everything());
+    EXPECT_TRUE(builder.add(0, CPose3D(), oneCloud({{10, 0, 0}, {11, 0, 0}, {12, 0, 0}}), CPose3D(),
+                            kStamp, {0, 1, 0}));
+    const auto points = builder.points({CPose3D()});
+    ASSERT_EQ(points.size(), 2U);
+    EXPECT_EQ(points.getPointsBufferRef_x()[1], 12);
+    EXPECT_EQ(map::pointsOf(builder.simplemap({CPose3D()})).size(), 2U);
+    EXPECT_FALSE(builder.add(1, CPose3D::FromTranslation(50, 0, 0), oneCloud({{10, 0, 0}}),
+                             CPose3D(), kStamp, {1}));
+}
+
+std::size_t memoryInUse_mb() {
+    std::size_t pages = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> pages >> resident;
+    return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) >> 20;
+}
+
+TEST(MapBuilder, MemoryGrowsWithTheSpaceAndNotWithTheScans) {
+    if (!test::MemoryLimit::works()) GTEST_SKIP() << "the sanitizer keeps what is freed";
+    MapOptions options = everything();
+    options.voxelSize_m = 0.2;
+    options.keyframeDistance_m = 0;  // every scan is a key scan
+    MapBuilder builder(options);
+    const auto cloud = randomCloud(50000, 9);
+    const auto drive = [&](std::size_t scans) {
+        for (std::size_t i = 0; i < scans; ++i) builder.add(0, CPose3D(), cloud, CPose3D(), kStamp);
+    };
+    drive(5);
+    const std::size_t before = memoryInUse_mb();
+    drive(200);  // 200 x 0.8 MB, were they kept in memory
+    EXPECT_LT(memoryInUse_mb(), before + 30);
+    EXPECT_EQ(builder.keyScans(), 205U);
+    // Written one scan after the other as well.
+    const test::TemporaryFolder folder;
+    map::saveSimplemap(builder.simplemap({CPose3D()}), folder / "map.simplemap");
+    EXPECT_LT(memoryInUse_mb(), before + 30);
+}
+
+TEST(MapBuilder, KeyScansLeaveNoFileBehind) {
+    const test::TemporaryFolder folder;
+    MapBuilder builder(everything(), "lidar", folder.path().string());
+    builder.add(0, CPose3D(), randomCloud(100, 10), CPose3D(), kStamp);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+    EXPECT_EQ(map::pointsOf(builder.simplemap({CPose3D()})).size(), 100U);
+    MapBuilder nowhere(everything(), "lidar", folder / "no/such/folder");
+    EXPECT_FALSE(nowhere.add(0, CPose3D(), randomCloud(9, 1), CPose3D(), kStamp));
+    EXPECT_EQ(nowhere.points({CPose3D()}).size(), 9U);
+    EXPECT_THROW(nowhere.simplemap({CPose3D()}), Error);
 }
 
 TEST(MapBuilder, FinalPosesAndTheSensorsPlaceAreApplied) {
@@ -172,6 +248,7 @@ TEST(MapBuilder, MissingPosesAreAnError) {
     builder.add(5, CPose3D(), randomCloud(10, 5), CPose3D(), kStamp);
     EXPECT_THROW(builder.points(std::vector<CPose3D>(5)), Error);
     EXPECT_THROW(builder.simplemap({}), Error);
+    EXPECT_THROW(builder.keyPoses({}), Error);
 }
 
 TEST(Simplemap, ReloadsEqualAndRepeatsByteForByte) {
@@ -189,6 +266,10 @@ TEST(Simplemap, ReloadsEqualAndRepeatsByteForByte) {
 
     const auto loaded = map::loadSimplemap(folder / "a.simplemap");
     ASSERT_EQ(loaded.size(), 2U);
+    // MRPT's own reader makes the same of it.
+    mrpt::maps::CSimpleMap byMrpt;
+    EXPECT_TRUE(byMrpt.loadFromFile(folder / "a.simplemap"));
+    EXPECT_EQ(byMrpt.size(), 2U);
     const auto pair = loaded.getAsPair(1);
     EXPECT_LT((pair.pose->getMeanVal() - poses[1]).norm(), 1e-9);
     const auto scan = pair.sf->getObservationByClass<mrpt::obs::CObservationPointCloud>();
@@ -198,7 +279,7 @@ TEST(Simplemap, ReloadsEqualAndRepeatsByteForByte) {
     EXPECT_FALSE(scan->isExternallyStored());
     EXPECT_LT((scan->sensorPose - sensor).norm(), 1e-9);
     MapBuilder again((MapOptions()));
-    again.add(0, CPose3D(), randomCloud(3000, 7), sensor, kStamp);
+    again.add(0, -sensor, randomCloud(3000, 7), sensor, kStamp);
     const auto kept = again.points({-sensor});
     ASSERT_EQ(scan->pointcloud->size(), kept.size());
 }

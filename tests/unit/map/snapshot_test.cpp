@@ -1,12 +1,15 @@
 #include "delio/map/snapshot.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/opengl/CPointCloud.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/stock_objects.h>
+#include <mrpt/system/CTicTac.h>
 
 #include <cmath>
+#include <iostream>
 #include <set>
 
 #include "delio/error.h"
@@ -159,7 +162,7 @@ TEST(Snapshot, EverythingFillsThePictureByDefault) {
 }
 
 TEST(Snapshot, AMapHasTheColoursOfItsHeights) {
-    const auto image = map::picture(*map::mapScene(someMap(), someWay()), {});
+    const auto image = map::picture(*map::mapScene(someMap(), {someWay(), {}, {}}), {});
     std::set<Rgb> colours;
     std::size_t covered = 0;
     for (int row = 0; row < static_cast<int>(image.getHeight()); ++row)
@@ -173,7 +176,7 @@ TEST(Snapshot, AMapHasTheColoursOfItsHeights) {
 }
 
 TEST(Snapshot, RepeatsAndLeavesTheSceneAsItWas) {
-    auto scene = map::mapScene(someMap(), someWay());
+    auto scene = map::mapScene(someMap(), {someWay(), {}, {}});
     SnapshotOptions options;
     options.width_px = 200;
     options.height_px = 150;
@@ -183,6 +186,78 @@ TEST(Snapshot, RepeatsAndLeavesTheSceneAsItWas) {
     other.background = TColor(255, 255, 255);
     EXPECT_NE(bytesOf(map::picture(*scene, other)), first);
     EXPECT_EQ(bytesOf(map::picture(*scene, options)), first);
+}
+
+TEST(Snapshot, OrbitGoesAroundTheContentAtOneDistance) {
+    // Corners at 50 and 25 m, and one red point on the side of +x.
+    auto scene = onePointScene(40, 0);
+    SnapshotOptions options;
+    options.width_px = options.height_px = 400;
+    options.elevation_deg = 20;
+    options.azimuth_deg = -90;
+    options.ortho = true;
+    std::vector<std::pair<double, double>> places;
+    map::orbit(*scene, options, 4, [&](unsigned i, const CImage& image) {
+        EXPECT_EQ(i, places.size());
+        places.push_back(placeOfRed(image));
+    });
+    ASSERT_EQ(places.size(), 4U);
+    // Seen from -y it is to the right; from +x in front, that is below the middle; and so on.
+    const double away = places[0].first - 200;
+    EXPECT_GT(away, 100);
+    EXPECT_NEAR(places[2].first, 200 - away, 2) << "one distance";
+    EXPECT_NEAR(places[1].first, 200, 2);
+    EXPECT_GT(places[1].second, 210);
+    EXPECT_NEAR(places[3].first, 200, 2);
+    EXPECT_LT(places[3].second, 190);
+}
+
+TEST(Snapshot, TheScaleBarIsTrue) {
+    auto scene = onePointScene(0, 0);
+    SnapshotOptions options = map::topView();
+    options.azimuth_deg = -90;
+    options.zoom_m = 130;
+    options.width_px = 650;
+    options.height_px = 400;
+    const auto image = map::picture(*scene, options);
+    // 650 px for 130 m: a bar of 20 m has 100 px.
+    int longest = 0;
+    for (int row = 0; row < 400; ++row) {
+        int run = 0;
+        for (int column = 0; column < 650; ++column) {
+            run = pixel(image, column, row) == Rgb{255, 255, 255} ? run + 1 : 0;
+            longest = std::max(longest, run);
+        }
+    }
+    EXPECT_NEAR(longest, 100, 2);
+    options.scaleBar = false;
+    EXPECT_NE(bytesOf(map::picture(*scene, options)), bytesOf(image));
+}
+
+// Takes a while: run with --gtest_also_run_disabled_tests.
+TEST(Snapshot, DISABLED_FiveMillionPointsTakeLessThanFifteenSeconds) {
+    mrpt::maps::CSimplePointsMap points;
+    constexpr std::int64_t kPoints = 5000000;
+    points.reserve(static_cast<std::size_t>(kPoints));
+    for (std::int64_t i = 0; i < kPoints; ++i) {
+        const double along = 2e-4 * static_cast<double>(i);
+        const double across = 0.01 * static_cast<double>(i * 7919 % 3000);
+        const double height = i % 5 == 0 ? 0.01 * static_cast<double>(i * 31 % 800) : 0;
+        points.insertPointFast(static_cast<float>(along),
+                               static_cast<float>(across + 50 * std::sin(along / 80)),
+                               static_cast<float>(height));
+    }
+    const test::TemporaryFolder folder;
+    for (const auto& [width, height] : {std::pair{1920U, 1080U}, {3840U, 2160U}}) {
+        SnapshotOptions options;
+        options.width_px = width;
+        options.height_px = height;
+        mrpt::system::CTicTac clock;
+        map::savePicture(*map::mapScene(points, {}), options, folder / "five.png");
+        const double time_s = clock.Tac();
+        std::cout << width << "x" << height << ": " << time_s << " s\n";
+        EXPECT_LT(time_s, 15);
+    }
 }
 
 TEST(Snapshot, BadRequestsAreErrorsAndLeaveNothing) {
@@ -216,7 +291,7 @@ TEST(Snapshot, BadRequestsAreErrorsAndLeaveNothing) {
 
 TEST(Scene, ReloadsWithTheSamePicture) {
     const test::TemporaryFolder folder;
-    auto scene = map::mapScene(someMap(), someWay());
+    auto scene = map::mapScene(someMap(), {someWay(), {}, {}});
     map::saveScene(*scene, folder / "map.3Dscene");
     auto loaded = map::loadScene(folder / "map.3Dscene");
     EXPECT_TRUE(loaded->getByName("map"));
@@ -225,6 +300,70 @@ TEST(Scene, ReloadsWithTheSamePicture) {
     options.width_px = 200;
     options.height_px = 150;
     EXPECT_EQ(bytesOf(map::picture(*loaded, options)), bytesOf(map::picture(*scene, options)));
+}
+
+std::size_t redPixels(const CImage& image) {
+    std::size_t red = 0;
+    for (int row = 0; row < static_cast<int>(image.getHeight()); ++row)
+        for (int column = 0; column < static_cast<int>(image.getWidth()); ++column) {
+            const auto p = pixel(image, column, row);
+            red += p[0] > 190 && p[1] < 70 && p[2] < 70;
+        }
+    return red;
+}
+
+TEST(Scene, AMapShowsItsWaysAndALegend) {
+    map::MapWays ways;
+    ways.trajectory = someWay();
+    SnapshotOptions options;
+    options.pointSize_px = 0.1F;
+    const auto plain = map::mapScene(someMap(), ways);
+    EXPECT_FALSE(plain->getByName("ground_truth"));
+    EXPECT_TRUE(plain->getViewport("colour_bar"));
+    ways.groundTruth = someWay();
+    for (auto& pose : ways.groundTruth) pose.y_incr(20);
+    ways.keyframes = {someWay()[0], someWay()[50]};
+    const auto scene = map::mapScene(someMap(), ways);
+    EXPECT_TRUE(scene->getByName("keyframes_z"));
+    EXPECT_GT(scene->getViewport()->getTextMessages().messages.size(),
+              plain->getViewport()->getTextMessages().messages.size());
+    EXPECT_GT(redPixels(map::picture(*scene, options)),
+              redPixels(map::picture(*plain, options)) + 2000);
+}
+
+TEST(Scene, IntensityColoursAMapThatHasIt) {
+    mrpt::maps::CPointsMapXYZI points;
+    for (int i = 0; i < 100; ++i)
+        for (int j = 0; j < 100; ++j)
+            points.insertPointRGB(static_cast<float>(i), static_cast<float>(j), 0,
+                                  i < 50 ? 0.1F : 0.9F, 0, 0);
+    map::SceneOptions options;
+    options.colourBy = map::ColourBy::Intensity;
+    options.colormap = map::Colormap::Gray;
+    const auto scene = map::mapScene(points, {}, options);
+    SnapshotOptions view = map::topView();
+    view.azimuth_deg = -90;
+    view.width_px = 300;
+    view.height_px = 200;
+    view.pointSize_px = 5;
+    const auto image = map::picture(*scene, view);
+    EXPECT_GT(pixel(image, 180, 100)[0], pixel(image, 120, 100)[0] + 100);
+    EXPECT_THROW(map::mapScene(someMap(), {}, options), Error);
+}
+
+TEST(Scene, TakesTheColoursOfAnotherMap) {
+    map::SceneOptions gray;
+    gray.colormap = map::Colormap::Gray;
+    auto scene = map::mapScene(someMap(), {someWay(), {}, {}});
+    const auto before = bytesOf(map::picture(*scene, {}));
+    map::recolour(*scene, map::Colormap::Gray);
+    EXPECT_NE(bytesOf(map::picture(*scene, {})), before);
+    // The same as if the map had been drawn so, legend and all.
+    EXPECT_EQ(bytesOf(map::picture(*scene, {})),
+              bytesOf(map::picture(*map::mapScene(someMap(), {someWay(), {}, {}}, gray), {})));
+    auto without = mrpt::opengl::COpenGLScene::Create();
+    without->insert(mrpt::opengl::stock_objects::CornerXYZSimple(1));
+    EXPECT_THROW(map::recolour(*without, map::Colormap::Gray), Error);
 }
 
 TEST(Scene, CutOffIsAnError) {

@@ -21,8 +21,8 @@ SnapshotOptions sphereView(std::size_t spheres);
 /** The lines of a scan, coloured by height. Metres, sensor's frame. */
 mrpt::opengl::COpenGLScene::Ptr lineScene(const translation::LineCloud& lines);
 
-/** The lines of two scans, those of `from` in blue, those of `to` moved by `t` in red, and in green
- *  what joins the midpoints of a pair. */
+/** The lines of two scans, those of `from` in blue, those of `to` moved by `t` in red, and in
+ * green, 0.3 m above, what joins the midpoints of a pair. */
 mrpt::opengl::COpenGLScene::Ptr matchScene(const translation::LineCloud& from,
                                            const translation::LineCloud& to,
                                            const Eigen::Vector3d& t);

@@ -10,19 +10,35 @@
 #include "delio/map/colormap.h"
 
 namespace delio::map {
+/** What the colours of a map's points say. Intensity: as the sensor gives it. */
+enum class ColourBy { Height, Intensity };
+
 struct SceneOptions {
     Colormap colormap = Colormap::Turbo;
+    ColourBy colourBy = ColourBy::Height;
     float pointSize_px = 2;
     mrpt::img::TColor background{16, 18, 22};
 };
 
-/** A map and the way through it, in the world's frame (metres, z up): points coloured by their
- *  height above the ground around them, the trajectory in white (on a light background: black) with
- *  a green mark at its start and a red one at its end, and a grid whose step is written into the
- *  corner. `poses` may be empty. Throws Error if there are no points. */
-mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points,
-                                         const std::vector<mrpt::poses::CPose3D>& poses,
+/** The ways through a map; each may be empty. */
+struct MapWays {
+    std::vector<mrpt::poses::CPose3D> trajectory;
+    std::vector<mrpt::poses::CPose3D> groundTruth;
+    std::vector<mrpt::poses::CPose3D> keyframes;
+};
+
+/** A map and the ways through it, in the world's frame (metres, z up): points coloured by their
+ *  height above the ground around them or by intensity; the trajectory in white (on a light
+ *  background: black) with a green mark at its start and a yellow one at its end; the ground truth
+ *  in red, drawn wider and 0.2 to 1.2 m lower so that neither hides the other; axes at the
+ * keyframes (x red, y green, z blue); a grid; and a legend in the lower left corner. Throws Error
+ * if there are no points. */
+mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
                                          const SceneOptions& options = {});
+
+/** Gives a scene's coloured clouds, each by height above its ground, and the legend of mapScene()
+ *  the colours of another colour map. Throws Error if the scene has no such cloud. */
+void recolour(mrpt::opengl::COpenGLScene& scene, Colormap colormap);
 
 /** Trajectories alone, on white: the estimate in red and, if it is given, the ground truth in
  *  blue, with a grid. Both in the same frame. Made to be seen from above: the ground truth is drawn

@@ -3,6 +3,7 @@
 #include <mrpt/img/TColor.h>
 #include <mrpt/opengl/COpenGLScene.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -17,16 +18,19 @@ struct SnapshotOptions {
      *  that the longer side of the content lies across the picture (looking straight down: turned
      *  by right angles only, +x to the right or up). */
     std::optional<double> azimuth_deg;
-    double elevation_deg = 55;          //!< above the horizon; 90 looks straight down
-    std::optional<double> zoom_m;       //!< metres across the picture, through the content's middle
-    bool ortho = false;                 //!< parallel projection instead of perspective
-    std::optional<float> pointSize_px;  //!< of all point clouds; unset: the scene's
+    double elevation_deg = 55;     //!< above the horizon; 90 looks straight down
+    std::optional<double> zoom_m;  //!< metres across the picture, through the content's middle
+    bool ortho = false;            //!< parallel projection instead of perspective
+    bool scaleBar = false;         //!< in the lower right corner; with `ortho` only
+    /** Of all point clouds; unset: the scene's, which are meant for pictures of 1080 lines that
+     *  show everything, and larger in larger pictures and from nearer. */
+    std::optional<float> pointSize_px;
     std::optional<mrpt::img::TColor> background;  //!< unset: the scene's
 };
 
 constexpr unsigned kMaxPictureSize_px = 16384;
 
-/** A map seen straight from above in parallel projection, true to scale: for trajectory.png. */
+/** Straight from above in parallel projection, with a scale bar. */
 SnapshotOptions topView();
 
 /** Renders without a display (EGL, in software where there is no GPU). The scene is the same again
@@ -34,7 +38,19 @@ SnapshotOptions topView();
  *  be used. */
 mrpt::img::CImage picture(mrpt::opengl::COpenGLScene& scene, const SnapshotOptions& options);
 
-/** The same into a .png file. Throws Error also if that cannot be written. */
+/** As many pictures with the camera going once around the scene, from options.azimuth_deg (unset:
+ * as picture() chooses) on, at one distance from which everything is seen all the way; each is
+ * given to `use` with its number, from 0. Throws Error as picture() does. */
+void orbit(mrpt::opengl::COpenGLScene& scene, const SnapshotOptions& options, unsigned pictures,
+           const std::function<void(unsigned, const mrpt::img::CImage&)>& use);
+
+/** Throws Error for a name that does not end in .png: to be asked before the work is done. */
+void checkPngName(const std::string& path);
+
+/** Writes a .png. Throws Error if that fails, or for a name that does not end in .png. */
+void savePng(const mrpt::img::CImage& image, const std::string& path);
+
+/** picture() into a .png file. Throws Error also if that cannot be written. */
 void savePicture(mrpt::opengl::COpenGLScene& scene, const SnapshotOptions& options,
                  const std::string& pngPath);
 }  // namespace delio::map
