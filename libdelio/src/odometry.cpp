@@ -3,6 +3,7 @@
 #include <mrpt/system/CTicTac.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 namespace delio {
 using mrpt::poses::CPose3D;
@@ -76,7 +77,7 @@ std::shared_ptr<const Features> Odometry::extract(const Scan& scan, FeatureCount
 }
 
 Registration Odometry::align(const Features& from, const Features& to, const CPose3D& guess,
-                             bool search, StageTimes& times_ms) const {
+                             double search_m, StageTimes& times_ms) const {
     Registration result;
     result.rotation = timed(times_ms[kRotation], [&] {
         return rotation::registerPatterns(from.pattern, to.pattern,
@@ -85,11 +86,15 @@ Registration Odometry::align(const Features& from, const Features& to, const CPo
     result.translation = timed(times_ms[kTranslation], [&] {
         const auto unrotated = translation::rotated(to.lines, result.rotation.rotation);
         const Eigen::Vector3d t(guess.x(), guess.y(), guess.z());
-        return search ? translation::searchTranslation(from.lines, unrotated, t,
-                                                       options_.lineRegistration)
-                      : translation::registerLines(from.lines, unrotated, t,
-                                                   options_.lineRegistration);
+        return search_m > 0 ? translation::searchTranslation(from.lines, unrotated, t, search_m,
+                                                             options_.lineRegistration)
+                            : translation::registerLines(from.lines, unrotated, t,
+                                                         options_.lineRegistration);
     });
+    // From another place other parts of the surfaces are seen, whose normals differ a little.
+    const double growth =
+        1 + result.translation.translation.norm() / options_.pattern.view_distance;
+    result.rotation.covariance *= growth * growth;
     result.increment = incrementOf(result.rotation, result.translation);
     if (!result.rotation.valid) result.predictedReason = "too few normals";
     if (!result.translation.valid)
@@ -126,9 +131,17 @@ OdometryResult Odometry::processWithLastScan(const Scan& scan) {
     ++scans_;
     const auto& features = *result.features;
     const bool usable = result.counts.pattern > 0 && result.counts.lines > 0;
+    constexpr double kUsual_s = 0.1;  // where stamps do not rise
+    const double elapsed = scan.stamp_s - stamp_s_;
+    const double duration_s = elapsed > 0 ? elapsed : kUsual_s;
+    stamp_s_ = scan.stamp_s;
+    sinceReference_s_ += duration_s;
     if (reference_) {
-        const CPose3D guess = sinceReference_ + prediction_.predict();
-        result.registration = align(*reference_, features, guess, lost_, result.times_ms);
+        const auto& lines = options_.lineRegistration;
+        const CPose3D guess = sinceReference_ + prediction_.predict(duration_s);
+        const double search_m =
+            lost_ ? std::min(lines.search_speed * sinceReference_s_, lines.search_radius) : 0;
+        result.registration = align(*reference_, features, guess, search_m, result.times_ms);
         result.reason = result.registration.predictedReason;
     } else if (scans_ > 1)
         result.reason = "no usable scan before it";  // what was driven since then is not known
@@ -139,13 +152,14 @@ OdometryResult Odometry::processWithLastScan(const Scan& scan) {
         result.increment.pose =
             orthonormalised((-sinceReference_) + result.registration.increment.pose);
         if (!result.predicted || prediction_.hasMotion())
-            prediction_.observe(result.increment.pose);
+            prediction_.observe(result.increment.pose, duration_s);
         sinceReference_ = sinceReference_ + result.increment.pose;
         lost_ = result.predicted;
     }
     if (usable) {
         reference_ = result.features;
         sinceReference_ = CPose3D();
+        sinceReference_s_ = 0;
     }
     return result;
 }

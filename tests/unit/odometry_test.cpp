@@ -245,7 +245,7 @@ TEST(Odometry, AlignsAnyTwoScans) {
                first = odometry.process(scans[2]).features;
     StageTimes times{};
     const auto found = odometry.align(
-        *last, *first, (truth[2] - truth[4]) + poseOf(0.2, 0.1, 0, 1, 0, 0), false, times);
+        *last, *first, (truth[2] - truth[4]) + poseOf(0.2, 0.1, 0, 1, 0, 0), 0, times);
     EXPECT_EQ(found.predictedReason, "");
     expectPose(found.increment.pose, truth[2] - truth[4], kMetres, kDegrees);
     expectCovariance(found.increment);

@@ -199,6 +199,10 @@ std::vector<OptionField> PatternRegistrationOptions::fields() {
          "share of the normals that count as independent in the covariance: neighbours share "
          "points",
          1e-6, 1},
+        {"view_distance", &view_distance,
+         "m; this far from each other two scans see so different parts of the surfaces that the "
+         "standard deviation has doubled",
+         0.01, 1e9},
         {"prior_sigma_deg", &prior_sigma_deg, "deg; the motion model's error on such an axis", 1e-6,
          180}};
 }

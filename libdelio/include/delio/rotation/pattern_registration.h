@@ -19,6 +19,7 @@ struct PatternRegistrationOptions : public StageOptions {
     unsigned min_normals = 50;
     double min_observability = 0.01;
     double independent_share = 0.05;
+    double view_distance = 2;
     double prior_sigma_deg = 1.0;
 
  protected:
