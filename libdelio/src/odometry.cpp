@@ -96,9 +96,10 @@ Registration Odometry::align(const Features& from, const Features& to, const CPo
         1 + result.translation.translation.norm() / options_.pattern.view_distance;
     result.rotation.covariance *= growth * growth;
     result.increment = incrementOf(result.rotation, result.translation);
-    if (!result.rotation.valid) result.predictedReason = "too few normals";
+    if (!result.rotation.valid)
+        result.predictedReason = result.rotation.tooFar ? "no rotation found" : "too few normals";
     if (!result.translation.valid)
-        result.predictedReason += result.rotation.valid ? "too few lines" : " and lines";
+        result.predictedReason += result.rotation.valid ? "too few lines" : " and too few lines";
     return result;
 }
 

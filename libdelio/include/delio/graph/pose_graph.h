@@ -22,7 +22,7 @@ struct PoseGraphOptions : StageOptions {
     /** More edges than the chain (i,i+1): 1 adds (i,i+2), 2 adds (i,i+3) too, as long as the two
      *  scans overlap by `min_overlap` (TranslationEstimate::overlap). For whoever makes the edges;
      *  optimise() takes those that were added. */
-    unsigned skip_edges = 2;
+    unsigned skip_edges = 4;
     double min_overlap = 0.5;
     /** Nodes that are moved while driving, for whoever adds them; 0: none. */
     unsigned window = 10;
