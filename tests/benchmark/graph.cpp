@@ -78,17 +78,32 @@ void report(const char* what, const std::vector<CPose3D>& truth, const graph::Po
                 std::sqrt(squares / static_cast<double>(truth.size())), largest);
 }
 
+double meanOf(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return sum / static_cast<double>(values.size());
+}
+
 void run(std::size_t nodes, std::size_t reach, std::size_t loops, std::size_t wrong) {
     const auto truth = blocks(nodes);
     Noise noise;
-    graph::PoseGraph graph;
+    graph::PoseGraph graph, driven;
     graph.addNode(truth[0]);
+    driven.addNode(truth[0]);
+    std::vector<double> window_ms;
     for (std::size_t i = 1; i < nodes; ++i) {
         const CPose3D step = noise(truth[i] - truth[i - 1]);
         graph.addNode(graph.poses().back() + step);
         graph.addEdge(edgeOf(i - 1, i, step));
         for (std::size_t k = 2; k <= std::min(reach, i); ++k)
             graph.addEdge(edgeOf(i - k, i, noise(truth[i] - truth[i - k])));
+        driven.addNode(driven.poses().back() + step);
+        for (auto edge = graph.edges().rbegin(); edge != graph.edges().rend() && edge->to == i;
+             ++edge)
+            driven.addEdge(*edge);
+        mrpt::system::CTicTac clock;
+        driven.optimiseLast(10, {});
+        window_ms.push_back(1e3 * clock.Tac());
     }
     for (std::size_t i = 0; i < loops && nodes > 800; ++i) {
         const std::size_t from = noise.below(nodes - 800);
@@ -101,6 +116,10 @@ void run(std::size_t nodes, std::size_t reach, std::size_t loops, std::size_t wr
     }
     std::printf("%zu nodes, %zu edges, %zu loop closures, %zu wrong edges\n", nodes,
                 graph.edges().size(), loops, wrong);
+    const auto tenth = static_cast<std::ptrdiff_t>(nodes / 10);
+    std::printf("  window of 10: %.2f ms a scan; of the first tenth %.2f, of the last %.2f\n",
+                meanOf(window_ms), meanOf({window_ms.begin(), window_ms.begin() + tenth}),
+                meanOf({window_ms.end() - tenth, window_ms.end()}));
     report("odometry", truth, graph);
     mrpt::system::CTicTac clock;
     const auto result = graph.optimise({});
@@ -117,12 +136,6 @@ std::vector<CPose3D> truePoses(const std::string& rawlog) {
     const auto cam0 = io::readTrajectory(io::sidecarPath(rawlog, ".poses.txt")).poses;
     for (const auto& pose : cam0) poses.push_back((-Tr) + (pose - cam0.front()) + Tr);
     return poses;
-}
-
-double meanOf(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double value : values) sum += value;
-    return sum / static_cast<double>(values.size());
 }
 
 /** Edges over `span` scans beside the odometry's way between the same scans. */

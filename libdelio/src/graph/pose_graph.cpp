@@ -137,10 +137,10 @@ OptimisationResult PoseGraph::optimise(const PoseGraphOptions& options) {
     const auto start = graph.nodes;
 
     OptimisationResult result;
-    const auto run = [&](double width) {
+    const auto run = [&](double width, unsigned limit) {
         graph.kernelWidth = width;
         const unsigned before = result.iterations;
-        result = minimise(graph, options.max_iterations - before);
+        result = minimise(graph, std::min(options.max_iterations - before, limit));
         result.iterations += before;
     };
     // Graduated non-convexity (Yang et al., 2020): a kernel that is narrow from the start leaves
@@ -148,13 +148,14 @@ OptimisationResult PoseGraph::optimise(const PoseGraphOptions& options) {
     // those that follow narrow it from the largest error down to c. Edges that contradict the chain
     // would bend it before they are left out; they have the narrow kernel in every round.
     if (c > 0 && largestError(graph) > c) {
-        run(0);
-        for (double width = largestError(graph); width > c; width /= 2) run(width);
+        constexpr unsigned kStepsOfRound = 5;  // only the last round has to converge
+        run(0, options.max_iterations);
+        for (double width = largestError(graph); width > c; width /= 2) run(width, kStepsOfRound);
     }
-    run(c);
+    run(c, options.max_iterations);
     if (result.final_cost > initialCost) {
         graph.nodes = start;
-        run(c);
+        run(c, options.max_iterations);
     }
     result.initial_cost = initialCost;
     for (const auto& [node, pose] : graph.nodes) poses_[node] = pose;
