@@ -14,6 +14,9 @@ struct WhitenedGraph : mrpt::graphs::CNetworkOfPoses<mrpt::poses::CPose3DPDFGaus
                                                      mrpt::containers::map_traits_map_as_vector> {
     using MapEntry = edges_map_t::value_type;
 
+    /** Node of the pose graph that is number 0 here: its container has room for each number up to
+     *  the largest. */
+    std::size_t firstNode = 0;
     double kernelWidth = 0;                //!< of the Geman-McClure kernel; 0: none
     double doubtfulWidth = 0;              //!< the same for the edges in `doubtful`
     std::set<const MapEntry*> doubtful;    //!< entries of `edges`

@@ -111,20 +111,30 @@ void PoseGraph::requireConnected(std::size_t firstFree) const {
 
 WhitenedGraph PoseGraph::whitened(std::size_t firstFree, const std::vector<bool>& doubtful) const {
     WhitenedGraph graph;
+    graph.firstNode = firstFree;
+    for (std::size_t node = firstFree; node < poses_.size(); ++node)
+        for (const std::size_t i : edgesUpTo_[node])
+            graph.firstNode = std::min({graph.firstNode, edges_[i].from, edges_[i].to});
     for (std::size_t node = firstFree; node < poses_.size(); ++node) {
-        graph.free.insert(graph.free.end(), node);
-        graph.nodes[node] = poses_[node];
+        graph.free.insert(graph.free.end(), node - graph.firstNode);
+        graph.nodes[node - graph.firstNode] = poses_[node];
         for (const std::size_t i : edgesUpTo_[node]) {
             const Edge& edge = edges_[i];
             mrpt::poses::CPose3DPDFGaussianInf measured(edge.increment.pose);
             const Matrix6 U = information_[i].llt().matrixU();
             measured.cov_inv.asEigen() = U;
-            const auto entry = graph.edges.emplace(std::make_pair(edge.from, edge.to), measured);
+            const auto entry = graph.edges.emplace(
+                std::make_pair(edge.from - graph.firstNode, edge.to - graph.firstNode), measured);
             if (!doubtful.empty() && doubtful[i]) graph.doubtful.insert(&*entry);
-            for (const std::size_t end : {edge.from, edge.to}) graph.nodes[end] = poses_[end];
+            for (const std::size_t end : {edge.from, edge.to})
+                graph.nodes[end - graph.firstNode] = poses_[end];
         }
     }
     return graph;
+}
+
+void PoseGraph::takeFreePoses(const WhitenedGraph& graph) {
+    for (const auto node : graph.free) poses_[node + graph.firstNode] = graph.nodes.at(node);
 }
 
 OptimisationResult PoseGraph::optimise(const PoseGraphOptions& options) {
@@ -158,7 +168,7 @@ OptimisationResult PoseGraph::optimise(const PoseGraphOptions& options) {
         run(c, options.max_iterations);
     }
     result.initial_cost = initialCost;
-    for (const auto& [node, pose] : graph.nodes) poses_[node] = pose;
+    takeFreePoses(graph);
     return result;
 }
 
@@ -169,7 +179,7 @@ OptimisationResult PoseGraph::optimiseLast(std::size_t count, const PoseGraphOpt
     auto graph = whitened(firstFree, {});
     graph.kernelWidth = options.kernel_width;
     const auto result = minimise(graph, options.max_iterations);
-    for (const auto& [node, pose] : graph.nodes) poses_[node] = pose;
+    takeFreePoses(graph);
     return result;
 }
 }  // namespace delio::graph

@@ -213,6 +213,17 @@ TEST(PoseGraph, OnlyTheLastNodesMove) {
     optimum.optimise({});
     EXPECT_LT(largestDistance(all.poses(), optimum.poses()), 1e-6);
     EXPECT_EQ(all.poses()[0], before[0]);
+
+    PoseGraph elsewhere;  // node 0 is not at the origin
+    elsewhere.addNode(pose(5, 4, 3, 0.3, 0.2, 0.1));
+    for (std::size_t i = 1; i < 6; ++i) {
+        elsewhere.addNode(pose(5 + static_cast<double>(i), 4, 3, 0.3, 0, 0));
+        elsewhere.addEdge(edgeOf(i - 1, i, pose(1, 0, 0, 0, 0, 0), std::vector<double>(6, 1e-4)));
+    }
+    const auto start = elsewhere.poses();
+    elsewhere.optimiseLast(2, {});
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(elsewhere.poses()[i], start[i]);
+    EXPECT_GT(elsewhere.poses()[5].distanceTo(start[5]), 0.1);
 }
 
 // What a drive does: a node, its edges, the window, and so on.

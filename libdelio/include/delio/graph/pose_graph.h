@@ -79,6 +79,7 @@ class PoseGraph {
     void requireConnected(std::size_t firstFree) const;
     /** Edges between free nodes, and between those and earlier ones. */
     WhitenedGraph whitened(std::size_t firstFree, const std::vector<bool>& doubtful) const;
+    void takeFreePoses(const WhitenedGraph& graph);
 
     std::vector<mrpt::poses::CPose3D> poses_;
     std::vector<Edge> edges_;
