@@ -58,6 +58,11 @@ std::string axesText(const Eigen::Matrix3Xd& axes) {
         text += format("%s%.3f %.3f %.3f", i > 0 ? "; " : "", axes(0, i), axes(1, i), axes(2, i));
     return text;
 }
+
+/** The chain alone is what the odometry's poses were made of: then nothing is optimised. */
+bool hasMoreThanTheChain(const graph::PoseGraph& graph) {
+    return graph.edges().size() + 1 > graph.poses().size();
+}
 }  // namespace
 
 SlamRun::SlamRun(std::string folder, std::string profile, std::vector<std::string> command)
@@ -131,8 +136,11 @@ void SlamRun::optimise(Slam& slam) {
 void SlamRun::write(const Slam& slam, const Options& options, bool withMap) {
     final_ = slam.trajectory();
     if (!stampsRise_) final_.stamps_s.clear();
+    const auto& odometry = slam.odometry();
+    optimised_ = hasMoreThanTheChain(slam.poseGraph());
     try {
-        if (truth_) evaluate(final_);
+        if (truth_) metrics_ = evaluate(final_);
+        if (metrics_ && optimised_) metricsBefore_ = evaluate(odometry);
     } catch (const Error& e) {
         // The drive's results are good all the same.
         if (!truthWasAskedFor_)
@@ -140,7 +148,7 @@ void SlamRun::write(const Slam& slam, const Options& options, bool withMap) {
         else if (fault.empty())
             fault = e.what();
     }
-    writeTrajectories(slam.odometry(), final_);
+    writeTrajectories(odometry, final_);
     writeGraph(slam.poseGraph());
     writeScans();
     writeConfig(options);
@@ -148,8 +156,7 @@ void SlamRun::write(const Slam& slam, const Options& options, bool withMap) {
     for (const char* name : kFilesOfMap) forget(name);
     try {
         if (withMap) writeMap(slam, final_);
-        const auto scene = map::trajectoryScene(final_.poses, truthInPicture_);
-        map::savePicture(*scene, map::topView(), path("trajectory.png"));
+        writePicture(odometry);
     } catch (const Error& e) {
         // A full disk or a missing renderer: the rest of the results is good all the same.
         if (fault.empty()) fault = e.what();
@@ -169,8 +176,8 @@ void SlamRun::optimiseAndWrite(graph::PoseGraph& graph, const Options& options) 
     writeConfig(options);
     for (const char* name : kFilesOfMap) forget(name);
     forget("scans.csv");
-    const auto scene = map::trajectoryScene(final_.poses);
-    map::savePicture(*scene, map::topView(), path("trajectory.png"));
+    optimised_ = hasMoreThanTheChain(graph);
+    writePicture(before);
     writeSummary(options);
 }
 
@@ -182,7 +189,7 @@ io::Trajectory SlamRun::ofSensor(const io::Trajectory& ofVehicle) const {
     return sensor;
 }
 
-void SlamRun::evaluate(const io::Trajectory& vehicle) {
+SlamRun::Metrics SlamRun::evaluate(const io::Trajectory& vehicle) {
     io::Trajectory estimate =
         truthIsCam0_ ? io::lidarToCam0(ofSensor(vehicle), calibration_.Tr) : vehicle;
     io::Trajectory truth = *truth_;
@@ -210,12 +217,13 @@ void SlamRun::evaluate(const io::Trajectory& vehicle) {
     const CPose3D trueEnd = pairs.reference.back() - pairs.reference.front();
     const CPose3D end = pairs.estimate.back() - pairs.estimate.front();
     metrics.end_m = (trueEnd - end).norm();
-    metrics_ = metrics;
+    truthInPicture_.clear();
     for (const auto& pose : pairs.reference) {
         const CPose3D moved = pose - pairs.reference.front();
         truthInPicture_.push_back(truthIsCam0_ ? (-calibration_.Tr) + moved + calibration_.Tr
                                                : moved);
     }
+    return metrics;
 }
 
 void SlamRun::writeTrajectories(const io::Trajectory& odometry, const io::Trajectory& final) {
@@ -243,6 +251,26 @@ void SlamRun::writeMap(const Slam& slam, const io::Trajectory& final) {
         map::mapScene(points, {final.poses, truthInPicture_, builder.keyPoses(final.poses)});
     map::saveScene(*scene, path("map.3Dscene"));
     map::savePicture(*scene, map::SnapshotOptions(), path("map.png"));
+}
+
+/** The trajectory from above; where the graph had something to optimise, before and after it side
+ *  by side. */
+void SlamRun::writePicture(const io::Trajectory& before) const {
+    auto view = map::topView();
+    const auto pictureOf = [&](const io::Trajectory& trajectory, const char* name) {
+        return map::picture(*map::trajectoryScene(trajectory.poses, truthInPicture_, name), view);
+    };
+    mrpt::img::CImage sheet;
+    if (optimised_) {
+        const auto width = static_cast<int>(view.width_px),
+                   height = static_cast<int>(view.height_px);
+        sheet.resize(2 * width, height, mrpt::img::CH_RGB);
+        sheet.drawImage(0, 0, pictureOf(before, "unoptimised"));
+        sheet.drawImage(width, 0, pictureOf(final_, "optimised"));
+    } else
+        sheet = pictureOf(final_, "estimate");
+    io::replaceFile(path("trajectory.png"),
+                    [&](const std::string& temporary) { return sheet.saveToFile(temporary); });
 }
 
 void SlamRun::writeScans() const {
@@ -275,6 +303,26 @@ void SlamRun::writeScans() const {
 
 void SlamRun::writeConfig(const Options& options) const {
     io::replaceTextFile(path("config.ini"), [&](std::ostream& out) { options.write(out); });
+}
+
+mrpt::containers::yaml SlamRun::yamlOf(const Metrics& metrics) {
+    mrpt::containers::yaml result = mrpt::containers::yaml::Map();
+    const auto put = [&](const char* name, double value) {
+        if (std::isfinite(value)) result[name] = value;  // what a short drive cannot tell
+    };
+    const auto& row = metrics.row;
+    put("length_m", row.length_m);
+    result["segments"] = row.kitti.segments;
+    put("t_percent", row.kitti.t_percent);
+    put("r_deg_per_100m", row.kitti.r_deg_per_100m);
+    put("ape_m", row.ape_m);
+    put("end_error_m", metrics.end_m);
+    put("end_error_percent", 100 * metrics.end_m / row.length_m);
+    put("scan_translation_median_m", metrics.perScan.translation_m.median);
+    put("scan_translation_p95_m", metrics.perScan.translation_m.p95);
+    put("scan_rotation_median_deg", metrics.perScan.rotation_deg.median);
+    put("scan_rotation_p95_deg", metrics.perScan.rotation_deg.p95);
+    return result;
 }
 
 std::size_t SlamRun::predictedScans() const {
@@ -336,29 +384,36 @@ void SlamRun::writeSummary(const Options& options) const {
     warnings.node().printInShortFormat = warnings_.empty();
     for (const auto& warning : warnings_) warnings.push_back(yamlText(warning));
     summary["warnings"] = warnings;
-    if (metrics_) {
-        const auto& row = metrics_->row;
-        yaml metrics = yaml::Map();
-        const auto put = [&](const char* name, double value) {
-            if (std::isfinite(value)) metrics[name] = value;  // what a short drive cannot tell
-        };
-        put("length_m", row.length_m);
-        metrics["segments"] = row.kitti.segments;
-        put("t_percent", row.kitti.t_percent);
-        put("r_deg_per_100m", row.kitti.r_deg_per_100m);
-        put("ape_m", row.ape_m);
-        put("end_error_m", metrics_->end_m);
-        put("end_error_percent", 100 * metrics_->end_m / row.length_m);
-        put("scan_translation_median_m", metrics_->perScan.translation_m.median);
-        put("scan_translation_p95_m", metrics_->perScan.translation_m.p95);
-        put("scan_rotation_median_deg", metrics_->perScan.rotation_deg.median);
-        put("scan_rotation_p95_deg", metrics_->perScan.rotation_deg.p95);
-        summary["metrics"] = metrics;
-    }
+    if (metrics_) summary["metrics"] = yamlOf(*metrics_);
+    if (metricsBefore_) summary["metrics_before_optimisation"] = yamlOf(*metricsBefore_);
     io::replaceTextFile(path("summary.yaml"), [&](std::ostream& out) {
         summary.printAsYAML(out);
         out << "\n";
     });
+}
+
+std::vector<std::pair<std::string, std::string>> SlamRun::rowsOf(const Metrics& m) {
+    std::vector<std::pair<std::string, std::string>> rows;
+    if (m.row.kitti.segments > 0) {
+        const auto& lengths = m.row.kitti.perLength;
+        rows.emplace_back("KITTI segments",
+                          format("%zu of %g to %g m", m.row.kitti.segments,
+                                 lengths.front().length_m, lengths.back().length_m));
+        rows.emplace_back("KITTI translation", format("%.3f %%", m.row.kitti.t_percent));
+        rows.emplace_back("KITTI rotation", format("%.3f deg/100 m", m.row.kitti.r_deg_per_100m));
+    }
+    const std::string share =
+        m.row.length_m > 0 ? format(", %.2f %%", 100 * m.end_m / m.row.length_m) : "";
+    rows.emplace_back("end error",
+                      format("%.3f m%s of %.1f m", m.end_m, share.c_str(), m.row.length_m));
+    rows.emplace_back("APE (aligned)", format("%.3f m", m.row.ape_m));
+    rows.emplace_back("translation per scan",
+                      format("%.4f m median, %.4f m 95 %%", m.perScan.translation_m.median,
+                             m.perScan.translation_m.p95));
+    rows.emplace_back("rotation per scan",
+                      format("%.4f deg median, %.4f deg 95 %%", m.perScan.rotation_deg.median,
+                             m.perScan.rotation_deg.p95));
+    return rows;
 }
 
 void SlamRun::printTable(std::ostream& out) const {
@@ -371,23 +426,15 @@ void SlamRun::printTable(std::ostream& out) const {
     row("time per scan", format("%.1f ms", msPerScan()));
     row("peak memory", format("%.0f MB", peakMemory_mb()));
     if (metrics_) {
-        const auto& m = *metrics_;
-        if (m.row.kitti.segments > 0) {
-            const auto& lengths = m.row.kitti.perLength;
-            row("KITTI segments", format("%zu of %g to %g m", m.row.kitti.segments,
-                                         lengths.front().length_m, lengths.back().length_m));
-            row("KITTI translation", format("%.3f %%", m.row.kitti.t_percent));
-            row("KITTI rotation", format("%.3f deg/100 m", m.row.kitti.r_deg_per_100m));
-        }
-        const std::string share =
-            m.row.length_m > 0 ? format(", %.2f %%", 100 * m.end_m / m.row.length_m) : "";
-        row("end error", format("%.3f m%s of %.1f m", m.end_m, share.c_str(), m.row.length_m));
-        row("APE (aligned)", format("%.3f m", m.row.ape_m));
-        row("translation per scan",
-            format("%.4f m median, %.4f m 95 %%", m.perScan.translation_m.median,
-                   m.perScan.translation_m.p95));
-        row("rotation per scan", format("%.4f deg median, %.4f deg 95 %%",
-                                        m.perScan.rotation_deg.median, m.perScan.rotation_deg.p95));
+        const auto values = rowsOf(*metrics_);
+        const auto before = metricsBefore_ ? rowsOf(*metricsBefore_) : values;
+        if (metricsBefore_) out << format("%-26s %-34s %s\n", "", "optimised", "unoptimised");
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (metricsBefore_)
+                out << format("%-26s %-34s %s\n", values[i].first.c_str(), values[i].second.c_str(),
+                              before[i].second.c_str());
+            else
+                row(values[i].first.c_str(), values[i].second);
     }
     row("results", folder_);
 }

@@ -1,4 +1,6 @@
 #pragma once
+#include <mrpt/containers/yaml.h>
+
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -44,7 +46,11 @@ class SlamRun {
     std::string path(const std::string& name) const;
     void forget(const std::string& name) const;
     io::Trajectory ofSensor(const io::Trajectory& ofVehicle) const;
-    void evaluate(const io::Trajectory& vehicle);
+    Metrics evaluate(const io::Trajectory& vehicle);
+    static mrpt::containers::yaml yamlOf(const Metrics& metrics);
+    /** Name and value for people to read. */
+    static std::vector<std::pair<std::string, std::string>> rowsOf(const Metrics& metrics);
+    void writePicture(const io::Trajectory& before) const;
     void writeTrajectories(const io::Trajectory& odometry, const io::Trajectory& final);
     void writeGraph(const graph::PoseGraph& graph);
     void writeMap(const Slam& slam, const io::Trajectory& final);
@@ -62,7 +68,8 @@ class SlamRun {
     io::Calibration calibration_;
     std::optional<io::Trajectory> truth_;
     bool truthIsCam0_ = true, truthWasAskedFor_ = false, stampsRise_ = true;
-    std::optional<Metrics> metrics_;
+    bool optimised_ = false;  //!< the graph had more edges than the odometry's
+    std::optional<Metrics> metrics_, metricsBefore_;
     graph::OptimisationResult optimisation_;
     double optimise_ms_ = 0, map_ms_ = 0;
     io::Trajectory final_;

@@ -60,7 +60,7 @@ std::shared_ptr<const Features> Odometry::extract(const scan::PointCloud& cloud,
 }
 
 Registration Odometry::align(const Features& from, const Features& to, const CPose3D& guess,
-                             bool search, StageTimes& times_ms) const {
+                             double search_m, StageTimes& times_ms) const {
     Registration result;
     result.rotation = timed(times_ms[kRotation], [&] {
         return rotation::registerPatterns(from.pattern, to.pattern,
@@ -69,15 +69,20 @@ Registration Odometry::align(const Features& from, const Features& to, const CPo
     result.translation = timed(times_ms[kTranslation], [&] {
         const auto unrotated = translation::rotated(to.lines, result.rotation.rotation);
         const Eigen::Vector3d t(guess.x(), guess.y(), guess.z());
-        return search ? translation::searchTranslation(from.lines, unrotated, t,
-                                                       options_.lineRegistration)
-                      : translation::registerLines(from.lines, unrotated, t,
-                                                   options_.lineRegistration);
+        return search_m > 0 ? translation::searchTranslation(from.lines, unrotated, t, search_m,
+                                                             options_.lineRegistration)
+                            : translation::registerLines(from.lines, unrotated, t,
+                                                         options_.lineRegistration);
     });
+    // From another place other parts of the surfaces are seen, whose normals differ a little.
+    const double growth =
+        1 + result.translation.translation.norm() / options_.pattern.view_distance;
+    result.rotation.covariance *= growth * growth;
     result.increment = incrementOf(result.rotation, result.translation);
-    if (!result.rotation.valid) result.predictedReason = "too few normals";
+    if (!result.rotation.valid)
+        result.predictedReason = result.rotation.tooFar ? "no rotation found" : "too few normals";
     if (!result.translation.valid)
-        result.predictedReason += result.rotation.valid ? "too few lines" : " and lines";
+        result.predictedReason += result.rotation.valid ? "too few lines" : " and too few lines";
     return result;
 }
 
@@ -111,16 +116,31 @@ OdometryResult Odometry::processWithMap(const Scan& scan) {
 
 OdometryResult Odometry::processWithLastScan(const Scan& scan) {
     OdometryResult result;
-    auto cloud = timed(result.times_ms[kPreprocess],
-                       [&] { return scan::preprocess(scan, options_.preprocess); });
+    constexpr double kUsual_s = 0.1;  // where stamps do not rise
+    const double elapsed = scan.stamp_s - stamp_s_;
+    const double duration_s = elapsed > 0 ? elapsed : kUsual_s;
+    stamp_s_ = scan.stamp_s;
+    sinceReference_s_ += duration_s;
+    const CPose3D step = prediction_.predict(duration_s);
+    auto cloud = timed(result.times_ms[kPreprocess], [&] {
+        auto made = scan::preprocess(scan, options_.preprocess);
+        result.deskewed = !made.times_s.empty();
+        if (result.deskewed)
+            made.points =
+                scan::deskew(made.points, made.times_s, scan::Motion::of(step, duration_s));
+        return made;
+    });
     result.features = extract(cloud, result.counts, result.times_ms);
     ++scans_;
     const auto& features = *result.features;
     result.used = {std::move(cloud.points), std::move(cloud.indices), {}};
     const bool usable = result.counts.pattern > 0 && result.counts.lines > 0;
     if (reference_) {
-        const CPose3D guess = sinceReference_ + prediction_.predict();
-        result.registration = align(*reference_, features, guess, lost_, result.times_ms);
+        const auto& lines = options_.lineRegistration;
+        const CPose3D guess = sinceReference_ + step;
+        const double search_m =
+            lost_ ? std::min(lines.search_speed * sinceReference_s_, lines.search_radius) : 0;
+        result.registration = align(*reference_, features, guess, search_m, result.times_ms);
         result.reason = result.registration.predictedReason;
     } else if (scans_ > 1)
         result.reason = "no usable scan before it";  // what was driven since then is not known
@@ -131,13 +151,14 @@ OdometryResult Odometry::processWithLastScan(const Scan& scan) {
         result.increment.pose =
             orthonormalised((-sinceReference_) + result.registration.increment.pose);
         if (!result.predicted || prediction_.hasMotion())
-            prediction_.observe(result.increment.pose);
+            prediction_.observe(result.increment.pose, duration_s);
         sinceReference_ = sinceReference_ + result.increment.pose;
         lost_ = result.predicted;
     }
     if (usable) {
         reference_ = result.features;
         sinceReference_ = CPose3D();
+        sinceReference_s_ = 0;
     }
     return result;
 }

@@ -66,7 +66,7 @@ ScanReport Slam::process(const Scan& scan) {
         const Increment increment =
             ofVehicle(report.odometry.increment, recent_.front().sensorPose, scan.sensorPose);
         poses.push_back(poses.back() + increment.pose);
-        graph_.addNode(poses.back());
+        graph_.addNode(graph_.poses().back() + increment.pose);
         graph_.addEdge({latest.node - 1, latest.node, increment});
     }
     odometryTrajectory_.stamps_s.push_back(scan.stamp_s);
@@ -79,7 +79,11 @@ ScanReport Slam::process(const Scan& scan) {
     }
     if (withGraph_ && !report.odometry.predicted && report.odometry.features) {
         mrpt::system::CTicTac clock;
+        const std::size_t before = graph_.edges().size();
         addSkipEdges(latest);
+        // The chain alone is what the poses were made of: nothing to optimise.
+        if (options_.graph.window > 0 && graph_.edges().size() > before)
+            graph_.optimiseLast(options_.graph.window, options_.graph);
         report.graph_ms = 1e3 * clock.Tac();
     }
     recent_.push_front(latest);
@@ -88,16 +92,17 @@ ScanReport Slam::process(const Scan& scan) {
 }
 
 void Slam::addSkipEdges(const Recent& latest) {
-    const auto& poses = odometryTrajectory_.poses;
+    const auto& poses = graph_.poses();
     for (std::size_t i = 1; i < recent_.size(); ++i) {
         const Recent& earlier = recent_[i];
         const CPose3D guess = (-(poses[earlier.node] + earlier.sensorPose)) +
                               (poses[latest.node] + latest.sensorPose);
         StageTimes unused{};
         const Registration registration =
-            odometry_.align(*earlier.features, *latest.features, guess, false, unused);
+            odometry_.align(*earlier.features, *latest.features, guess, 0, unused);
         // Where a scan did not register there is nothing to learn beyond the prediction.
         if (!registration.predictedReason.empty()) continue;
+        if (registration.translation.overlap < options_.graph.min_overlap) break;
         graph_.addEdge({earlier.node, latest.node,
                         ofVehicle(registration.increment, earlier.sensorPose, latest.sensorPose)});
     }

@@ -612,9 +612,31 @@ TEST_F(DelioSlam, OptimisesAGraphAgain) {
     };
     broken("", {"g.g2o", "VERTEX"});
     broken("words\n", {"line 1", "words"});
+    const auto changed = [&](const std::string& from, const std::string& to) {
+        std::string bytes = text;
+        const auto at = bytes.find(from);
+        EXPECT_NE(at, std::string::npos) << from;
+        return bytes.replace(at, from.size(), to);
+    };
+    const std::string edge = text.substr(text.find("EDGE_SE3:QUAT 2 3"));
+    const std::string line = edge.substr(0, edge.find('\n') + 1);
+    const std::string head = "EDGE_SE3:QUAT 2 3 1 0 0 0 0 0 1 ";
+    broken(changed(line, ""), {"no edges connect node 3"});
+    broken(changed(line, head + "1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 nan 0 0 1 0 1\n"), {"not finite"});
+    broken(changed(line, head + "1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 -1 0 0 1 0 1\n"),
+           {"node 2 to node 3", "positive definite"});
+    broken(text.substr(0, text.size() - 2), {"the file ends within this line"});
     broken(text.substr(0, text.size() / 2), {"g.g2o', line"});
     broken(text + "EDGE_SE3:QUAT 0 99 0 0 0 0 0 0 1 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1\n",
            {"99"});
+
+    // Results of an earlier run stay.
+    fs::create_directories(folder_ / "again");
+    writeText(folder_ / "again" / "trajectory_kitti.txt", "precious\n");
+    writeText(folder_ / "g.g2o", "words\n");
+    test::expectFailure(again(), 1, {"words"});
+    EXPECT_EQ(readText(folder_ / "again" / "trajectory_kitti.txt"), "precious\n");
+    EXPECT_EQ(test::namesIn(folder_ / "again"), Words({"trajectory_kitti.txt"}));
 }
 
 TEST(EveryTool, HelpAndVersion) {

@@ -1,4 +1,6 @@
 #include <gtest/gtest.h>
+#include <mrpt/graphs/CNetworkOfPoses.h>
+#include <mrpt/graphslam/levmarq.h>
 
 #include <iostream>
 
@@ -47,7 +49,7 @@ TEST(Graph, SmallGrid3D) {
     expectTheMinimum("graphs/smallGrid3D.g2o", 462.4825302, 40);
 }
 
-// A chain with nothing in conflict: every edge can be met.
+// A chain with nothing in conflict: every edge can be met, as MRPT's stored answer does.
 TEST(Graph, Torus) {
     DELIO_NEED_DATA("graphs/graphslam_SE3_in_torus3D-first100.graph");
     auto graph =
@@ -55,5 +57,44 @@ TEST(Graph, Torus) {
     const auto result = graph.optimise({});
     EXPECT_GT(result.initial_cost, 1);
     EXPECT_LT(result.final_cost, 1e-6);
+    const auto answer =
+        graph::loadG2o(test::dataFolder() / "graphs/graphslam_SE3_out_good_torus3D-first100.graph");
+    ASSERT_EQ(answer.poses().size(), graph.poses().size());
+    for (std::size_t i = 0; i < graph.poses().size(); ++i)
+        EXPECT_LT(graph.poses()[i].distanceEuclidean6D(answer.poses()[i]), 1e-3) << i;
+}
+/** The same graph with unit information, optimised by both; what counts is the sum of squares that
+ *  MRPT reports, which takes no information into account (as its graph-slam --levmarq --3d). */
+void expectNoWorseThanMrpt(const std::string& file) {
+    const std::string path = test::dataFolder() / file;
+    mrpt::graphs::CNetworkOfPoses3D network;
+    network.loadFromTextFile(path);
+    network.root = network.nodes.begin()->first;
+    auto ours = network;
+    mrpt::graphslam::TResultInfoSpaLevMarq info;
+    mrpt::graphslam::optimize_graph_spa_levmarq(network, info);
+
+    const auto loaded = graph::loadG2o(path);
+    graph::PoseGraph graph;
+    for (const auto& pose : loaded.poses()) graph.addNode(pose);
+    for (const auto& edge : loaded.edges())
+        graph.addEdge(edge.from, edge.to, edge.increment.pose, graph::Matrix6::Identity());
+    graph::PoseGraphOptions options;
+    options.kernel_width = 0;
+    graph.optimise(options);
+    ASSERT_EQ(ours.nodes.size(), graph.poses().size());
+    std::size_t i = 0;
+    for (auto& [id, node] : ours.nodes) node = graph.poses()[i++];
+    const double mrpts = network.getGlobalSquareError(true), mine = ours.getGlobalSquareError(true);
+    std::cout << file << ": MRPT " << mrpts << ", DeLiO " << mine << "\n";
+    EXPECT_LE(mine, 1.001 * mrpts);
+}
+
+TEST(Graph, NoWorseThanMrptByItsOwnError) {
+    for (const std::string file :
+         {"graphs/parking-garage.g2o", "graphs/sphere2500.g2o", "graphs/smallGrid3D.g2o"}) {
+        DELIO_NEED_DATA(file);
+        expectNoWorseThanMrpt(file);
+    }
 }
 }  // namespace

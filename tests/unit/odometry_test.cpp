@@ -110,6 +110,40 @@ TEST(Odometry, FindsTheIncrementsOfADrive) {
     }
 }
 
+// 25 m/s from the first scan on, of which nothing is known before.
+TEST(Odometry, ADriveThatBeginsAtSpeedIsRegistered) {
+    for (const std::string profile : {"paper", "accurate"}) {
+        std::vector<CPose3D> truth{poseOf(-7, 1, 0, 20, 0, 0)};
+        while (truth.size() < 4) truth.push_back(truth.back() + poseOf(2.5, 0, 0, 1, 0, 0));
+        const auto results = resultsOf(scansOf(truth), Options::ofProfile(profile).odometry);
+        for (std::size_t i = 1; i < truth.size(); ++i) {
+            EXPECT_FALSE(results[i].predicted) << profile << i;
+            expectPose(results[i].increment.pose, truth[i] - truth[i - 1], 0.1, 0.5);
+        }
+    }
+}
+
+// At a constant speed, but scans are missing: what is expected of a step grows with its time.
+TEST(Odometry, DroppedScansAreBridged) {
+    std::vector<CPose3D> truth{poseOf(-4, 0, 0, 10, 0, 0)};
+    std::vector<double> stamps{100};
+    for (const int missing : {0, 0, 0, 2, 0, 3, 0}) {
+        CPose3D pose = truth.back();
+        for (int i = 0; i <= missing; ++i) pose = pose + poseOf(0.5, 0, 0, -2.5, 0, 0);
+        truth.push_back(pose);
+        stamps.push_back(stamps.back() + 0.1 * (missing + 1));
+    }
+    auto scans = scansOf(truth);
+    for (std::size_t i = 0; i < scans.size(); ++i) scans[i].stamp_s = stamps[i];
+    for (const std::string profile : {"paper", "accurate"}) {
+        const auto results = resultsOf(scans, quick(profile, 1));
+        for (std::size_t i = 1; i < truth.size(); ++i) {
+            EXPECT_FALSE(results[i].predicted) << profile << i;
+            expectPose(results[i].increment.pose, truth[i] - truth[i - 1], 0.05, 0.5);
+        }
+    }
+}
+
 // Scans of one place, each with its own noise.
 TEST(Odometry, AVehicleAtRestStaysThere) {
     const CPose3D place = poseOf(0, 0, 0, 30, 0, 0);
@@ -245,7 +279,7 @@ TEST(Odometry, AlignsAnyTwoScans) {
                first = odometry.process(scans[2]).features;
     StageTimes times{};
     const auto found = odometry.align(
-        *last, *first, (truth[2] - truth[4]) + poseOf(0.2, 0.1, 0, 1, 0, 0), false, times);
+        *last, *first, (truth[2] - truth[4]) + poseOf(0.2, 0.1, 0, 1, 0, 0), 0, times);
     EXPECT_EQ(found.predictedReason, "");
     expectPose(found.increment.pose, truth[2] - truth[4], kMetres, kDegrees);
     expectCovariance(found.increment);

@@ -83,4 +83,17 @@ TEST(Prediction, OlderThanNIsForgotten) {
     expectSame(prediction.predict(), CPose3D(5, 0, 0), 1e-12);
     expectSame(one.predict(), CPose3D(6, 0, 0), 1e-12);
 }
+// Steps of a constant twist over unequal times, as where scans were dropped.
+TEST(Prediction, ConstantSpeedGoesOnOverUnequalTimes) {
+    const Eigen::Vector3d speed(13, -1, 0.2), turn(0.2, -0.3, 0.7);
+    const auto over = [&](double s) {  // exp(s * twist), by many small steps
+        CPose3D pose;
+        for (int i = 0; i < 100000; ++i) pose = pose + motion(speed * s / 1e5, turn * s / 1e5);
+        return pose;
+    };
+    auto prediction = ofFrames(3);
+    for (const double duration : {0.1, 0.4, 0.2}) prediction.observe(over(duration), duration);
+    for (const double duration : {0.1, 0.5})
+        expectSame(prediction.predict(duration), over(duration), 1e-4);
+}
 }  // namespace

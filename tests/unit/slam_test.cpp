@@ -172,6 +172,36 @@ TEST(Slam, SkipEdgesAreAsManyAsTheOptionSays) {
     }
 }
 
+TEST(Slam, EdgesEndWhereScansNoLongerOverlap) {
+    const auto scans = scansOf(drive(5), {});
+    auto options = withSkipEdges(9);
+    options.graph.min_overlap = 1;
+    EXPECT_EQ(run(scans, options, true).poseGraph().edges().size(), 4U);  // the chain
+}
+
+// What is known while driving is nearly what is known in the end.
+TEST(Slam, TheWindowOptimisesWhileDriving) {
+    const auto scans = scansOf(drive(8), {});
+    const auto drivenBy = [&](unsigned window) {
+        auto options = withSkipEdges(2);
+        options.graph.window = window;
+        Slam slam(options, true, false, "velodyne");
+        for (const auto& scan : scans) slam.process(scan);
+        const auto odometry = slam.odometry().poses, live = slam.trajectory().poses;
+        slam.optimise();
+        double fromOdometry = 0, fromOptimum = 0;
+        for (std::size_t i = 0; i < live.size(); ++i) {
+            fromOdometry = std::max(fromOdometry, live[i].distanceTo(odometry[i]));
+            fromOptimum = std::max(fromOptimum, live[i].distanceTo(slam.trajectory().poses[i]));
+        }
+        return std::make_pair(fromOdometry, fromOptimum);
+    };
+    const auto [moved, left] = drivenBy(4);
+    EXPECT_GT(moved, 1e-3);
+    EXPECT_LT(left, moved / 3);
+    EXPECT_EQ(drivenBy(0).first, 0);
+}
+
 TEST(Slam, AScanThatDidNotRegisterHasTheChainAlone) {
     auto scans = scansOf(drive(6), {});
     scans[3].points->clear();

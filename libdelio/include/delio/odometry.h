@@ -119,10 +119,10 @@ class Odometry {
 
     OdometryResult process(const Scan& scan);
 
-    /** Registers any two scans; `guess` maps frame `to` to frame `from`. With `search`,
-     *  translations of a few metres about a guess that is little more than that are tried. */
+    /** Registers any two scans; `guess` maps frame `to` to frame `from`. With `search_m` > 0,
+     *  translations up to so many metres off the guess are tried. */
     Registration align(const Features& from, const Features& to, const mrpt::poses::CPose3D& guess,
-                       bool search, StageTimes& times_ms) const;
+                       double search_m, StageTimes& times_ms) const;
 
  private:
     std::shared_ptr<const Features> extract(const scan::PointCloud& cloud, FeatureCounts& counts,
@@ -135,6 +135,8 @@ class Odometry {
     unsigned scans_ = 0;                         //!< processed
     std::shared_ptr<const Features> reference_;  //!< the last usable scan
     mrpt::poses::CPose3D sinceReference_;        //!< maps the latest frame to that of reference_
+    double sinceReference_s_ = 0;
+    double stamp_s_ = 0;  //!< of the latest scan
     localmap::PlaneTracker tracker_;
     mrpt::poses::CPose3D tracked_;  //!< latest pose in the tracker's map
     bool lost_ = true;  //!< where the next scan will be is not known to better than metres

@@ -14,7 +14,7 @@ struct PredictionOptions : public StageOptions {
 };
 
 /** Section V, equation (linear prediction): T_p = 2/(N(N+1)) sum_{j=1..N} (N-j+1) T_{i-j}, the mean
- *  taken of rotation vectors and translations. While fewer than N increments are known, N is their
+ *  taken of logarithms in SE(3). While fewer than N increments are known, N is their
  *  number; with none the prediction is "no motion". */
 class LinearPrediction {
  public:

@@ -16,7 +16,7 @@ struct ScanReport {
     std::size_t index = 0;  //!< of the scan in its rawlog
     double stamp_s = 0;
     OdometryResult odometry;
-    double graph_ms = 0;  //!< for the edges to scans before the last one
+    double graph_ms = 0;  //!< for the edges to scans before the last one, and the window
     double map_ms = 0;    //!< for its points in the map
 };
 
@@ -31,11 +31,11 @@ class Slam {
 
     ScanReport process(const Scan& scan);
 
-    /** Optimises the pose graph (section V). */
+    /** Optimises the whole pose graph (section V); while driving, its last nodes were. */
     graph::OptimisationResult optimise();
 
     const io::Trajectory& odometry() const { return odometryTrajectory_; }
-    /** After optimise(): the final poses, with their times. */
+    /** After optimise(): the final poses, with their times. Before: the best at that moment. */
     io::Trajectory trajectory() const;
     const graph::PoseGraph& poseGraph() const { return graph_; }
     const map::MapBuilder& mapBuilder() const { return map_; }

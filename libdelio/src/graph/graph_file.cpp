@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "delio/error.h"
+#include "delio/graph/information.h"
 #include "delio/io/output_file.h"
 
 namespace delio::graph {
@@ -20,21 +21,6 @@ using mrpt::poses::CPose3D;
 
 namespace {
 using VertexId = unsigned long long;
-
-/** Information about half angles (g2o) to information about angles: exact, as 2 and 4 are. */
-Matrix6 toRadians(Matrix6 information) {
-    information.topRightCorner<3, 3>() /= 2;
-    information.bottomLeftCorner<3, 3>() /= 2;
-    information.bottomRightCorner<3, 3>() /= 4;
-    return information;
-}
-
-Matrix6 toHalfAngles(Matrix6 information) {
-    information.topRightCorner<3, 3>() *= 2;
-    information.bottomLeftCorner<3, 3>() *= 2;
-    information.bottomRightCorner<3, 3>() *= 4;
-    return information;
-}
 
 /** The words of one line, taken one after the other. */
 class Line {
@@ -117,7 +103,11 @@ void readLine(Line& line, FileContent& content) {
         const VertexId from = line.id();
         const VertexId to = line.id();
         const CPose3D pose = line.pose();
-        content.edges.push_back({from, to, pose, toRadians(line.symmetric()), line.where()});
+        content.edges.push_back(
+            {from, to, pose,
+             convertInformation(line.symmetric(), pose, InformationOf::quaternion,
+                                InformationOf::tangent),
+             line.where()});
     } else if (tag == "FIX") {
         content.fixed.emplace_back(line.id(), line.where());
     } else {
@@ -134,7 +124,10 @@ FileContent readContent(const std::string& path) {
     std::string text;
     for (std::size_t number = 1; std::getline(in, text); ++number) {
         Line line(text, "'" + path + "', line " + std::to_string(number));
-        if (text[0] != '#' && !line.empty()) readLine(line, content);
+        if (text[0] == '#' || line.empty()) continue;
+        // The last number may have lost digits without a trace.
+        if (in.eof()) line.fail("the file ends within this line: was it cut off?");
+        readLine(line, content);
     }
     if (in.bad()) throw Error("cannot read '" + path + "': reading failed (is it a folder?)");
     if (content.vertices.empty()) throw Error("'" + path + "' has no VERTEX_SE3:QUAT line");
@@ -180,16 +173,6 @@ void writePose(std::ostream& out, const CPose3D& pose) {
         writeNumber(out, number);
 }
 
-/** MRPT's information is that of the mean's numbers x y z yaw pitch roll: K' Omega K, with K the
- *  derivative of delio's error [t w] by them. */
-Matrix6 informationOfYawPitchRoll(const CPose3D& pose, const Matrix6& information) {
-    const double sp = std::sin(pose.pitch()), cp = std::cos(pose.pitch());
-    const double sr = std::sin(pose.roll()), cr = std::cos(pose.roll());
-    Matrix6 K = Matrix6::Zero();
-    K.topLeftCorner<3, 3>() = pose.getRotationMatrix().asEigen().transpose();
-    K.bottomRightCorner<3, 3>() << -sp, 0, 1, cp * sr, cr, 0, cp * cr, -sr, 0;
-    return K.transpose() * information * K;
-}
 }  // namespace
 
 PoseGraph loadG2o(const std::string& path) {
@@ -230,7 +213,9 @@ void saveG2o(const PoseGraph& graph, const std::string& path) {
             const Edge& edge = graph.edges()[i];
             out << "EDGE_SE3:QUAT " << edge.from << ' ' << edge.to;
             writePose(out, edge.increment.pose);
-            const Matrix6 information = toHalfAngles(graph.information(i));
+            const Matrix6 information =
+                convertInformation(graph.information(i), edge.increment.pose,
+                                   InformationOf::tangent, InformationOf::quaternion);
             for (int r = 0; r < 6; ++r)
                 for (int c = r; c < 6; ++c) writeNumber(out, information(r, c));
             out << '\n';
@@ -246,7 +231,8 @@ void saveMrptText(const PoseGraph& graph, const std::string& path) {
         const Edge& edge = graph.edges()[i];
         mrpt::poses::CPose3DPDFGaussianInf measured(edge.increment.pose);
         measured.cov_inv.asEigen() =
-            informationOfYawPitchRoll(edge.increment.pose, graph.information(i));
+            convertInformation(graph.information(i), edge.increment.pose, InformationOf::tangent,
+                               InformationOf::yawPitchRoll);
         network.insertEdge(edge.from, edge.to, measured);
     }
     io::replaceTextFile(path, [&](std::ostream& out) {

@@ -3,6 +3,7 @@
 #include <mrpt/graphslam/levmarq.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace delio::graph {
@@ -58,7 +59,8 @@ double computeJacobiansAndErrors<WhitenedGraph>(
             delio::graph::residualOf(*observation.edge_mean, *observation.P1, *observation.P2);
         const delio::graph::Matrix6 U = observation.edge->second.cov_inv.asEigen();
         const delio::graph::Vector6 whitened = U * r.error;
-        const auto kernel = delio::graph::kernelAt(whitened.squaredNorm(), graph.kernelWidth);
+        const auto kernel =
+            delio::graph::kernelAt(whitened.squaredNorm(), graph.widthOf(*observation.edge));
         const double weight = std::sqrt(kernel.slope);
         cost += kernel.cost;
         errors.emplace_back((weight * whitened).eval());
@@ -73,20 +75,32 @@ double computeJacobiansAndErrors<WhitenedGraph>(
 
 namespace delio::graph {
 namespace {
-double costOf(const WhitenedGraph& graph) {
-    double cost = 0;
-    for (const auto& [ids, edge] : graph.edges) {
-        const auto r = residualOf(edge.mean, graph.nodes.at(ids.first), graph.nodes.at(ids.second));
-        cost += kernelAt((edge.cov_inv.asEigen() * r.error).squaredNorm(), graph.kernelWidth).cost;
-    }
-    return cost;
+double squaredError(const WhitenedGraph& graph, const WhitenedGraph::MapEntry& edge) {
+    const auto& [ids, measured] = edge;
+    const auto r = residualOf(measured.mean, graph.nodes.at(ids.first), graph.nodes.at(ids.second));
+    return (measured.cov_inv.asEigen() * r.error).squaredNorm();
 }
 }  // namespace
+
+double costOf(const WhitenedGraph& graph) {
+    double cost = 0;
+    for (const auto& edge : graph.edges)
+        cost += kernelAt(squaredError(graph, edge), graph.widthOf(edge)).cost;
+    return cost;
+}
+
+double largestError(const WhitenedGraph& graph) {
+    double largest = 0;
+    for (const auto& edge : graph.edges)
+        if (graph.doubtful.count(&edge) == 0)
+            largest = std::max(largest, squaredError(graph, edge));
+    return std::sqrt(largest);
+}
 
 OptimisationResult minimise(WhitenedGraph& graph, unsigned maxIterations) {
     OptimisationResult result;
     result.initial_cost = result.final_cost = costOf(graph);
-    result.converged = graph.edges.empty();
+    result.converged = graph.edges.empty() || graph.free.empty();
     // MRPT damps by lambda = tau * (largest diagonal entry of the Hessian), a tenth of it after
     // every step that it accepts. The Hessian's eigenvalues fall with the fourth power of a
     // chain's length (1e-14 of the largest at 4500 nodes), so the start is all but undamped.
@@ -116,7 +130,8 @@ OptimisationResult minimise(WhitenedGraph& graph, unsigned maxIterations) {
         parameters["e2"] = 1e-10;  // of the step's length, relative to that of all poses
         try {
             mrpt::graphslam::TResultInfoSpaLevMarq info{};
-            mrpt::graphslam::optimize_graph_spa_levmarq(graph, info, nullptr, parameters, watch);
+            mrpt::graphslam::optimize_graph_spa_levmarq(graph, info, &graph.free, parameters,
+                                                        watch);
             result.converged = !rejected && result.iterations < maxIterations;
         } catch (const std::exception&) {
             if (!rejected) throw;

@@ -1,9 +1,12 @@
 #include "delio/graph/pose_graph.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <numeric>
 #include <string>
 
 #include "delio/error.h"
+#include "doubtful_edges.h"
 #include "levmarq_seam.h"
 
 namespace delio::graph {
@@ -33,6 +36,12 @@ std::vector<OptionField> PoseGraphOptions::fields() {
     return {
         {"skip_edges", &skip_edges,
          "edges beyond the chain: 1 adds (i,i+2), 2 also (i,i+3), 0 none", 0, 100},
+        {"min_overlap", &min_overlap,
+         "share of a scan's lines that the other has lines next to; with less there is no such "
+         "edge",
+         0, 1},
+        {"window", &window, "last nodes that are optimised while driving; 0: only at the end", 0,
+         1000},
         {"max_iterations", &max_iterations, "limit of Levenberg-Marquardt steps", 1, 100000},
         {"kernel_width", &kernel_width,
          "width of the Geman-McClure kernel in standard deviations; 0: no robust kernel", 0, 1e9}};
@@ -43,6 +52,7 @@ std::size_t PoseGraph::addNode(const CPose3D& initial) {
         throw Error("pose graph: the pose of node " + std::to_string(poses_.size()) +
                     " is not finite");
     poses_.push_back(initial);
+    edgesUpTo_.emplace_back();
     return poses_.size() - 1;
 }
 
@@ -74,49 +84,102 @@ void PoseGraph::append(const Edge& edge, const Matrix6& information) {
     // Finite too: a covariance of 1e-320 has no inverse in doubles.
     if (!isPositiveDefinite(information))
         throw Error("pose graph: the covariance of " + name + " cannot be inverted");
+    edgesUpTo_[std::max(edge.from, edge.to)].push_back(edges_.size());
     edges_.push_back(edge);
     information_.push_back(information);
 }
 
-void PoseGraph::requireConnected() const {
-    std::vector<std::vector<std::size_t>> neighbours(poses_.size());
-    for (const auto& edge : edges_) {
-        neighbours[edge.from].push_back(edge.to);
-        neighbours[edge.to].push_back(edge.from);
-    }
-    std::vector<bool> reached(poses_.size(), false);
-    std::vector<std::size_t> open{0};
-    reached[0] = true;
-    while (!open.empty()) {
-        const std::size_t node = open.back();
-        open.pop_back();
-        for (const std::size_t next : neighbours[node]) {
-            if (reached[next]) continue;
-            reached[next] = true;
-            open.push_back(next);
+void PoseGraph::requireConnected(std::size_t firstFree) const {
+    // Connected nodes have the same representative (union-find); the fixed nodes are one, number 0.
+    const auto numberOf = [&](std::size_t node) {
+        return node < firstFree ? 0 : node - firstFree + 1;
+    };
+    std::vector<std::size_t> parent(poses_.size() - firstFree + 1);
+    std::iota(parent.begin(), parent.end(), std::size_t{0});
+    const auto representative = [&](std::size_t i) {
+        while (parent[i] != i) i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    for (std::size_t node = firstFree; node < poses_.size(); ++node)
+        for (const std::size_t i : edgesUpTo_[node])
+            parent[representative(numberOf(edges_[i].from))] =
+                representative(numberOf(edges_[i].to));
+    for (std::size_t node = firstFree; node < poses_.size(); ++node)
+        if (representative(numberOf(node)) != representative(0))
+            throw Error("pose graph: no edges connect node " + std::to_string(node) + " to node 0");
+}
+
+WhitenedGraph PoseGraph::whitened(std::size_t firstFree, const std::vector<bool>& doubtful) const {
+    WhitenedGraph graph;
+    graph.firstNode = firstFree;
+    for (std::size_t node = firstFree; node < poses_.size(); ++node)
+        for (const std::size_t i : edgesUpTo_[node])
+            graph.firstNode = std::min({graph.firstNode, edges_[i].from, edges_[i].to});
+    for (std::size_t node = firstFree; node < poses_.size(); ++node) {
+        graph.free.insert(graph.free.end(), node - graph.firstNode);
+        graph.nodes[node - graph.firstNode] = poses_[node];
+        for (const std::size_t i : edgesUpTo_[node]) {
+            const Edge& edge = edges_[i];
+            mrpt::poses::CPose3DPDFGaussianInf measured(edge.increment.pose);
+            const Matrix6 U = information_[i].llt().matrixU();
+            measured.cov_inv.asEigen() = U;
+            const auto entry = graph.edges.emplace(
+                std::make_pair(edge.from - graph.firstNode, edge.to - graph.firstNode), measured);
+            if (!doubtful.empty() && doubtful[i]) graph.doubtful.insert(&*entry);
+            for (const std::size_t end : {edge.from, edge.to})
+                graph.nodes[end - graph.firstNode] = poses_[end];
         }
     }
-    for (std::size_t node = 0; node < reached.size(); ++node)
-        if (!reached[node])
-            throw Error("pose graph: no edges connect node " + std::to_string(node) + " to node 0");
+    return graph;
+}
+
+void PoseGraph::takeFreePoses(const WhitenedGraph& graph) {
+    for (const auto node : graph.free) poses_[node + graph.firstNode] = graph.nodes.at(node);
 }
 
 OptimisationResult PoseGraph::optimise(const PoseGraphOptions& options) {
     if (poses_.empty()) throw Error("pose graph: there are no nodes");
-    requireConnected();
+    requireConnected(1);
+    const double c = options.kernel_width;
+    auto graph = whitened(1, c > 0 ? doubtfulEdges(*this, c) : std::vector<bool>{});
+    graph.kernelWidth = graph.doubtfulWidth = c;
+    const double initialCost = costOf(graph);
+    const auto start = graph.nodes;
 
-    WhitenedGraph graph;
-    graph.root = 0;
-    graph.kernelWidth = options.kernel_width;
-    for (std::size_t i = 0; i < poses_.size(); ++i) graph.nodes[i] = poses_[i];
-    for (std::size_t i = 0; i < edges_.size(); ++i) {
-        mrpt::poses::CPose3DPDFGaussianInf measured(edges_[i].increment.pose);
-        const Matrix6 U = information_[i].llt().matrixU();
-        measured.cov_inv.asEigen() = U;
-        graph.insertEdge(edges_[i].from, edges_[i].to, measured);
+    OptimisationResult result;
+    const auto run = [&](double width, unsigned limit) {
+        graph.kernelWidth = width;
+        const unsigned before = result.iterations;
+        result = minimise(graph, std::min(options.max_iterations - before, limit));
+        result.iterations += before;
+    };
+    // Graduated non-convexity (Yang et al., 2020): a kernel that is narrow from the start leaves
+    // out each edge that the start is far from, right or wrong. So the first round has none, and
+    // those that follow narrow it from the largest error down to c. Edges that contradict the chain
+    // would bend it before they are left out; they have the narrow kernel in every round.
+    if (c > 0 && largestError(graph) > c) {
+        constexpr unsigned kStepsOfRound = 5;  // only the last round has to converge
+        run(0, options.max_iterations);
+        for (double width = largestError(graph); width > c; width /= 2) run(width, kStepsOfRound);
     }
+    run(c, options.max_iterations);
+    if (result.final_cost > initialCost) {
+        graph.nodes = start;
+        run(c, options.max_iterations);
+    }
+    result.initial_cost = initialCost;
+    takeFreePoses(graph);
+    return result;
+}
+
+OptimisationResult PoseGraph::optimiseLast(std::size_t count, const PoseGraphOptions& options) {
+    if (poses_.empty()) throw Error("pose graph: there are no nodes");
+    const std::size_t firstFree = poses_.size() - std::min(count, poses_.size() - 1);
+    requireConnected(firstFree);
+    auto graph = whitened(firstFree, {});
+    graph.kernelWidth = options.kernel_width;
     const auto result = minimise(graph, options.max_iterations);
-    for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i] = graph.nodes.at(i);
+    takeFreePoses(graph);
     return result;
 }
 }  // namespace delio::graph

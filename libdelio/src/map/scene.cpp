@@ -212,7 +212,8 @@ void recolour(COpenGLScene& scene, Colormap colormap) {
 }
 
 COpenGLScene::Ptr trajectoryScene(const std::vector<CPose3D>& estimate,
-                                  const std::vector<CPose3D>& groundTruth) {
+                                  const std::vector<CPose3D>& groundTruth,
+                                  const std::string& name) {
     if (estimate.empty()) throw Error("the trajectory has no poses, so there is nothing to show");
     auto all = estimate;
     all.insert(all.end(), groundTruth.begin(), groundTruth.end());
@@ -228,13 +229,13 @@ COpenGLScene::Ptr trajectoryScene(const std::vector<CPose3D>& estimate,
         const double bottom = std::min_element(estimate.begin(), estimate.end(), byHeight)->z();
         auto below = groundTruth;
         for (auto& pose : below) pose.z_incr(std::min(0.0, bottom - top - size_m / 100));
-        addWay(*scene, below, size_m, kBlue, 7, "ground_truth");
-        addLegendText(*scene, 2, "ground truth", kBlue);
+        addWay(*scene, below, size_m, kRed, 7, "ground_truth");
+        addLegendText(*scene, 2, "ground truth", kRed);
     }
-    addWay(*scene, estimate, size_m, kRed, 3, "trajectory");
-    addLegendText(*scene, 1, "estimate", kRed);
+    addWay(*scene, estimate, size_m, kBlue, 3, "trajectory");
+    addLegendText(*scene, 1, name, kBlue);
     addMark(*scene, estimate.front(), kGreen, size_m, "start");
-    addMark(*scene, estimate.back(), kRed, size_m, "end");
+    addMark(*scene, estimate.back(), kYellow, size_m, "end");
     return scene;
 }
 

@@ -195,10 +195,16 @@ std::vector<OptionField> PatternRegistrationOptions::fields() {
         {"min_normals", &min_normals, "normals that each pattern needs; fewer: predicted", 3, 1e6},
         {"min_observability", &min_observability,
          "0 to 1; an axis that the pattern fixes less keeps the prediction", 0, 1},
+        {"max_correction_deg", &max_correction_deg,
+         "deg; a rotation farther than this from the prediction is not believed", 0.1, 180},
         {"independent_share", &independent_share,
          "share of the normals that count as independent in the covariance: neighbours share "
          "points",
          1e-6, 1},
+        {"view_distance", &view_distance,
+         "m; this far from each other two scans see so different parts of the surfaces that the "
+         "standard deviation has doubled",
+         0.01, 1e9},
         {"prior_sigma_deg", &prior_sigma_deg, "deg; the motion model's error on such an axis", 1e-6,
          180}};
 }
@@ -219,6 +225,11 @@ RotationEstimate registerPatterns(const Pattern& from, const Pattern& to,
         }
     } else if (enough)
         iterate(from, to, 0, options, estimate);
+    const double correction = Eigen::AngleAxisd(predicted.transpose() * estimate.rotation).angle();
+    if (correction > options.max_correction_deg * kDeg) {
+        estimate.tooFar = true;
+        estimate.valid = false;
+    }
     settle(to, predicted, options, estimate);
     return estimate;
 }

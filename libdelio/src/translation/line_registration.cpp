@@ -103,6 +103,14 @@ void settle(const Sums& sums, const Eigen::Vector3d& predicted,
             axis * axis.transpose();
     }
 }
+
+double overlapOf(const std::vector<Match>& matches, double distance) {
+    const auto near = std::count_if(matches.begin(), matches.end(), [&](const Match& match) {
+        return match.distance >= 0 && static_cast<double>(match.distance) <= distance;
+    });
+    return static_cast<double>(near) / static_cast<double>(matches.size());
+}
+
 /** Mean distance between each line and the one with the nearest midpoint, metres; a line without
  *  one near it counts as `kFar`. All lines count: registration itself looks only at the better
  *  half, which wherever it ends consists of lines that fit. */
@@ -152,10 +160,15 @@ std::vector<OptionField> LineRegistrationOptions::fields() {
         {"independent_share", &independent_share,
          "share of the pairs that count as independent in the covariance: lines share surfaces",
          1e-6, 1},
+        {"overlap_distance", &overlap_distance,
+         "m; lines whose midpoints are nearer to each other lie on a surface that both scans see",
+         0, 100},
         {"prior_sigma", &prior_sigma, "m; the motion model's error along such a direction", 1e-6,
          100},
-        {"search_radius", &search_radius,
-         "m; starts for the first pair of a drive lie in this horizontal disc", 0, 50},
+        {"search_speed", &search_speed,
+         "m/s; where the motion is not known, what can be driven at this speed is searched", 0,
+         1000},
+        {"search_radius", &search_radius, "m; but no farther than this", 0, 50},
         {"search_step", &search_step, "m; distance between those starts", 0.1, 50}};
 }
 
@@ -178,8 +191,9 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
     estimate.translation = predicted;
     const KdTree tree(from.midpoints);
     Sums sums;
+    std::vector<Match> matches;
     while (estimate.iterations < options.max_iterations) {
-        const auto matches = nearestMidpoints(tree, to, estimate.translation, options.max_distance);
+        matches = nearestMidpoints(tree, to, estimate.translation, options.max_distance);
         sums = sumPairs(from, to, estimate.translation, matches, options);
         if (sums.pairs < options.min_matches) break;
         ++estimate.iterations;
@@ -198,14 +212,15 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
         return estimate;
     }
     estimate.valid = true;
+    estimate.overlap = overlapOf(matches, options.overlap_distance);
     settle(sums, predicted, options, estimate);
     return estimate;
 }
 
 TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to,
-                                      const Eigen::Vector3d& centre,
+                                      const Eigen::Vector3d& centre, double radius,
                                       const LineRegistrationOptions& options) {
-    const int steps = static_cast<int>(options.search_radius / options.search_step);
+    const int steps = static_cast<int>(radius / options.search_step);
     if (steps == 0) return registerLines(from, to, centre, options);
     LineRegistrationOptions coarse = options;
     coarse.max_iterations = std::min(options.max_iterations, 10U);
@@ -217,7 +232,7 @@ TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y) {
             const Eigen::Vector3d offset(x * options.search_step, y * options.search_step, 0);
-            if (offset.norm() > options.search_radius) continue;
+            if (offset.norm() > radius) continue;
             const auto estimate = registerLines(from, some, centre + offset, coarse);
             if (!estimate.valid) continue;
             const double distance =

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "delio/error.h"
+#include "delio/graph/information.h"
 #include "gauss_newton.h"
 #include "test_data.h"
 
@@ -91,7 +92,7 @@ TEST(G2o, AcceptsAnyOrderGapsInIdsCommentsAndRoughQuaternions) {
     test::writeText(folder / "a.g2o", "# a comment\n\nEDGE_SE3:QUAT 7 40 +1 2 3 0 0 0 1" +
                                           kInformation +
                                           "VERTEX_SE3:QUAT 40 1 2 3 0 0 0 -1.0009 \r\n"
-                                          "  VERTEX_SE3:QUAT 7 0 0 0 0 0 0 1\nFIX 7");
+                                          "  VERTEX_SE3:QUAT 7 0 0 0 0 0 0 1\nFIX 7\n\n");
     const auto graph = graph::loadG2o(folder / "a.g2o");
     ASSERT_EQ(graph.poses().size(), 2U);
     EXPECT_EQ(graph.poses()[1].x(), 1);
@@ -134,9 +135,58 @@ TEST(G2o, EachFaultIsNamedWithItsLine) {
                "EDGE_SE3:QUAT 0 1 1 2 3 0 0 0 1 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 "
                "-1\n",
            "line 3: pose graph: the information of the edge from node 0 to node 1");
+    // Of "... 100" the file may have kept "... 1".
+    expect(kVertices + kEdge.substr(0, kEdge.size() - 1), "line 3: the file ends within this line");
     expect(kVertices + "VERTEX_SE2 2 0 0 0\n", "line 3: the tag 'VERTEX_SE2' is not known");
     expect(kVertices + "FIX 1\n", "line 3: FIX 1");
     expect(kVertices + "FIX 9\n", "line 3: there is no vertex 9");
+}
+
+// Information of each kind, about a pose in general position, against what the same small change of
+// the numbers costs in the tangent. Roll and yaw have unequal weights (MRPT's order is yaw first).
+TEST(Information, MeansTheSameInOtherTerms) {
+    using graph::InformationOf;
+    const CPose3D Z = CPose3D::FromXYZYawPitchRoll(1, -2, 0.5, 0.9, -0.4, 1.7);
+    graph::Matrix6 information = graph::Matrix6::Zero();
+    information.diagonal() << 10, 20, 30, 1000, 500, 4;
+    information(3, 5) = information(5, 3) = 20;
+    information(0, 4) = information(4, 0) = 15;
+    const auto change = [](int k) { return 1e-5 * std::cos(5.0 * k); };
+    graph::Vector6 d;
+    for (int k = 0; k < 6; ++k) d[k] = change(k);
+    const auto costOf = [&](const Eigen::Isometry3d& changed) {
+        const auto e = test::errorOf(test::isometryOf(Z), Eigen::Isometry3d::Identity(), changed);
+        return test::edgeCost(e, information, 0);
+    };
+
+    const graph::Matrix6 q = graph::convertInformation(information, Z, InformationOf::tangent,
+                                                       InformationOf::quaternion);
+    EXPECT_EQ(q(3, 3), 4000);
+    EXPECT_EQ(q(5, 5), 16);
+    EXPECT_EQ(q(3, 5), 80);
+    EXPECT_EQ(q(0, 4), 30);
+    EXPECT_EQ(q(2, 2), 30);
+    Eigen::Isometry3d half = Eigen::Isometry3d::Identity();
+    half.linear() = Eigen::Quaterniond(std::sqrt(1 - d.tail<3>().squaredNorm()), d[3], d[4], d[5])
+                        .toRotationMatrix();
+    half.translation() = d.head<3>();
+    const double byQuaternion = costOf(test::isometryOf(Z) * half);
+    EXPECT_NEAR(d.dot(q * d), byQuaternion, 1e-6 * byQuaternion);
+
+    const graph::Matrix6 angles = graph::convertInformation(information, Z, InformationOf::tangent,
+                                                            InformationOf::yawPitchRoll);
+    const double byAngles = costOf(test::isometryOf(
+        CPose3D::FromXYZYawPitchRoll(Z.x() + d[0], Z.y() + d[1], Z.z() + d[2], Z.yaw() + d[3],
+                                     Z.pitch() + d[4], Z.roll() + d[5])));
+    EXPECT_NEAR(d.dot(angles * d), byAngles, 1e-3 * byAngles);
+
+    EXPECT_EQ(graph::convertInformation(q, Z, InformationOf::quaternion, InformationOf::tangent),
+              information);
+    EXPECT_LT(
+        (graph::convertInformation(angles, Z, InformationOf::yawPitchRoll, InformationOf::tangent) -
+         information)
+            .norm(),
+        1e-9);
 }
 
 TEST(G2o, AFileThatCannotBeWrittenIsAnError) {

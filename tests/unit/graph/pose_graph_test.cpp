@@ -124,6 +124,126 @@ TEST(PoseGraph, OneWrongEdgeMovesNothingUnderTheKernel) {
     EXPECT_GT(largestDistance(right.poses(), wrong.poses()), 1.0);
 }
 
+// Wherever it lies: short or long, backwards, beside a right edge, or as precise as can be.
+TEST(PoseGraph, OneGrossEdgeMovesNoPoseByFiveCentimetres) {
+    PoseGraph right = drive(200);
+    right.optimise({});
+    const std::vector<std::pair<std::size_t, std::size_t>> places = {
+        {50, 51}, {51, 50}, {50, 52}, {50, 53}, {50, 60}, {0, 199}, {199, 0}, {120, 40}};
+    for (const auto& [from, to] : places)
+        for (const double variance : {1e-4, 1e-8})
+            for (const CPose3D& gross :
+                 {pose(-7, 3, 1, 1, 0, 0), pose(100, 0, 0, 0, 0, 3), pose(1, 0.5, 0, 0.2, 0, 0)}) {
+                PoseGraph wrong = drive(200);
+                wrong.addEdge(edgeOf(from, to, gross, std::vector<double>(6, variance)));
+                wrong.optimise({});
+                EXPECT_LT(largestDistance(right.poses(), wrong.poses()), 0.05)
+                    << from << " " << to << " " << variance << " " << gross;
+            }
+}
+
+// The poses that the optimisation starts at were made of it.
+TEST(PoseGraph, AWrongStepOfTheChainIsOutvotedByTheEdgesOverIt) {
+    PoseGraph right = drive(200);
+    right.optimise({});
+    PoseGraph graph;
+    const PoseGraph original = drive(200);
+    graph.addNode(original.poses()[0]);
+    for (const auto& edge : original.edges()) {
+        if (edge.to != edge.from + 1) continue;
+        graph::Edge step = edge;
+        if (edge.from == 100) step.increment.pose = pose(4, 2, 0, 0.5, 0, 0);
+        graph.addNode(graph.poses().back() + step.increment.pose);
+        graph.addEdge(step);
+    }
+    for (const auto& edge : original.edges())
+        if (edge.to == edge.from + 2) graph.addEdge(edge);
+    EXPECT_GT(largestDistance(right.poses(), graph.poses()), 10);
+    graph.optimise({});
+    EXPECT_LT(largestDistance(right.poses(), graph.poses()), 0.05);
+}
+
+/** A closed round of 1000 m whose odometry ends some 10 m beside its start, as its covariances
+ *  say; the first 20 nodes are seen again at the end. */
+PoseGraph round(std::vector<CPose3D>& truth) {
+    const std::size_t n = 1020;
+    PoseGraph graph;
+    truth.assign(1, CPose3D());
+    graph.addNode(truth[0]);
+    const std::vector<double> variances{1e-4, 1e-4, 1e-4, 1e-6, 1e-6, 1e-6};
+    for (std::size_t i = 1; i < n; ++i) {
+        const CPose3D step = pose(1, 0, 0, 2 * M_PI / 1000, 0, 0);
+        truth.push_back(truth.back() + step);
+        const CPose3D measured = step + pose(0.001, 0, 0, 4e-5, 2e-5, 0);
+        graph.addNode(graph.poses().back() + measured);
+        graph.addEdge(edgeOf(i - 1, i, measured, variances));
+    }
+    return graph;
+}
+
+// With a kernel of ten standard deviations from the start, closures of 1 cm would be left out.
+TEST(PoseGraph, LoopsCloseAfterMetresOfDrift) {
+    std::vector<CPose3D> truth;
+    PoseGraph graph = round(truth);
+    const std::vector<double> sure(6, 1e-6);
+    EXPECT_GT(largestDistance(truth, graph.poses()), 6);
+    for (std::size_t i = 0; i < 20; i += 10)
+        graph.addEdge(edgeOf(i, 1000 + i, truth[1000 + i] - truth[i], sure));
+    PoseGraph wrong = graph;
+    graph.optimise({});
+    EXPECT_LT(graph.poses()[0].distanceTo(graph.poses()[1000]), 0.02);
+    EXPECT_LT(largestDistance(truth, graph.poses()), 2);
+
+    wrong.addEdge(edgeOf(100, 700, pose(1, 0, 0, 0, 0, 0), sure));
+    wrong.optimise({});
+    EXPECT_LT(largestDistance(graph.poses(), wrong.poses()), 0.05);
+}
+
+TEST(PoseGraph, OnlyTheLastNodesMove) {
+    PoseGraph graph = drive(60);
+    const auto before = graph.poses();
+    const auto result = graph.optimiseLast(10, {});
+    EXPECT_LT(result.final_cost, result.initial_cost);
+    for (std::size_t i = 0; i < 50; ++i) EXPECT_EQ(graph.poses()[i], before[i]);
+    for (std::size_t i = 50; i < 60; ++i) EXPECT_GT(graph.poses()[i].distanceTo(before[i]), 1e-5);
+
+    // A window over everything is the optimum.
+    PoseGraph all = drive(60), optimum = drive(60);
+    all.optimiseLast(1000, {});
+    optimum.optimise({});
+    EXPECT_LT(largestDistance(all.poses(), optimum.poses()), 1e-6);
+    EXPECT_EQ(all.poses()[0], before[0]);
+
+    PoseGraph elsewhere;  // node 0 is not at the origin
+    elsewhere.addNode(pose(5, 4, 3, 0.3, 0.2, 0.1));
+    for (std::size_t i = 1; i < 6; ++i) {
+        elsewhere.addNode(pose(5 + static_cast<double>(i), 4, 3, 0.3, 0, 0));
+        elsewhere.addEdge(edgeOf(i - 1, i, pose(1, 0, 0, 0, 0, 0), std::vector<double>(6, 1e-4)));
+    }
+    const auto start = elsewhere.poses();
+    elsewhere.optimiseLast(2, {});
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(elsewhere.poses()[i], start[i]);
+    EXPECT_GT(elsewhere.poses()[5].distanceTo(start[5]), 0.1);
+}
+
+// What a drive does: a node, its edges, the window, and so on.
+TEST(PoseGraph, AWindowWhileDrivingComesNearTheOptimum) {
+    PoseGraph whole = drive(100), graph;
+    whole.optimise({});
+    const PoseGraph original = drive(100);
+    graph.addNode(original.poses()[0]);
+    for (std::size_t i = 1; i < 100; ++i) {
+        for (const auto& edge : original.edges()) {
+            if (edge.to != i) continue;
+            if (edge.from == i - 1) graph.addNode(graph.poses().back() + edge.increment.pose);
+            graph.addEdge(edge);
+        }
+        graph.optimiseLast(10, {});
+    }
+    EXPECT_LT(largestDistance(whole.poses(), graph.poses()), 0.02);
+    EXPECT_GT(largestDistance(whole.poses(), original.poses()), 0.05);
+}
+
 TEST(PoseGraph, JacobiansAreThoseOfTheResidual) {
     Noise noise;
     for (const double angle : {1e-9, 1e-5, 0.3, 1.5}) {
@@ -288,8 +408,12 @@ TEST(PoseGraph, EachFaultIsNamed) {
     graph.addEdge(edgeOf(0, 1, CPose3D(), fine));
     graph.addEdge(edgeOf(2, 1, CPose3D(), fine));
     graph.addEdge(edgeOf(3, 4, CPose3D(), fine));
+    const auto before = graph.poses();
     EXPECT_NE(faultOf([&] { graph.optimise({}); }).find("connect node 3 to node 0"),
               std::string::npos);
+    EXPECT_NE(faultOf([&] { graph.optimiseLast(2, {}); }).find("connect node 3"),
+              std::string::npos);
+    EXPECT_EQ(graph.poses(), before);
 }
 
 TEST(PoseGraph, OptionsAreReadStrictly) {
@@ -300,7 +424,9 @@ TEST(PoseGraph, OptionsAreReadStrictly) {
         return options;
     };
     EXPECT_EQ(load("kernel_width = 3.5").kernel_width, 3.5);
-    EXPECT_EQ(load("skip_edges = 2").skip_edges, 2U);
+    EXPECT_EQ(load("skip_edges = 3").skip_edges, 3U);
+    EXPECT_EQ(load("window = 0").window, 0U);
+    EXPECT_THROW(load("min_overlap = 1.1"), Error);
     EXPECT_THROW(load("kernel_width = -1"), Error);
     EXPECT_THROW(load("max_iterations = 0"), Error);
     EXPECT_THROW(load("kernel = 1"), Error);

@@ -220,6 +220,27 @@ TEST(PatternRegistration, WithTooFewNormalsThePredictionStays) {
 }
 
 // Nothing of one pattern lies near anything of the other.
+// Ground and a wall that seems to have turned by 40 deg: no vehicle does that within a scan.
+TEST(PatternRegistration, ARotationFarFromThePredictionIsNotBelieved) {
+    test::Noise noise;
+    PatternRegistrationOptions options;
+    options.kernel_deg = 40;
+    const auto normals = blobs(threeAxes(), 500, 3, noise);
+    const Eigen::Matrix3d truth = rotationAbout(threeAxes()[0], 40);
+    const auto from = patternOf(normals), to = patternOf(truth.transpose() * normals);
+    const Eigen::Matrix3d start = Eigen::Matrix3d::Identity();
+    const auto refused = registerPatterns(from, to, start, options);
+    EXPECT_FALSE(refused.valid);
+    EXPECT_TRUE(refused.tooFar);
+    EXPECT_EQ(refused.rotation, start);
+    EXPECT_TRUE(isCovariance(refused.covariance));
+    options.max_correction_deg = 180;
+    const auto believed = registerPatterns(from, to, start, options);
+    EXPECT_TRUE(believed.valid);
+    EXPECT_FALSE(believed.tooFar);
+    EXPECT_LT(degreesBetween(believed.rotation, truth), 0.1);
+}
+
 TEST(PatternRegistration, PatternsThatDoNotMeetKeepThePrediction) {
     test::Noise noise;
     const auto up = patternOf(blobs({{0, 0, 1}}, 2000, 3, noise));

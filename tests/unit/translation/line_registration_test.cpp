@@ -167,11 +167,10 @@ TEST(LineRegistration, CentroidsGetThereWithManySmallSteps) {
 
 TEST(LineRegistration, TheSearchNeedsNoPrediction) {
     LineRegistrationOptions options;
-    options.search_radius = 2;
     const Eigen::Vector3d truth(1.3, 0.75, 0);
     const auto found =
         searchTranslation(linesAt(test::room(), {0, 0, 0}), linesAt(test::room(), truth),
-                          Eigen::Vector3d::Zero(), options);
+                          Eigen::Vector3d::Zero(), 2, options);
     EXPECT_TRUE(found.valid);
     EXPECT_LT((found.translation - truth).norm(), 0.01) << found.translation.transpose();
 }
@@ -182,7 +181,7 @@ TEST(LineRegistration, TheSearchForgivesAPredictionThatIsTwoMetresOff) {
     const auto from = linesAt(test::yard(), {0, 0, 0}), to = linesAt(test::yard(), truth);
     for (double azimuth = 0; azimuth < 6; azimuth += 1) {
         const Eigen::Vector3d off(2 * std::cos(azimuth), 2 * std::sin(azimuth), 0.1);
-        const auto found = searchTranslation(from, to, truth + off, options);
+        const auto found = searchTranslation(from, to, truth + off, 3, options);
         EXPECT_TRUE(found.valid);
         EXPECT_LT((found.translation - truth).norm(), 0.03) << off.transpose();
     }
@@ -248,7 +247,7 @@ TEST(LineRegistration, WithTooFewLinesThePredictionStays) {
             EXPECT_EQ(found.translation, predicted);
             EXPECT_EQ(found.unobservedAxes.cols(), 3);
             EXPECT_EQ(found.covariance, Eigen::Matrix3d(0.25 * Eigen::Matrix3d::Identity()));
-            const auto searched = searchTranslation(from, to, Eigen::Vector3d::Zero(), options);
+            const auto searched = searchTranslation(from, to, Eigen::Vector3d::Zero(), 3, options);
             EXPECT_FALSE(searched.valid);
             EXPECT_EQ(searched.translation, Eigen::Vector3d(0, 0, 0));
         }

@@ -11,7 +11,8 @@ namespace delio::graph {
  *  Throws Error with file and line for anything else: a missing file, an unknown tag, a line that
  *  is short, long or holds a number that is not finite, a quaternion off unit length by more than
  *  1e-3, an information matrix that is not positive definite, a vertex given twice, an edge to a
- *  vertex that is not there, a FIX of any other vertex than the first, no vertex at all. */
+ *  vertex that is not there, a last line without its end (a file that was cut off), a FIX of any
+ * other vertex than the first, no vertex at all. */
 PoseGraph loadG2o(const std::string& path);
 
 /** Writes the same, node 0 fixed, with the digits that give the same doubles back. Vertices are

@@ -9,6 +9,8 @@
 #include "delio/stage_options.h"
 
 namespace delio::graph {
+struct WhitenedGraph;
+
 /** A measured relative pose between two nodes: T_to = T_from + increment.pose. */
 struct Edge {
     std::size_t from = 0;
@@ -17,9 +19,13 @@ struct Edge {
 };
 
 struct PoseGraphOptions : StageOptions {
-    /** More edges than the chain (i,i+1): 1 adds (i,i+2), 2 adds (i,i+3) too. For whoever makes
-     *  the edges; optimise() takes those that were added. */
-    unsigned skip_edges = 1;
+    /** More edges than the chain (i,i+1): 1 adds (i,i+2), 2 adds (i,i+3) too, as long as the two
+     *  scans overlap by `min_overlap` (TranslationEstimate::overlap). For whoever makes the edges;
+     *  optimise() takes those that were added. */
+    unsigned skip_edges = 4;
+    double min_overlap = 0.5;
+    /** Nodes that are moved while driving, for whoever adds them; 0: none. */
+    unsigned window = 10;
     unsigned max_iterations = 100;
     /** Width c of the Geman-McClure kernel: an edge costs s / (1 + s/c^2) with s = e' Omega e, so c
      *  is a count of standard deviations, and no edge ever costs more than c^2. 0: no kernel. */
@@ -57,6 +63,12 @@ class PoseGraph {
     /** Error, naming the node, where a node is not connected to node 0. */
     OptimisationResult optimise(const PoseGraphOptions& options);
 
+    /** Moves the last `count` nodes only, by the edges that they have among themselves and with
+     *  earlier nodes, which stay, as node 0 always does. Costs of the result are those of these
+     *  edges. From where the nodes are: no detours as in optimise(), which finds its way after
+     *  large drift. Error as above. */
+    OptimisationResult optimiseLast(std::size_t count, const PoseGraphOptions& options);
+
     const std::vector<mrpt::poses::CPose3D>& poses() const { return poses_; }
     const std::vector<Edge>& edges() const { return edges_; }
     /** Omega of edges()[i], in the order of delio::Increment. */
@@ -64,10 +76,14 @@ class PoseGraph {
 
  private:
     void append(const Edge& edge, const Matrix6& information);
-    void requireConnected() const;
+    void requireConnected(std::size_t firstFree) const;
+    /** Edges between free nodes, and between those and earlier ones. */
+    WhitenedGraph whitened(std::size_t firstFree, const std::vector<bool>& doubtful) const;
+    void takeFreePoses(const WhitenedGraph& graph);
 
     std::vector<mrpt::poses::CPose3D> poses_;
     std::vector<Edge> edges_;
     std::vector<Matrix6> information_;
+    std::vector<std::vector<std::size_t>> edgesUpTo_;  //!< of each node: edges to earlier ones
 };
 }  // namespace delio::graph

@@ -40,13 +40,14 @@ mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, c
  *  the colours of another colour map. Throws Error if the scene has no such cloud. */
 void recolour(mrpt::opengl::COpenGLScene& scene, Colormap colormap);
 
-/** Trajectories alone, on white: the estimate in red and, if it is given, the ground truth in
- *  blue, with a grid. Both in the same frame. Made to be seen from above: the ground truth is drawn
- *  wider and is moved down until all of it is below the estimate, so that neither hides the other.
- *  Throws Error if there are no poses. */
+/** Trajectories alone, on white: the estimate in blue, under the name given, and, if it is given,
+ *  the ground truth in red, with a grid. Both in the same frame. Made to be seen from above: the
+ * ground truth is drawn wider and is moved down until all of it is below the estimate, so that
+ * neither hides the other. Throws Error if there are no poses. */
 mrpt::opengl::COpenGLScene::Ptr trajectoryScene(
     const std::vector<mrpt::poses::CPose3D>& estimate,
-    const std::vector<mrpt::poses::CPose3D>& groundTruth = {});
+    const std::vector<mrpt::poses::CPose3D>& groundTruth = {},
+    const std::string& name = "estimate");
 
 /** Writes a .3Dscene for SceneViewer3D. Throws Error if that fails. */
 void saveScene(const mrpt::opengl::COpenGLScene& scene, const std::string& path);

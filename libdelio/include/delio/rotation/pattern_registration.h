@@ -18,7 +18,9 @@ struct PatternRegistrationOptions : public StageOptions {
     double converged_deg = 0.001;
     unsigned min_normals = 50;
     double min_observability = 0.01;
+    double max_correction_deg = 30;
     double independent_share = 0.05;
+    double view_distance = 2;
     double prior_sigma_deg = 1.0;
 
  protected:
@@ -35,7 +37,9 @@ struct RotationEstimate {
     std::size_t matches = 0;
     double residual_rad = 0;  //!< weighted root mean square angle of the pairs
     unsigned iterations = 0;
-    bool valid = false;  //!< false: too few normals; rotation is the prediction
+    /** False: too few normals, or a rotation too far from the prediction; it is the prediction. */
+    bool valid = false;
+    bool tooFar = false;
 };
 
 /** The rotation that turns the pattern of scan `to` onto that of scan `from`, by nearest neighbours

@@ -22,8 +22,10 @@ struct LineRegistrationOptions : public StageOptions {
     unsigned min_matches = 100;
     double min_observability = 0.06;
     double independent_share = 0.25;
+    double overlap_distance = 0.5;
     double prior_sigma = 0.5;
-    double search_radius = 3;
+    double search_speed = 30;
+    double search_radius = 8;
     double search_step = 1;
 
  protected:
@@ -42,6 +44,9 @@ struct TranslationEstimate {
     Eigen::Vector3d observability = Eigen::Vector3d::Zero();
     Eigen::Matrix3Xd unobservedAxes;  //!< unit vectors along which the prediction was kept
     std::size_t matches = 0;
+    /** Share of the lines of `to` that have one of `from` next to them (midpoints no farther apart
+     *  than `overlap_distance`): how much both scans see of the same surfaces, 0 to 1. */
+    double overlap = 0;
     double residual_m = 0;  //!< root mean square distance of the matched lines
     unsigned iterations = 0;
     bool valid = false;  //!< false: too few lines or matches; translation is the prediction
@@ -55,12 +60,12 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
                                   const LineRegistrationOptions& options);
 
 /** The same where little is known of the motion (a drive's first pair, or after scans were lost):
- *  registered from starts all over a horizontal disc of `search_radius` about `centre`, and the
- * result taken whose lines lie nearest to each other. From a start at rest alone, the rings that
+ *  registered from starts all over a horizontal disc of `radius` metres about `centre`, and the
+ *  result taken whose lines lie nearest to each other. From a start at rest alone, the rings that
  * the sensor draws on the ground would hold the estimate there: they look the same wherever the
  * sensor stands. */
 TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to,
-                                      const Eigen::Vector3d& centre,
+                                      const Eigen::Vector3d& centre, double radius,
                                       const LineRegistrationOptions& options);
 
 /** The closest points X_s, X_t of two infinite lines P + t u, the paper's formulas. Nothing is

@@ -1,0 +1,102 @@
+#include "doubtful_edges.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace delio::graph {
+namespace {
+/** Edges over at most so many steps have a say about each of them. */
+constexpr std::size_t kShort = 10;
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/** Moves a right tangent [t w] from the frame of `pose` to the world's. */
+Matrix6 adjointOf(const mrpt::poses::CPose3D& pose) {
+    const Eigen::Matrix3d R = pose.getRotationMatrix().asEigen();
+    Eigen::Matrix3d lever;
+    lever << 0, -pose.z(), pose.y(), pose.z(), 0, -pose.x(), -pose.y(), pose.x(), 0;
+    Matrix6 adjoint;
+    adjoint << R, lever * R, Eigen::Matrix3d::Zero(), R;
+    return adjoint;
+}
+
+Vector6 errorOf(const PoseGraph& graph, const Edge& edge) {
+    return residualOf(edge.increment.pose, graph.poses()[edge.from], graph.poses()[edge.to]).error;
+}
+
+/** The steps between successive nodes: step i leads from node i to node i+1. */
+class Chain {
+ public:
+    Chain(const PoseGraph& graph, double width)
+        : edges_(graph.poses().size(), kNone),
+          covariances_(graph.poses().size(), Matrix6::Zero()),
+          unknown_(graph.poses().size(), 0) {
+        for (std::size_t i = 0; i < graph.edges().size(); ++i) {
+            const Edge& edge = graph.edges()[i];
+            if (std::max(edge.from, edge.to) - std::min(edge.from, edge.to) != 1) continue;
+            std::size_t& best = edges_[std::min(edge.from, edge.to)];
+            if (best == kNone || squaredError(graph, i) < squaredError(graph, best)) best = i;
+        }
+        for (std::size_t step = 0; step + 1 < graph.poses().size(); ++step) {
+            const std::size_t i = edges_[step];
+            const bool known = i != kNone && squaredError(graph, i) <= width * width;
+            covariances_[step + 1] = covariances_[step];
+            unknown_[step + 1] = unknown_[step] + (known ? 0 : 1);
+            if (!known) continue;
+            const Edge& edge = graph.edges()[i];
+            const Matrix6 A = adjointOf(graph.poses()[edge.to]);
+            covariances_[step + 1] += A * edge.increment.covariance.asEigen() * A.transpose();
+        }
+    }
+
+    std::size_t edgeOf(std::size_t step) const { return edges_[step]; }
+
+    /** The chain has all steps between the two nodes. */
+    bool knows(std::size_t first, std::size_t last) const {
+        return unknown_[first] == unknown_[last];
+    }
+
+    /** Covariance of the chain's motion between the two nodes, about the world's origin. */
+    Matrix6 covarianceOf(std::size_t first, std::size_t last) const {
+        return covariances_[last] - covariances_[first];
+    }
+
+ private:
+    static double squaredError(const PoseGraph& graph, std::size_t i) {
+        const Vector6 e = errorOf(graph, graph.edges()[i]);
+        return e.dot(graph.information(i) * e);
+    }
+
+    std::vector<std::size_t> edges_;    //!< of each step, the best of several
+    std::vector<Matrix6> covariances_;  //!< summed up to each node
+    std::vector<std::size_t> unknown_;  //!< steps that are not known, counted up to each node
+};
+}  // namespace
+
+std::vector<bool> doubtfulEdges(const PoseGraph& graph, double width) {
+    const auto& edges = graph.edges();
+    const Chain chain(graph, width);
+    std::vector<bool> doubtful(edges.size(), false);
+    std::vector<unsigned> against(graph.poses().size(), 0), agreeing(graph.poses().size(), 0);
+    const auto spanOf = [](const Edge& edge) { return std::minmax(edge.from, edge.to); };
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const auto [first, last] = spanOf(edges[i]);
+        if (chain.edgeOf(first) == i || !chain.knows(first, last)) continue;
+        const Matrix6 A = adjointOf(-graph.poses()[edges[i].to]);
+        const Matrix6 covariance = edges[i].increment.covariance.asEigen() +
+                                   A * chain.covarianceOf(first, last) * A.transpose();
+        const Vector6 e = errorOf(graph, edges[i]);
+        doubtful[i] = e.dot(covariance.ldlt().solve(e)) > width * width;
+        if (last - first > kShort) continue;
+        for (std::size_t step = first; step < last; ++step)
+            ++(doubtful[i] ? against : agreeing)[step];
+    }
+    std::vector<std::size_t> wrongSteps(graph.poses().size() + 1, 0);  // counted up to each node
+    for (std::size_t step = 0; step < graph.poses().size(); ++step)
+        wrongSteps[step + 1] = wrongSteps[step] + (against[step] >= 2 && agreeing[step] == 0);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const auto [first, last] = spanOf(edges[i]);
+        if (wrongSteps[first] != wrongSteps[last]) doubtful[i] = chain.edgeOf(first) == i;
+    }
+    return doubtful;
+}
+}  // namespace delio::graph
