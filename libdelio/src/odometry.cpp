@@ -126,8 +126,7 @@ OdometryResult Odometry::processWithLastScan(const Scan& scan) {
         auto made = scan::preprocess(scan, options_.preprocess);
         result.deskewed = !made.times_s.empty();
         if (result.deskewed)
-            made.points =
-                scan::deskew(made.points, made.times_s, scan::Motion::of(step, duration_s));
+            made.points = scan::deskew(made.points, made.times_s, Motion::of(step, duration_s));
         return made;
     });
     result.features = extract(cloud, result.counts, result.times_ms);

@@ -72,8 +72,7 @@ PlaneEstimate PlaneTracker::search(const rotation::SurfaceNormals& surfaces,
                           options_.registration);
 }
 
-PlaneTracker::View PlaneTracker::viewOf(const scan::PointCloud& cloud,
-                                        const scan::Motion& motion) const {
+PlaneTracker::View PlaneTracker::viewOf(const scan::PointCloud& cloud, const Motion& motion) const {
     View view;
     view.points =
         cloud.times_s.empty() ? cloud.points : scan::deskew(cloud.points, cloud.times_s, motion);
@@ -117,7 +116,7 @@ PlaneEstimate PlaneTracker::place(const View& view, const CPose3D& guess, double
  *  last stamp. Extrapolated to this one it did worse: vehicles shake.) */
 void PlaneTracker::refine(const scan::PointCloud& cloud, double duration_s, View& view,
                           PlaneEstimate& estimate) {
-    const auto motion = scan::Motion::of(poseOf(estimate) - pose_, duration_s);
+    const auto motion = Motion::of(poseOf(estimate) - pose_, duration_s);
     if (skewed_) {
         map_.clear();
         View first = viewOf(*skewed_, motion);
@@ -179,7 +178,7 @@ void PlaneTracker::follow(const scan::PointCloud& cloud, double stamp_s, Tracked
     const double elapsed = stamp_s - stamp_s_;
     const double duration_s = elapsed > 0 ? elapsed : 0.1;
     const CPose3D step = prediction_.predict(duration_s), guess = pose_ + step;
-    View view = viewOf(cloud, scan::Motion::of(step, duration_s));
+    View view = viewOf(cloud, Motion::of(step, duration_s));
     if (options_.moving.enabled && !lost_)
         thinWithoutWhatMoves(view, guess, stamp_s);
     else

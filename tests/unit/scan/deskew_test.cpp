@@ -10,7 +10,6 @@
 namespace {
 using namespace delio;
 using mrpt::poses::CPose3D;
-using scan::Motion;
 
 /** The pose that the motion leads to after `time_s`, in many small steps. */
 CPose3D poseAfter(const Motion& motion, double time_s) {

@@ -76,7 +76,7 @@ class PlaneTracker {
         Eigen::Matrix3Xf fine;             //!< for the map
         Eigen::Matrix3Xd thinned;          //!< for registration
     };
-    View viewOf(const scan::PointCloud& cloud, const scan::Motion& motion) const;
+    View viewOf(const scan::PointCloud& cloud, const Motion& motion) const;
     void thinWithoutWhatMoves(View& view, const mrpt::poses::CPose3D& pose, double stamp_s);
     PlaneEstimate place(const View& view, const mrpt::poses::CPose3D& guess,
                         double duration_s) const;
