@@ -19,7 +19,7 @@ struct PlaneRegistrationOptions : public StageOptions {
     unsigned min_matches = 100;
     double min_rotation_share = 1e-3;
     double min_translation_share = 2e-3;
-    double independent_share = 0.2;
+    double independent_share = 0.16;
     double prior_sigma = 0.5;
     double prior_sigma_deg = 1.0;
     double search_speed = 40;
