@@ -15,6 +15,8 @@ fs::path dataFolder() {
 
 fs::path profileFolder() { return DELIO_PROFILES; }
 
+fs::path frozenFolder() { return DELIO_FROZEN; }
+
 bool haveData(const std::string& part) { return fs::exists(dataFolder() / part); }
 
 bool dataIsRequired() {

@@ -12,6 +12,9 @@ std::filesystem::path dataFolder();
 /** share/config of the source tree. */
 std::filesystem::path profileFolder();
 
+/** Trajectories that may not change unnoticed: tests/real/frozen of the source tree. */
+std::filesystem::path frozenFolder();
+
 /** True if the data is there. Otherwise the caller skips, or fails under DELIO_REQUIRE_DATA=1. */
 bool haveData(const std::string& part);
 bool dataIsRequired();

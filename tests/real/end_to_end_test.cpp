@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "delio/evaluation/relative_error.h"
+#include "delio/evaluation/rotation_angle.h"
 #include "delio/io/trajectory.h"
 #include "test_data.h"
 
@@ -52,8 +53,8 @@ void expectPictureOfMap(const std::string& file) {
 /** No step far from that of another odometry on the same scans. */
 void expectStepsOfKissIcp(const std::string& extract, const std::string& out) {
     DELIO_NEED_DATA("peers/kiss_icp");
-    const auto peer = io::readTrajectory(
-        (test::dataFolder() / "peers/kiss_icp" / (extract + ".txt")).string());
+    const auto peer =
+        io::readTrajectory((test::dataFolder() / "peers/kiss_icp" / (extract + ".txt")).string());
     const auto own = io::readTrajectory(out + "/trajectory_kitti.txt");
     const auto apart = evaluation::relativeError(peer.poses, own.poses);
     std::printf("%s, steps from KISS-ICP's: at most %.3f m, %.3f deg\n", extract.c_str(),
@@ -118,6 +119,28 @@ TEST(EndToEnd, FirstScansOfDrive0005) {
     const std::string out = folder / "drive0005_first60paper";
     EXPECT_EQ(io::readTrajectory(out + "/trajectory_tum.txt").poses.size(), 60U);
     expectPictureOfMap(out + "/map.png");
+}
+
+/** What a profile gives stays as it is: a change that moves it has to be meant, and to bring new
+ *  files. The tolerance is for other compilers. */
+TEST(EndToEnd, TrajectoriesAreFrozen) {
+    DELIO_NEED_DATA("kitti/00_first16");
+    const test::TemporaryFolder folder;
+    for (const std::string profile : {"paper", "accurate"}) {
+        runOn("00_first16", folder, profile);
+        for (const std::string part : {"", "_odometry"}) {
+            const auto frozen = io::readTrajectory(
+                (test::frozenFolder() / ("00_first16_" + profile + part + ".txt")).string());
+            const auto own = io::readTrajectory(folder / ("00_first16" + profile) + "/trajectory" +
+                                                part + "_kitti.txt");
+            ASSERT_EQ(own.poses.size(), frozen.poses.size());
+            for (std::size_t i = 0; i < own.poses.size(); ++i) {
+                EXPECT_LT(own.poses[i].distanceTo(frozen.poses[i]), 1e-3) << profile << part << i;
+                EXPECT_LT(evaluation::rotationAngle_rad(own.poses[i] - frozen.poses[i]), 1e-4)
+                    << profile << part << i;
+            }
+        }
+    }
 }
 
 TEST(EndToEnd, PaperLiteralRunsToo) {
