@@ -131,8 +131,8 @@ TEST(EndToEnd, TrajectoriesAreFrozen) {
         for (const std::string part : {"", "_odometry"}) {
             const auto frozen = io::readTrajectory(
                 (test::frozenFolder() / ("00_first16_" + profile + part + ".txt")).string());
-            const auto own = io::readTrajectory(folder / ("00_first16" + profile) + "/trajectory" +
-                                                part + "_kitti.txt");
+            const std::string out = folder / ("00_first16" + profile);
+            const auto own = io::readTrajectory(out + "/trajectory" + part + "_kitti.txt");
             ASSERT_EQ(own.poses.size(), frozen.poses.size());
             for (std::size_t i = 0; i < own.poses.size(); ++i) {
                 EXPECT_LT(own.poses[i].distanceTo(frozen.poses[i]), 1e-3) << profile << part << i;
