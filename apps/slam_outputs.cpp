@@ -277,7 +277,8 @@ void SlamRun::writeScans() const {
     io::replaceTextFile(path("scans.csv"), [&](std::ostream& out) {
         out << "scan,stamp_s,points,not_finite,read_ms";
         for (const char* stage : kStageNames) out << "," << stage << "_ms";
-        out << ",graph_ms,moving,normals,pattern,modes,lines,matches,residual_m,rotation_observability_1,"
+        out << ",graph_ms,moving,normals,pattern,modes,lines,matches,residual_m,rotation_"
+               "observability_1,"
                "rotation_observability_2,rotation_observability_3,translation_observability_1,"
                "translation_observability_2,translation_observability_3,rotation_unobserved,"
                "translation_unobserved,predicted,reason\n";
@@ -289,9 +290,9 @@ void SlamRun::writeScans() const {
             out << report.index << format(",%.7f,", report.stamp_s) << counts.points << ","
                 << counts.notFinite << format(",%.3f", read_ms_[i]);
             for (const double ms : report.odometry.times_ms) out << format(",%.3f", ms);
-            out << format(",%.3f,", report.graph_ms) << counts.moving << "," << counts.normals << "," << counts.pattern
-                << "," << counts.modes << "," << counts.lines << "," << translation.matches
-                << format(",%.9g", translation.residual_m);
+            out << format(",%.3f,", report.graph_ms) << counts.moving << "," << counts.normals
+                << "," << counts.pattern << "," << counts.modes << "," << counts.lines << ","
+                << translation.matches << format(",%.9g", translation.residual_m);
             for (int k = 0; k < 3; ++k) out << format(",%.9g", rotation.observability[k]);
             for (int k = 0; k < 3; ++k) out << format(",%.9g", translation.observability[k]);
             out << "," << axesText(rotation.unobservedAxes) << ","

@@ -1,5 +1,6 @@
-// What moves, against the labels of synth2rawlog --labels: benchmark_movers [--set section.key=value]
-// DRIVE.rawlog... Points within 60 m, after the first second (nothing can be told from less).
+// What moves, against the labels of synth2rawlog --labels: benchmark_movers [--set
+// section.key=value] DRIVE.rawlog... Points within 60 m, after the first second (nothing can be
+// told from less).
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
 #include <array>
@@ -28,7 +29,8 @@ struct Counts {
         wrong += !moves && told;
     }
     static double share(std::size_t part, std::size_t rest) {
-        return 100.0 * static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(part + rest, 1));
+        return 100.0 * static_cast<double>(part) /
+               static_cast<double>(std::max<std::size_t>(part + rest, 1));
     }
     double precision() const { return share(found, wrong); }
     double recall() const { return share(found, missed); }
@@ -78,8 +80,8 @@ int main(int argc, char** argv) try {
     TCLAP::UnlabeledMultiArg<std::string> rawlogs("rawlogs", "Drives with labels", true,
                                                   "DRIVE.rawlog", cmd);
     cmd.parse(argc, argv);
-    std::printf("precision / recall in %% of the points\n%-28s  %-13s  %-13s  %-13s  %-13s  %s\n", "",
-                "0-20 m", "20-40 m", "40-60 m", "0-60 m", "ms/scan");
+    std::printf("precision / recall in %% of the points\n%-28s  %-13s  %-13s  %-13s  %-13s  %s\n",
+                "", "0-20 m", "20-40 m", "40-60 m", "0-60 m", "ms/scan");
     for (const auto& rawlog : rawlogs.getValue()) {
         Options options = Options::ofProfile("accurate");
         if (const auto meta = io::readDriveMeta(rawlog)) options.adaptTo(*meta);

@@ -76,6 +76,7 @@ TEST(Aligner, FindsAKnownMotionFromManyStarts) {
         EXPECT_GT(info.agreement, aligner.options.min_agreement);
         EXPECT_GT(info.quality, 0);
         EXPECT_GT(info.matches, 500U);
+        EXPECT_GT(info.nIterations, 2U);
         EXPECT_LT(info.residual_m, 0.05);
         EXPECT_GT(info.executionTime, 0);
         EXPECT_FALSE(info.searched);

@@ -51,8 +51,8 @@ enum Stage {
     kStages
 };
 constexpr std::array<const char*, kStages> kStageNames = {
-    "preprocess", "normals",  "bilateral",   "outliers", "mean_shift",
-    "lines",      "rotation", "translation", "moving",   "planes", "plane_map"};
+    "preprocess", "normals",     "bilateral", "outliers", "mean_shift", "lines",
+    "rotation",   "translation", "moving",    "planes",   "plane_map"};
 using StageTimes = std::array<double, kStages>;  //!< milliseconds
 
 /** What is kept of a scan to register others with; sensor's frame. */
@@ -69,11 +69,11 @@ struct FeatureCounts {
     std::size_t pattern = 0;    //!< normals, or cells of modes, left in the pattern
     std::size_t modes = 0;      //!< that mean shift found; 0 where it was not needed
     std::size_t lines = 0;
-    std::size_t moving = 0;     //!< points that belong to what moves
+    std::size_t moving = 0;  //!< points that belong to what moves
 };
 
-/** The points of a scan that were used, as the sensor would have seen them all at once at the stamp:
- *  metres, its frame, vertical angles corrected. */
+/** The points of a scan that were used, as the sensor would have seen them all at once at the
+ * stamp: metres, its frame, vertical angles corrected. */
 struct UsedPoints {
     Eigen::Matrix3Xf points;
     std::vector<std::uint32_t> indices;  //!< of each in the scan as it came

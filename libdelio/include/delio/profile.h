@@ -19,8 +19,8 @@ struct Options {
     static Options ofProfile(const std::string& name);
     static std::vector<std::string> profileNames();
 
-    /** What a drive says of its own sensor: the vertical correction, and whether its scans are to be
-     *  de-skewed (KITTI's raw ones, which come without times, by azimuth). */
+    /** What a drive says of its own sensor: the vertical correction, and whether its scans are to
+     * be de-skewed (KITTI's raw ones, which come without times, by azimuth). */
     void adaptTo(const io::DriveMeta& meta);
 
     /** Takes over the keys that are in `iniText`; throws Error that names an unknown section or

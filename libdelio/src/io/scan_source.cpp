@@ -62,9 +62,9 @@ std::optional<Scan> ScanSource::next() {
     try {
         const std::string file = loadExternal(*observation);
         scan = decodeObservation(*observation);
-        readPointExtras(file.empty() ? embeddedStem(count_ - 1)
-                                     : fs::path(file).replace_extension().string(),
-                        scan);
+        readPointExtras(
+            file.empty() ? embeddedStem(count_ - 1) : fs::path(file).replace_extension().string(),
+            scan);
     } catch (const std::exception& e) {
         ended_ = true;
         throw Error("scan " + std::to_string(count_ - 1) + " of '" + path_ +

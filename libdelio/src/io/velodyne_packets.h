@@ -27,12 +27,12 @@ FiringTimes firingTimes(std::size_t lasers);
  *  HDL-32E and HDL-64E; it leaves out azimuth corrections as well.)
  *
  *  Fills `points` (a CPointsMapXYZI: metres, sensor frame, x forward, y left, z up; intensity 0 to
- *  1, in the order of the packets) and `rings` (laser number as in the calibration) of `scan`, and `times_s` from the
- *  first packet, which the observation is stamped with, to the block of each point, where the
- *  packets' clocks run.
- *  Returns nearer than `minRange` or farther than `maxRange` (metres) are left out, and so is a
- *  second return that only repeats the first. Blocks with an unknown header are passed over.
- *  Throws Error where the calibration is missing or is not of 16, 32 or 64 lasers. */
+ *  1, in the order of the packets) and `rings` (laser number as in the calibration) of `scan`, and
+ * `times_s` from the first packet, which the observation is stamped with, to the block of each
+ * point, where the packets' clocks run. Returns nearer than `minRange` or farther than `maxRange`
+ * (metres) are left out, and so is a second return that only repeats the first. Blocks with an
+ * unknown header are passed over. Throws Error where the calibration is missing or is not of 16, 32
+ * or 64 lasers. */
 void decodeVelodynePackets(
     const std::vector<mrpt::obs::CObservationVelodyneScan::TVelodyneRawPacket>& packets,
     const mrpt::obs::VelodyneCalibration& calibration, double minRange, double maxRange,

@@ -28,12 +28,12 @@ struct Pose {
     Eigen::Vector3d t;
 };
 
-/** With one kernel, until both stand still. */
-void iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, double kernel,
-             unsigned max_iterations, const PlaneRegistrationOptions& options, Pose& pose) {
+/** With one kernel, until both stand still. Returns how often points were matched. */
+unsigned iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, double kernel,
+                 unsigned max_iterations, const PlaneRegistrationOptions& options, Pose& pose) {
     for (unsigned i = 0; i < max_iterations; ++i) {
         const auto matches = matchPlanes(map, points, pose.R, pose.t, kernel, options.point_sigma);
-        if (matches.size() < options.min_matches) return;
+        if (matches.size() < options.min_matches) return i + 1;
         const auto turn =
             rotation::rotationFromPlanes(matches, pose.R, pose.t, options.min_rotation_share);
         pose.R = turned(pose.R, turn.step);
@@ -41,8 +41,9 @@ void iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, double kernel,
                                                              options.min_translation_share);
         pose.t += move.step;
         if (turn.step.norm() < options.converged_rad && move.step.norm() < options.converged_m)
-            return;
+            return i + 1;
     }
+    return max_iterations;
 }
 
 /** How well those points that fall into voxels with a plane lie on it, 0 to 1. What is seen for the
@@ -200,15 +201,17 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
                                const PlaneRegistrationOptions& options) {
     PlaneEstimate estimate;
     Pose pose{R, t};
+    unsigned iterations = 0;
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        iterate(map, points, width, options.max_iterations, options, pose);
+        iterations += iterate(map, points, width, options.max_iterations, options, pose);
         if (width <= options.last_kernel) break;
     }
     const auto matches =
         matchPlanes(map, points, pose.R, pose.t, options.last_kernel, options.point_sigma);
     if (matches.size() >= options.min_matches) {
         settle(matches, pose, options, estimate);
+        estimate.rotation.iterations = iterations;
         estimate.share = shareOnPlanes(map, points, pose, options.last_kernel);
         return estimate;
     }

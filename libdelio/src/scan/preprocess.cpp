@@ -17,7 +17,8 @@ std::vector<OptionField> PreprocessOptions::fields() {
              "where absent: not if DRIVE.meta.yaml says that they are there already"},
             {"sweep_s", &sweep_s,
              "s; time of a turn, by which points that come without times get them from their "
-             "azimuth (clockwise, stamped at the front); 0: such points stay as they are", 0, 10}};
+             "azimuth (clockwise, stamped at the front); 0: such points stay as they are",
+             0, 10}};
 }
 
 PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {

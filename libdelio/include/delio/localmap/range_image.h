@@ -15,8 +15,8 @@ class RangeImage {
  public:
     /** Of no scan: knows nothing. */
     RangeImage() : RangeImage(Eigen::Matrix3Xf(3, 0), 180) {}
-    /** `points`: metres, sensor's frame. Directions are told apart by `cell_deg` (degrees of azimuth
-     *  and of elevation). */
+    /** `points`: metres, sensor's frame. Directions are told apart by `cell_deg` (degrees of
+     * azimuth and of elevation). */
     RangeImage(const Eigen::Matrix3Xf& points, double cell_deg);
 
     /** `point`: in this scan's sensor frame. Free only where the beams of all neighbouring cells

@@ -21,12 +21,12 @@ struct PreprocessOptions : public StageOptions {
 
 /** A scan as the stages want it. */
 struct PointCloud {
-    Eigen::Matrix3Xf points;           //!< metres, in the sensor's frame, in the sensor's order
-    std::vector<std::uint16_t> rings;  //!< ring of each point, from 0; see ringsOf()
-    std::vector<float> times_s;         //!< of each point from the stamp; empty: all at the stamp
+    Eigen::Matrix3Xf points;             //!< metres, in the sensor's frame, in the sensor's order
+    std::vector<std::uint16_t> rings;    //!< ring of each point, from 0; see ringsOf()
+    std::vector<float> times_s;          //!< of each point from the stamp; empty: all at the stamp
     std::vector<std::uint32_t> indices;  //!< of each point in the scan
-    std::size_t notFinite = 0;         //!< points dropped because a coordinate was NaN or infinite
-    std::size_t outOfRange = 0;        //!< points dropped by min_range and max_range
+    std::size_t notFinite = 0;   //!< points dropped because a coordinate was NaN or infinite
+    std::size_t outOfRange = 0;  //!< points dropped by min_range and max_range
 };
 
 /** Drops what is not finite or out of range, and raises every point's vertical angle by
