@@ -105,8 +105,8 @@ void process(const Request& request, io::ScanSource& source, std::optional<Slam>
             for (std::size_t i = 1; i < request.every; ++i)
                 if (!source.skip()) break;
         }
-    } catch (const Error& e) {
-        run.fault = e.what();
+    } catch (const std::exception& e) {
+        run.fault = plainMessage(e);
     }
     for (const auto& other : source.otherLabels())
         run.warn("scans of sensor '" + other + "' were not used; see --sensor-label");
@@ -154,6 +154,7 @@ int optimiseGraph(const Request& request, SlamRun& run) {
     auto graph = graph::loadG2o(request.input);
     run.complete = true;
     run.optimiseAndWrite(graph, options);
+    if (!run.fault.empty()) throw Error(run.fault);
     return cli::kExitSuccess;
 }
 }  // namespace
@@ -190,7 +191,7 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg verbose("", "verbose", "A line for each scan, and all the text of errors",
                              cmd);
 
-    return cli::run(cmd, argc, argv, verbose, [&] {
+    const int exitCode = cli::run(cmd, argc, argv, verbose, [&] {
         cli::catchInterrupts();
         Request request;
         request.input = input.getValue();
@@ -227,4 +228,11 @@ int main(int argc, char** argv) {
         if (fs::path(request.input).extension() == ".g2o") return optimiseGraph(request, run);
         return slamRawlog(request, run);
     });
+    if (gui.getValue()) {
+        // All is written. MRPT 2.5.8's window thread crashes now and then when the program's end
+        // takes its objects away from under it, so they stay.
+        std::cout.flush();
+        std::_Exit(exitCode);
+    }
+    return exitCode;
 }

@@ -156,7 +156,9 @@ LiveView::LiveView(const OdometryOptions& options) {
     window_->prepare();
 }
 
-LiveView::~LiveView() = default;
+// The window is left to the end of the program: taken away earlier, MRPT 2.5.8's window thread may
+// still be drawing it.
+LiveView::~LiveView() { static_cast<void>(window_.release()); }
 
 void LiveView::show(const Scan& scan, const CPose3D& increment, const CPose3D& pose) {
     if (!isOpen()) return;

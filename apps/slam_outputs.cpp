@@ -37,7 +37,8 @@ double peakMemory_mb() {
     return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-const char* const kFilesOfMap[] = {"map.simplemap", "map.ply", "map.3Dscene", "map.png"};
+const char* const kFilesOfMap[] = {"map.simplemap", "map.ply", "map.3Dscene", "map.png",
+                                   "trajectory.png"};
 
 /** A string as YAML has it: MRPT's writer leaves out the quotes, without which a file's name or a
  *  message may mean something else. */
@@ -129,7 +130,12 @@ std::string SlamRun::describeLastScan() const {
 
 void SlamRun::optimise(Slam& slam) {
     mrpt::system::CTicTac clock;
-    optimisation_ = slam.optimise();
+    try {
+        optimisation_ = slam.optimise();
+    } catch (const std::exception& e) {
+        // What the odometry found is worth keeping.
+        if (fault.empty()) fault = "the pose graph was not optimised: " + plainMessage(e);
+    }
     optimise_ms_ = 1e3 * clock.Tac();
 }
 
@@ -177,7 +183,11 @@ void SlamRun::optimiseAndWrite(graph::PoseGraph& graph, const Options& options) 
     for (const char* name : kFilesOfMap) forget(name);
     forget("scans.csv");
     optimised_ = hasMoreThanTheChain(graph);
-    writePicture(before);
+    try {
+        writePicture(before);
+    } catch (const Error& e) {
+        fault = e.what();
+    }
     writeSummary(options);
 }
 
@@ -269,8 +279,7 @@ void SlamRun::writePicture(const io::Trajectory& before) const {
         sheet.drawImage(width, 0, pictureOf(final_, "optimised"));
     } else
         sheet = pictureOf(final_, "estimate");
-    io::replaceFile(path("trajectory.png"),
-                    [&](const std::string& temporary) { return sheet.saveToFile(temporary); });
+    map::savePng(sheet, path("trajectory.png"));
 }
 
 void SlamRun::writeScans() const {

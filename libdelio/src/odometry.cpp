@@ -149,7 +149,9 @@ OdometryResult Odometry::processWithLastScan(const Scan& scan) {
         result.increment = result.registration.increment;
         result.increment.pose =
             orthonormalised((-sinceReference_) + result.registration.increment.pose);
-        if (!result.predicted || prediction_.hasMotion())
+        if (result.registration.predictedReason.empty())
+            prediction_.observe(result.registration.increment.pose, sinceReference_s_);
+        else if (prediction_.hasMotion())
             prediction_.observe(result.increment.pose, duration_s);
         sinceReference_ = sinceReference_ + result.increment.pose;
         lost_ = result.predicted;

@@ -13,8 +13,11 @@ namespace delio::graph {
 using mrpt::poses::CPose3D;
 
 namespace {
+/** Farther than anything on earth, squares lose the metres. */
 bool isFinite(const CPose3D& pose) {
-    return pose.getRotationMatrix().asEigen().allFinite() && pose.m_coords.asEigen().allFinite();
+    constexpr double kFarthest_m = 1e9;
+    return pose.getRotationMatrix().asEigen().allFinite() &&
+           (pose.m_coords.asEigen().array().abs() <= kFarthest_m).all();
 }
 
 bool isPositiveDefinite(const Matrix6& m) {
@@ -50,7 +53,7 @@ std::vector<OptionField> PoseGraphOptions::fields() {
 std::size_t PoseGraph::addNode(const CPose3D& initial) {
     if (!isFinite(initial))
         throw Error("pose graph: the pose of node " + std::to_string(poses_.size()) +
-                    " is not finite");
+                    " is not finite, or beyond 1e9 m");
     poses_.push_back(initial);
     edgesUpTo_.emplace_back();
     return poses_.size() - 1;
@@ -80,10 +83,16 @@ void PoseGraph::append(const Edge& edge, const Matrix6& information) {
         throw Error("pose graph: " + name + " needs nodes that are not there (there are " +
                     std::to_string(poses_.size()) + ")");
     if (edge.from == edge.to) throw Error("pose graph: " + name + " goes from a node to itself");
-    if (!isFinite(edge.increment.pose)) throw Error("pose graph: " + name + " is not finite");
+    if (!isFinite(edge.increment.pose))
+        throw Error("pose graph: " + name + " is not finite, or beyond 1e9 m");
     // Finite too: a covariance of 1e-320 has no inverse in doubles.
     if (!isPositiveDefinite(information))
         throw Error("pose graph: the covariance of " + name + " cannot be inverted");
+    // Beyond this squares overflow in the solver, which then never ends.
+    constexpr double kMostInformation = 1e20;
+    if (information.cwiseAbs().maxCoeff() > kMostInformation)
+        throw Error("pose graph: the information of " + name +
+                    " is more than 1e20: no edge is known that well");
     edgesUpTo_[std::max(edge.from, edge.to)].push_back(edges_.size());
     edges_.push_back(edge);
     information_.push_back(information);

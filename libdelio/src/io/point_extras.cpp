@@ -1,5 +1,6 @@
 #include "point_extras.h"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -14,7 +15,7 @@ void readValues(const std::string& file, std::size_t count, std::vector<Value>& 
     if (!fs::exists(file)) return;
     const auto bytes = fs::file_size(file);
     if (bytes != count * sizeof(Value))
-        throw Error("'" + file + "' has " + std::to_string(bytes) + " bytes, but its scan " +
+        throw Error("'" + file + "' has " + std::to_string(bytes) + " bytes, but its scan has " +
                     std::to_string(count) + " points of " + std::to_string(sizeof(Value)) +
                     " bytes each");
     values.resize(count);
@@ -28,5 +29,10 @@ void readPointExtras(const std::string& stem, Scan& scan) {
     const std::size_t count = scan.points->size();
     readValues(stem + ".ring", count, scan.rings);
     readValues(stem + ".time", count, scan.times_s);
+    constexpr float kLongest_s = 1;  // no LiDAR turns slower than so
+    for (const float time_s : scan.times_s)
+        if (!(std::abs(time_s) <= kLongest_s))
+            throw Error("'" + stem + ".time' has a time of " + std::to_string(time_s) +
+                        " s from its scan's stamp");
 }
 }  // namespace delio::io

@@ -46,11 +46,13 @@ int turnPerBlock(const Packet& packet) {
     return *middle;
 }
 
-/** Microseconds from `earlier` to `later`: a packet's clock counts from the full hour. */
+/** Microseconds from `earlier` to `later`, negative where their order is the other one: a packet's
+ *  clock counts from the full hour. */
 double microsecondsBetween(const Packet& earlier, const Packet& later) {
-    constexpr std::int64_t kHour_us = 3600000000;
-    const std::int64_t passed = std::int64_t{later.gps_timestamp()} - earlier.gps_timestamp();
-    return static_cast<double>((passed + kHour_us) % kHour_us);
+    constexpr double kHour_us = 3600e6;
+    return std::remainder(
+        static_cast<double>(later.gps_timestamp()) - static_cast<double>(earlier.gps_timestamp()),
+        kHour_us);
 }
 
 /** The usual time from one packet to the next in microseconds; 0 where their clocks do not tell. */
@@ -62,7 +64,7 @@ double packetPeriod_us(const std::vector<Packet>& packets) {
     const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
     std::nth_element(periods.begin(), middle, periods.end());
     constexpr double kSlowest_us = 10000;
-    return *middle < kSlowest_us ? *middle : 0;
+    return *middle > 0 && *middle < kSlowest_us ? *middle : 0;
 }
 
 /** The block with the first returns of those that block `b` holds second returns of, or none. It is
@@ -181,8 +183,13 @@ void decodeVelodynePackets(const std::vector<Packet>& packets,
                     " lasers; models of 16, 32 and 64 are known");
     Decoder decoder(lasers, minRange, maxRange);
     const double period_s = 1e-6 * packetPeriod_us(packets);
-    for (const auto& packet : packets)
-        decoder.decode(packet, 1e-6 * microsecondsBetween(packets.front(), packet), period_s);
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+        // A clock that was set in between does not tell: then packets are taken as evenly spaced.
+        constexpr double kOff_s = 0.05;
+        const double even_s = static_cast<double>(i) * period_s;
+        const double told_s = 1e-6 * microsecondsBetween(packets.front(), packets[i]);
+        decoder.decode(packets[i], std::abs(told_s - even_s) < kOff_s ? told_s : even_s, period_s);
+    }
     decoder.moveTo(scan);
 }
 }  // namespace delio::io

@@ -24,10 +24,10 @@ bool alike(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
 std::vector<OptionField> MovingObjectsOptions::fields() {
     return {
         {"enabled", &enabled, "true: what moves is kept out of registration and map"},
-        {"cell_deg", &cell_deg, "deg; directions are told apart by this", 0.05, 10},
+        {"cell_deg", &cell_deg, "deg; directions are told apart by this", 0.2, 10},
         {"margin", &margin, "m; a beam that went on by this saw a place free", 0, 10},
-        {"interval_s", &interval_s, "s; between the earlier scans that are looked at", 0, 100},
-        {"memory_s", &memory_s, "s; the earliest of them", 0, 100},
+        {"interval_s", &interval_s, "s; between the earlier scans that are looked at", 0.05, 100},
+        {"memory_s", &memory_s, "s; the earliest of them", 0, 5},
         {"min_share", &min_share,
          "of a segment's points in places of which something is known, those seen free", 0, 1},
         {"min_known", &min_known, "share of its points of whose places something is known", 0, 1}};

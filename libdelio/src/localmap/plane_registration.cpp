@@ -100,7 +100,8 @@ void settle(const PlaneMatches& matches, const Pose& pose, const PlaneRegistrati
         squared += r * r;
     }
     const auto count = static_cast<double>(matches.size());
-    const double noise = weighted / count / options.independent_share;
+    constexpr double kLeastFactor = 0.01;  // of simulated scans without any noise
+    const double noise = std::max(weighted / count, kLeastFactor) / options.independent_share;
     Eigen::Matrix3d inverseSeen;
     auto& rotation = estimate.rotation;
     rotation.rotation = pose.R;
@@ -152,8 +153,8 @@ std::vector<OptionField> PlaneRegistrationOptions::fields() {
         {"search_speed", &search_speed,
          "m/s; where the motion is not known, what can be driven at this speed is searched", 0,
          1000},
-        {"search_radius", &search_radius, "m; but no farther than this", 0, 200},
-        {"search_step", &search_step, "m; distance between the starts of that search", 0.1, 50}};
+        {"search_radius", &search_radius, "m; but no farther than this", 0, 100},
+        {"search_step", &search_step, "m; distance between the starts of that search", 0.5, 50}};
 }
 
 PlaneMatches matchPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,

@@ -88,10 +88,10 @@ void PlaneTracker::thin(View& view) const {
 }
 
 /** The same where what moves is not known yet. */
-void PlaneTracker::thinWithoutWhatMoves(View& view, const CPose3D& pose, double stamp_s) {
+void PlaneTracker::thinWithoutWhatMoves(View& view, const CPose3D& pose) {
     const auto voxels = scan::numberVoxels(view.points, options_.tracker.map_spacing);
     const auto centroids = scan::centroidsOf(view.points, voxels);
-    const auto moving = movingObjects_.find(centroids, view.points, pose, stamp_s);
+    const auto moving = movingObjects_.find(centroids, view.points, pose, time_s_);
     for (std::size_t i = 0; i < view.moving.size(); ++i)
         view.moving[i] = moving[static_cast<std::size_t>(voxels.ofPoint[i])];
     view.fine = unmarked(centroids, moving);
@@ -113,10 +113,10 @@ PlaneEstimate PlaneTracker::place(const View& view, const CPose3D& guess, double
 }
 
 /** Once more, with the points where the motion that was found puts them. (It is the mean since the
- *  last stamp. Extrapolated to this one it did worse: vehicles shake.) */
-void PlaneTracker::refine(const scan::PointCloud& cloud, double duration_s, View& view,
+ *  latest scan that was placed. Extrapolated to this one it did worse: vehicles shake.) */
+void PlaneTracker::refine(const scan::PointCloud& cloud, double since_s, View& view,
                           PlaneEstimate& estimate) {
-    const auto motion = Motion::of(poseOf(estimate) - pose_, duration_s);
+    const auto motion = Motion::of(poseOf(estimate) - latestPose_, since_s);
     if (skewed_) {
         map_.clear();
         View first = viewOf(*skewed_, motion);
@@ -154,13 +154,17 @@ void PlaneTracker::insert(const View& view, const CPose3D& pose) {
     map_.forgetFarFrom(translationOf(pose));
     latest_ = view.points;
     latestPose_ = pose;
+    latestTime_s_ = time_s_;
 }
 
 /** The first scan of a map. */
 void PlaneTracker::begin(const scan::PointCloud& cloud, Tracked& result) {
     View view = viewOf(cloud, {});
     thin(view);
+    map_.clear();
+    movingObjects_.clear();
     insert(view, pose_);
+    skewed_.reset();
     if (!cloud.times_s.empty()) skewed_ = cloud;
     started_ = map_.planes() > 0;
     result.estimate =
@@ -173,26 +177,26 @@ void PlaneTracker::begin(const scan::PointCloud& cloud, Tracked& result) {
 }
 
 /** Every other scan. */
-void PlaneTracker::follow(const scan::PointCloud& cloud, double stamp_s, Tracked& result) {
+void PlaneTracker::follow(const scan::PointCloud& cloud, double duration_s, Tracked& result) {
     mrpt::system::CTicTac clock;
-    const double elapsed = stamp_s - stamp_s_;
-    const double duration_s = elapsed > 0 ? elapsed : 0.1;
+    // Where scans were missed in between, what was driven since then was driven in all this time.
+    const double since_s = time_s_ - latestTime_s_;
     const CPose3D step = prediction_.predict(duration_s), guess = pose_ + step;
     View view = viewOf(cloud, Motion::of(step, duration_s));
     if (options_.moving.enabled && !lost_)
-        thinWithoutWhatMoves(view, guess, stamp_s);
+        thinWithoutWhatMoves(view, guess);
     else
         thin(view);
     result.moving_ms = 1e3 * clock.Tac();
     clock.Tic();
-    result.estimate = place(view, guess, duration_s);
+    result.estimate = place(view, guess, since_s);
     if (result.estimate.valid && !cloud.times_s.empty())
-        refine(cloud, duration_s, view, result.estimate);
+        refine(cloud, since_s, view, result.estimate);
     const bool found = result.estimate.valid;
     if (!found) result.reason = cloud.points.cols() == 0 ? "no points" : "too few planes";
     const CPose3D pose = found ? poseOf(result.estimate) : guess;
     if (found && prediction_.hasMotion()) learn(pose, guess, result.estimate);
-    if (found || prediction_.hasMotion()) prediction_.observe(pose - pose_, duration_s);
+    if (found) prediction_.observe(pose - latestPose_, since_s);
     pose_ = pose;
     result.register_ms = 1e3 * clock.Tac();
     clock.Tic();
@@ -210,15 +214,17 @@ void PlaneTracker::follow(const scan::PointCloud& cloud, double stamp_s, Tracked
 
 Tracked PlaneTracker::track(const scan::PointCloud& cloud, double stamp_s) {
     Tracked result;
+    constexpr double kUsual_s = 0.1;  // where stamps do not rise
+    const double elapsed = stamp_s - stamp_s_;
+    const double duration_s = elapsed > 0 ? elapsed : kUsual_s;
+    if (!first_) time_s_ += duration_s;
     if (started_)
-        follow(cloud, stamp_s, result);
+        follow(cloud, duration_s, result);
     else
         begin(cloud, result);
     constexpr unsigned kPatience = 3;
     if (misses_ == kPatience) {
         misses_ = 0;
-        map_.clear();
-        movingObjects_.clear();
         Tracked ofNewMap;
         begin(cloud, ofNewMap);
     }

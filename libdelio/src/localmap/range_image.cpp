@@ -26,7 +26,7 @@ RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
 int RangeImage::rowOf(const Eigen::Vector3f& point) const {
     const float elevation = std::atan2(point.z(), point.head<2>().norm());
     const int row = static_cast<int>((elevation + static_cast<float>(M_PI_2)) * perRadian_);
-    return std::min(row, rows_ - 1);
+    return std::clamp(row, 0, rows_ - 1);
 }
 
 int RangeImage::columnOf(const Eigen::Vector3f& point) const {

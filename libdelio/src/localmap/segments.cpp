@@ -60,8 +60,8 @@ std::vector<float> heights(const Eigen::Matrix3Xf& points, double radius) {
 }  // namespace
 
 std::vector<OptionField> SegmentOptions::fields() {
-    return {{"cell", &cell, "m; points of cells that touch belong together", 0.05, 10},
-            {"radius", &radius, "m; farther from the sensor nothing is looked for", 1, 200},
+    return {{"cell", &cell, "m; points of cells that touch belong together", 0.1, 10},
+            {"radius", &radius, "m; farther from the sensor nothing is looked for", 1, 100},
             {"above_ground", &above_ground, "m; what is lower is ground", 0, 10},
             {"height", &height, "m; what is higher is no road user", 0.1, 20},
             {"max_length", &max_length, "m; what is longer is no road user", 0.1, 100},

@@ -35,7 +35,8 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     Eigen::Index kept = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
         const Eigen::Vector3f p(x[i], y[i], z[i]);
-        if (!p.allFinite()) {
+        const bool timed = options.deskew && !scan.times_s.empty();
+        if (!p.allFinite() || (timed && !std::isfinite(scan.times_s[i]))) {
             ++cloud.notFinite;
             continue;
         }
@@ -49,7 +50,7 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
         cloud.points.col(kept) << p.head<2>() * (flat > 0 ? flatNow / flat : 1.0F),
             s * flat + c * p.z();
         if (!scan.rings.empty()) cloud.rings.push_back(scan.rings[i]);
-        if (options.deskew && !scan.times_s.empty()) cloud.times_s.push_back(scan.times_s[i]);
+        if (timed) cloud.times_s.push_back(scan.times_s[i]);
         cloud.indices.push_back(static_cast<std::uint32_t>(i));
         ++kept;
     }

@@ -392,7 +392,9 @@ TEST(PoseGraph, EachFaultIsNamed) {
     EXPECT_NE(fault(1, 1, CPose3D(), fine).find("to itself"), std::string::npos);
     EXPECT_NE(fault(1, 2, pose(nan, 0, 0, 0, 0, 0), fine).find("node 1 to node 2 is not finite"),
               std::string::npos);
-    for (const double bad : {0.0, -1.0, nan, 1e-320})
+    EXPECT_NE(fault(1, 2, pose(1e300, 0, 0, 0, 0, 0), fine).find("beyond 1e9 m"),
+              std::string::npos);
+    for (const double bad : {0.0, -1.0, nan, 1e-320, 1e-30})
         EXPECT_NE(fault(1, 2, CPose3D(), {1, 1, 1, 1, 1, bad}).find("node 1 to node 2"),
                   std::string::npos)
             << bad;

@@ -196,6 +196,19 @@ TEST(VelodynePackets, TimesRunFromTheFirstPacketOn) {
     }
     EXPECT_EQ(io::decodeObservation(packets).times_s, scan.times_s);
 
+    // Packets that overtook each other, and a clock that is set in between.
+    const auto stamp = [&](std::size_t i, std::uint32_t time_us) {
+        std::memcpy(bytes + i * sizeof(Packet) + 1200, &time_us, 4);
+    };
+    for (std::size_t i = 0; i < packets.scan_packets.size(); ++i)
+        stamp(i, static_cast<std::uint32_t>(i * 1000 + (i < 4 ? 0 : 500000000)));
+    stamp(0, 1000);
+    stamp(1, 0);
+    const auto times_s = io::decodeObservation(packets).times_s;
+    ASSERT_EQ(times_s.size(), scan.times_s.size());
+    for (std::size_t i = 0; i < times_s.size(); ++i)
+        ASSERT_NEAR(times_s[i], scan.times_s[i], 2.1e-3) << i;
+
     // A clock that stands tells nothing.
     for (std::size_t i = 0; i < packets.scan_packets.size(); ++i)
         std::memset(bytes + i * sizeof(Packet) + 1200, 0, 4);

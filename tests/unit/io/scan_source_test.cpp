@@ -197,6 +197,22 @@ TEST(ScanSource, ExtrasThatDoNotFitTheirScanAreNamed) {
     EXPECT_NE(fault.find("50 points"), std::string::npos) << fault;
 }
 
+TEST(ScanSource, TimesThatCannotBeAreNamed) {
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), 1e9F, -2.0F}) {
+        const test::TemporaryFolder folder;
+        std::filesystem::create_directory(folder / "a_Images");
+        std::vector<float> times_s(50, 0.01F);
+        times_s[20] = bad;
+        writeValues(folder / "a_Images/000001.time", times_s);
+        writeRawlog(folder / "a.rawlog", {cloudObservation(0), cloudObservation(1)});
+        io::ScanSource source(folder / "a.rawlog");
+        std::size_t scans = 0;
+        const auto fault = faultOf(source, scans);
+        EXPECT_EQ(scans, 1U) << bad;
+        EXPECT_NE(fault.find("000001.time"), std::string::npos) << fault;
+    }
+}
+
 TEST(ScanSource, WhatCameBeforeACutComesOutThenOneError) {
     const test::TemporaryFolder folder;
     const std::string whole = folder / "whole.rawlog", cut = folder / "cut.rawlog";

@@ -70,6 +70,24 @@ TEST(PlaneTracker, FollowsADriveAlsoWhereScansAreMissingOrEmpty) {
     }
 }
 
+// The motion is not known yet: what was driven meanwhile was driven in two intervals.
+TEST(PlaneTracker, ASecondScanWithoutPointsDoesNotDoubleTheSpeed) {
+    test::Noise noise;
+    const std::vector<double> x = {0, 1.2, 2.4, 3.6, 4.8};
+    for (const bool stampsRise : {true, false}) {
+        auto scans = driveScans(x, noise);
+        scans[1].points = test::scanOf(Eigen::Matrix3Xf(3, 0)).points;
+        Odometry odometry(Options::ofProfile("accurate").odometry);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            scans[i].stamp_s = stampsRise ? 0.1 * static_cast<double>(i) : 7;
+            const auto result = odometry.process(scans[i]);
+            EXPECT_EQ(result.predicted, i == 1);
+            const double driven_m = i < 2 ? 0 : i == 2 ? 2.4 : 1.2;
+            EXPECT_NEAR(result.increment.pose.norm(), driven_m, 0.03) << i;
+        }
+    }
+}
+
 /** As a sensor sees it that turns once in 0.1 s while it moves on by `step`: each point in the
  *  sensor's frame at the time of its azimuth. */
 void skew(Scan& scan, const CPose3D& step) {

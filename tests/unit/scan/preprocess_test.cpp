@@ -32,6 +32,20 @@ TEST(Preprocess, WhatIsNotFiniteIsDroppedAndCounted) {
     EXPECT_EQ(cloud.rings.size(), 2U);
 }
 
+TEST(Preprocess, PointsWithoutATimeAreDroppedWhereTimesCount) {
+    Eigen::Matrix3Xf points(3, 3);
+    points << 10, 20, 30, 1, 2, 3, 0, 0, 0;
+    Scan scan = test::scanOf(points);
+    scan.times_s = {0.01F, kNaN, -0.02F};
+    const auto cloud = preprocess(scan, {});
+    EXPECT_EQ(cloud.notFinite, 1U);
+    EXPECT_EQ(cloud.times_s, (std::vector<float>{0.01F, -0.02F}));
+    EXPECT_EQ(cloud.indices, (std::vector<std::uint32_t>{0, 2}));
+    PreprocessOptions options;
+    options.deskew = false;
+    EXPECT_EQ(preprocess(scan, options).points.cols(), 3);
+}
+
 TEST(Preprocess, WhatIsOutOfRangeIsDroppedAndCounted) {
     PreprocessOptions options;
     options.min_range = 2;

@@ -53,7 +53,7 @@ class PoseGraph {
 
     /** Several edges between the same nodes, and edges backwards, are welcome. Error for a node
      *  that does not exist, an edge from a node to itself, a pose that is not finite and a
-     *  covariance that is not symmetric and positive definite. */
+     *  covariance that is not symmetric and positive definite, or whose inverse is beyond 1e20. */
     void addEdge(const Edge& edge);
 
     /** The same from an information matrix Omega, which is kept to the bit. */

@@ -69,7 +69,8 @@ class PlaneTracker {
     Tracked track(const scan::PointCloud& cloud, double stamp_s);
 
  private:
-    /** A scan as it is registered: what moves is left out of the thinned points. */
+    /** A scan as it is registered, in the sensor's frame at the stamp: what moves is left out of
+     *  the thinned points. */
     struct View {
         Eigen::Matrix3Xf points;           //!< all
         std::vector<std::uint8_t> moving;  //!< each of them
@@ -77,7 +78,7 @@ class PlaneTracker {
         Eigen::Matrix3Xd thinned;          //!< for registration
     };
     View viewOf(const scan::PointCloud& cloud, const Motion& motion) const;
-    void thinWithoutWhatMoves(View& view, const mrpt::poses::CPose3D& pose, double stamp_s);
+    void thinWithoutWhatMoves(View& view, const mrpt::poses::CPose3D& pose);
     PlaneEstimate place(const View& view, const mrpt::poses::CPose3D& guess,
                         double duration_s) const;
     PlaneEstimate search(const rotation::SurfaceNormals& surfaces, const Eigen::Matrix3Xd& points,
@@ -87,11 +88,10 @@ class PlaneTracker {
                const PlaneEstimate& estimate);
     double kernel() const;
     void begin(const scan::PointCloud& cloud, Tracked& result);
-    void follow(const scan::PointCloud& cloud, double stamp_s, Tracked& result);
+    void follow(const scan::PointCloud& cloud, double duration_s, Tracked& result);
     void insert(const View& view, const mrpt::poses::CPose3D& pose);
     void thin(View& view) const;
-    void refine(const scan::PointCloud& cloud, double duration_s, View& view,
-                PlaneEstimate& estimate);
+    void refine(const scan::PointCloud& cloud, double since_s, View& view, PlaneEstimate& estimate);
 
     TrackingOptions options_;
     PlaneMap map_;
@@ -99,6 +99,7 @@ class PlaneTracker {
     LinearPrediction prediction_;
     mrpt::poses::CPose3D pose_;  //!< of the latest scan: sensor to map
     double stamp_s_ = 0;         //!< of the latest scan
+    double time_s_ = 0;          //!< since the first scan, rising whatever the stamps do
     bool first_ = true;          //!< no scan was seen yet
     bool started_ = false;       //!< the map has planes
     bool lost_ = true;           //!< where the next scan will be is not known to better than metres
@@ -107,6 +108,7 @@ class PlaneTracker {
     unsigned misses_ = 0;               //!< scans in a row that were not found in the map
     Eigen::Matrix3Xf latest_;           //!< points of the latest scan that was placed
     mrpt::poses::CPose3D latestPose_;   //!< its pose
+    double latestTime_s_ = 0;           //!< and its time
     /** The scan that the map began with, while the motion during it is not known. */
     std::optional<scan::PointCloud> skewed_;
 };
