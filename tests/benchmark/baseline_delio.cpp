@@ -47,8 +47,10 @@ class CoupledLines : public ScanToScan<translation::LineCloud> {
         Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
         start.linear() = guess.getRotationMatrix().asEigen();
         const Eigen::Vector3d t(guess.x(), guess.y(), guess.z());
-        start.translation() =
-            first_ ? translation::searchTranslation(from, to, t, registration_).translation : t;
+        start.translation() = first_ ? translation::searchTranslation(
+                                           from, to, t, registration_.search_radius, registration_)
+                                           .translation
+                                     : t;
         first_ = false;
         const auto found = translation::registerCoupled(from, to, start, registration_);
         return {Eigen::Matrix3d(found.pose.linear()), Eigen::Vector3d(found.pose.translation())};

@@ -36,16 +36,18 @@ std::vector<OptionField> MovingObjectsOptions::fields() {
 bool MovingObjects::isFree(const Object& object, const View& seen, const View& by,
                            double minKnown) const {
     const Eigen::Isometry3f toSensor = by.toMap.inverse() * seen.toMap;
-    int free = 0, taken = 0;
-    for (Eigen::Index i = 0; i < object.points.cols(); ++i) {
+    // A part of the points of something large tells as much.
+    constexpr Eigen::Index kEnough = 64;
+    const Eigen::Index stride = std::max<Eigen::Index>(1, object.points.cols() / kEnough);
+    int free = 0, taken = 0, asked = 0;
+    for (Eigen::Index i = 0; i < object.points.cols(); i += stride, ++asked) {
         const Place place = by.image.at(toSensor * Eigen::Vector3f(object.points.col(i)),
                                         static_cast<float>(options_.margin));
         free += place == Place::kFree;
         taken += place == Place::kTaken;
     }
     const double known = free + taken;
-    return free > 0 && free >= options_.min_share * known &&
-           known >= minKnown * static_cast<double>(object.points.cols());
+    return free > 0 && free >= options_.min_share * known && known >= minKnown * asked;
 }
 
 bool MovingObjects::came(const Object& object) const {
@@ -64,7 +66,7 @@ std::optional<Eigen::Vector3f> MovingObjects::velocityOf(const Object& object) c
     constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTolerance = 0.15F, kTurn = 0.3F;
     constexpr double kLeastKnown = 0.05;  // near the vehicle places are left below all beams
     const auto gone = [&](const Object& earlier, const View& view) {
-        return alike(earlier.size, object.size) && isFree(earlier, view, latest_, kLeastKnown);
+        return isFree(earlier, view, latest_, kLeastKnown);
     };
     const Eigen::Vector3f here = latest_.toMap * object.centre;
     for (std::size_t i = 0; i < views_.size(); ++i) {
@@ -75,11 +77,12 @@ std::optional<Eigen::Vector3f> MovingObjects::velocityOf(const Object& object) c
             const Eigen::Vector3f step = here - place;
             const float length = step.norm();
             if (length < static_cast<float>(options_.margin) || length > kFastest_m_s * later_s ||
-                !gone(there, second))
+                !alike(there.size, object.size))
                 continue;
             // It goes on as it did.
             if (there.velocity &&
-                (step - later_s * *there.velocity).norm() < kTolerance_m + kTurn * length)
+                (step - later_s * *there.velocity).norm() < kTolerance_m + kTurn * length &&
+                gone(there, second))
                 return step / later_s;
             // Or it comes from a place before that one.
             for (std::size_t j = i + 1; j < views_.size(); ++j) {
@@ -90,7 +93,7 @@ std::optional<Eigen::Vector3f> MovingObjects::velocityOf(const Object& object) c
                 for (const auto& start : first.objects)
                     if ((first.toMap * start.centre - expected).norm() <
                             kTolerance_m + kTolerance * length &&
-                        gone(start, first))
+                        alike(start.size, object.size) && gone(start, first) && gone(there, second))
                         return step / later_s;
             }
         }
