@@ -1,15 +1,16 @@
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <set>
 
 #include "cli.h"
-#include "delio/error.h"
-#include "delio/evaluation/report_folder.h"
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
+#include "delio/evaluation/report/report.h"
+#include "delio/evaluation/report/report_folder.h"
 #include "delio/io/trajectory.h"
 #include "delio/version.h"
 #include "eval_inputs.h"
@@ -22,18 +23,15 @@ using evaluation::ReportRow;
 /** "100,200,300": rising positive numbers; nothing where the text is anything else. */
 std::vector<double> lengthsOf(const std::string& text) {
     std::vector<double> lengths;
-    const char* p = text.data();
-    const char* const end = p + text.size();
-    while (true) {
-        double length = 0;
-        const auto result = std::from_chars(p, end, length);
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        const auto length = numberIn<double>(text.substr(begin, end - begin));
         const double least = lengths.empty() ? 0 : lengths.back();
-        if (result.ec != std::errc{} || !std::isfinite(length) || length <= least) return {};
-        lengths.push_back(length);
-        if (result.ptr == end) return lengths;
-        if (*result.ptr != ',') return {};
-        p = result.ptr + 1;
+        if (!length || !std::isfinite(*length) || *length <= least) return {};
+        lengths.push_back(*length);
+        begin = end + 1;
     }
+    return lengths;
 }
 
 struct LengthsConstraint : TCLAP::Constraint<std::string> {
@@ -76,10 +74,10 @@ std::vector<ReportRow> rowsOf(const std::vector<evaluation::Comparison>& compari
         cli::warn("the estimates cover different sequences: do not compare their averages");
     return rows;
 }
-}  // namespace
 
-int main(int argc, char** argv) {
-    TCLAP::CmdLine cmd(
+/** What the user asks for. */
+struct CommandLine {
+    TCLAP::CmdLine cmd{
         "Scores trajectories against a reference: KITTI's translation error (percent) and rotation "
         "error (deg/100 m), both means over segments; APE (RMSE in metres after rigid alignment, "
         "no scale); RPE (RMSE over --delta poses, metres and degrees). '-' stands for a figure "
@@ -87,74 +85,106 @@ int main(int argc, char** argv) {
         "all others by row. For two folders, every NN.txt in both is one sequence, and a row 'avg' "
         "follows: the plain mean of the sequences' errors, as in papers on KITTI, with the sums of "
         "lengths and segments.",
-        ' ', kVersion);
-    TCLAP::ValueArg<std::string> reference(
-        "r", "ref", "Reference: a pose file (KITTI or TUM), or a folder of them (NN.txt)", true, "",
-        "REF.txt|DIR", cmd);
-    TCLAP::MultiArg<std::string> estimates(
-        "e", "est",
+        ' ', kVersion};
+    TCLAP::ValueArg<std::string> reference{
+        "r",  "ref", "Reference: a pose file (KITTI or TUM), or a folder of them (NN.txt)",
+        true, "",    "REF.txt|DIR",
+        cmd};
+    TCLAP::MultiArg<std::string> estimates{
+        "e",
+        "est",
         "Estimate: a pose file, a folder that delio-slam has written, or, if --ref is a folder, a "
         "folder of pose files or of such folders; may be given again",
-        true, "[NAME=]EST.txt|DIR", cmd);
-    TCLAP::ValueArg<std::string> calibration(
-        "c", "calib",
+        true,
+        "[NAME=]EST.txt|DIR",
+        cmd};
+    TCLAP::ValueArg<std::string> calibration{
+        "c",
+        "calib",
         "The estimates are in the LiDAR frame; Tr of this file brings them to cam0 (for folders: "
         "one Tr for every sequence)",
-        false, "", "calib.txt", cmd);
+        false,
+        "",
+        "calib.txt",
+        cmd};
     LengthsConstraint lengthsConstraint;
-    TCLAP::ValueArg<std::string> lengths(
-        "l", "lengths", "Lengths of KITTI's segments in metres (default 100,200,...,800)", false,
-        textOf(evaluation::kittiLengths_m()), &lengthsConstraint, cmd);
+    TCLAP::ValueArg<std::string> lengths{
+        "l",
+        "lengths",
+        "Lengths of KITTI's segments in metres (default 100,200,...,800)",
+        false,
+        textOf(evaluation::kittiLengths_m()),
+        &lengthsConstraint,
+        cmd};
     DeltaConstraint deltaConstraint;
-    TCLAP::ValueArg<int> delta("d", "delta", "Poses that RPE spans (default 1)", false, 1,
-                               &deltaConstraint, cmd);
-    std::vector<std::string> formats = {"table", "tsv"};
-    TCLAP::ValuesConstraint<std::string> formatsConstraint(formats);
-    TCLAP::ValueArg<std::string> format("f", "format", "Form of the results (default table)", false,
-                                        "table", &formatsConstraint, cmd);
-    TCLAP::ValueArg<std::string> output(
-        "o", "output",
+    TCLAP::ValueArg<int> delta{
+        "d", "delta", "Poses that RPE spans (default 1)", false, 1, &deltaConstraint, cmd};
+    std::vector<std::string> formats{"table", "tsv"};
+    TCLAP::ValuesConstraint<std::string> formatsConstraint{formats};
+    TCLAP::ValueArg<std::string> format{"f",   "format", "Form of the results (default table)",
+                                        false, "table",  &formatsConstraint,
+                                        cmd};
+    TCLAP::ValueArg<std::string> output{
+        "o",
+        "output",
         "Folder for the report: report.html (one page, pictures inside), plots/ (SVG, PNG, data, "
         "gnuplot scripts), metrics.tsv, lengths.tsv; needs gnuplot",
-        false, "", "REPORT_DIR", cmd);
-    TCLAP::SwitchArg force("", "force", "Write into a report folder that is not empty", cmd);
-    TCLAP::SwitchArg verbose("", "verbose", "Say what is compared with what", cmd);
+        false,
+        "",
+        "REPORT_DIR",
+        cmd};
+    TCLAP::SwitchArg force{"", "force", "Write into a report folder that is not empty", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "Say what is compared with what", cmd};
+};
 
+EvalSettings settingsOf(CommandLine& line) {
     EvalSettings settings;
-    return cli::run(cmd, argc, argv, verbose, [&] {
-        settings.verbose = verbose.getValue();
-        std::vector<Estimate> compared;
-        for (const auto& text : estimates.getValue()) compared.push_back(estimateOf(text));
-        if (const std::string fault = faultOfNames(compared); !fault.empty()) {
-            cli::inform(fault + "; see --help");
-            return cli::kExitBadCommandLine;
-        }
-        refuseReport(output.getValue(), force.getValue());
+    settings.verbose = line.verbose.getValue();
+    settings.comparison.lengths_m = lengthsOf(line.lengths.getValue());
+    settings.comparison.delta = static_cast<std::size_t>(line.delta.getValue());
+    if (line.calibration.isSet()) {
+        const auto read = io::readCalibration(line.calibration.getValue());
+        if (!read.hasTr)
+            throw Error("'" + line.calibration.getValue() +
+                        "' has no Tr, which brings the LiDAR frame to cam0");
+        settings.Tr = read.Tr;
+    }
+    return settings;
+}
 
-        settings.lengths_m = lengthsOf(lengths.getValue());
-        settings.delta = static_cast<std::size_t>(delta.getValue());
-        if (calibration.isSet()) {
-            const auto read = io::readCalibration(calibration.getValue());
-            if (!read.hasTr)
-                throw Error("'" + calibration.getValue() +
-                            "' has no Tr, which brings the LiDAR frame to cam0");
-            settings.Tr = read.Tr;
-        }
-        std::vector<evaluation::Comparison> comparisons;
-        for (const auto& estimate : compared)
-            for (auto& comparison : compare(reference.getValue(), estimate, settings))
-                comparisons.push_back(std::move(comparison));
-        const auto rows = rowsOf(comparisons, fs::is_directory(reference.getValue()));
-        if (!output.getValue().empty())
-            evaluation::writeReportFolder(
-                comparisons, rows,
-                {std::string("delio-eval ") + kVersion, textOf(settings.lengths_m), settings.delta},
-                output.getValue());
-        if (format.getValue() == "tsv")
-            evaluation::writeMetricsTsv(rows, std::cout);
-        else
-            evaluation::writeTable(rows, std::cout);
-        if (!std::cout.flush()) throw Error("cannot write the results to stdout");
-        return cli::kExitSuccess;
-    });
+int evaluate(CommandLine& line) {
+    std::vector<Estimate> estimates;
+    for (const auto& text : line.estimates.getValue()) estimates.push_back(estimateOf(text));
+    if (const std::string fault = faultOfNames(estimates); !fault.empty()) {
+        cli::inform(fault + "; see --help");
+        return cli::kExitBadCommandLine;
+    }
+    const auto& reference = line.reference.getValue();
+    const auto& output = line.output.getValue();
+    refuseReport(output, line.force.getValue());
+
+    const auto settings = settingsOf(line);
+    std::vector<evaluation::Comparison> comparisons;
+    for (const auto& estimate : estimates)
+        for (auto& comparison : compareSequences(reference, estimate, settings))
+            comparisons.push_back(std::move(comparison));
+    const auto rows = rowsOf(comparisons, fs::is_directory(reference));
+    if (!output.empty())
+        evaluation::writeReportFolder(
+            comparisons, rows,
+            {std::string("delio-eval ") + kVersion, textOf(settings.comparison.lengths_m),
+             settings.comparison.delta},
+            output);
+    if (line.format.getValue() == "tsv")
+        evaluation::writeMetricsTsv(rows, std::cout);
+    else
+        evaluation::writeTable(rows, std::cout);
+    if (!std::cout.flush()) throw Error("cannot write the results to stdout");
+    return cli::kExitSuccess;
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+    CommandLine line;
+    return cli::run(line.cmd, argc, argv, line.verbose, [&] { return evaluate(line); });
 }

@@ -1,17 +1,17 @@
 // delio-figures: the paper's pictures of the stages, made of scans of a rawlog.
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
-#include <Eigen/Geometry>
 #include <filesystem>
 
 #include "cli.h"
-#include "delio/error.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/scan_source.h"
-#include "delio/map/figures.h"
-#include "delio/map/scene.h"
-#include "delio/odometry.h"
-#include "delio/profile.h"
+#include "delio/core/error.h"
+#include "delio/io/scan_reader.h"
+#include "delio/odometry/paper_odometry.h"
+#include "delio/picture/figures.h"
+#include "delio/picture/render.h"
+#include "delio/picture/scene.h"
+#include "delio/slam/options.h"
+#include "delio/surfaces/surfaces.h"
 #include "delio/version.h"
 
 namespace {
@@ -28,12 +28,12 @@ class Figures {
         if (fault) throw Error("cannot make the folder '" + folder_ + "'");
     }
     void save(const std::string& name, mrpt::opengl::COpenGLScene& scene,
-              const map::SnapshotOptions& view) const {
+              const picture::SnapshotOptions& view) const {
         const std::string path = folder_ + "/" + name;
         cli::refuseExisting(path + ".3Dscene", force_);
         cli::refuseExisting(path + ".png", force_);
-        map::saveScene(scene, path + ".3Dscene");
-        map::savePicture(scene, view, path + ".png");
+        picture::saveScene(scene, path + ".3Dscene");
+        picture::savePicture(scene, view, path + ".png");
         cli::inform("wrote '" + path + ".3Dscene' and '.png'");
     }
 
@@ -42,77 +42,83 @@ class Figures {
     bool force_;
 };
 
-std::vector<Scan> readScans(const std::string& rawlog, std::size_t first) {
-    io::ScanSource source(rawlog);
+std::vector<Scan> readScans(io::ScanReader& reader, const std::string& input, std::size_t first) {
     for (std::size_t i = 0; i < first; ++i)
-        if (!source.skip()) break;
+        if (!reader.skip()) break;
     std::vector<Scan> scans;
     while (scans.size() < kScans) {
-        auto scan = source.next();
+        auto scan = reader.next();
         if (!scan) break;
         scans.push_back(std::move(*scan));
     }
     if (scans.size() < 2)
-        throw Error("'" + rawlog + "' has fewer than two scans from scan " + std::to_string(first) +
+        throw Error("'" + input + "' has fewer than two scans from scan " + std::to_string(first) +
                     " on");
     return scans;
 }
 
-rotation::SurfaceNormals normalsOf(const Scan& scan, const OdometryOptions& options) {
-    const auto cloud = scan::preprocess(scan, options.preprocess);
-    return rotation::filterBilaterally(rotation::estimateNormals(cloud.points, options.normals),
-                                       options.bilateral);
+surfaces::SurfaceNormals normalsOf(const Scan& scan, const PaperOdometryOptions& options) {
+    const auto cloud = scan::preprocess(scan, options.scan);
+    return surfaces::surfacesOf(cloud.points, options.normals, options.bilateral);
 }
 
 /** The pattern of scans that follow each other: it moves as the vehicle turns. */
-void drawPatterns(const std::vector<Scan>& scans, const OdometryOptions& options,
+void drawPatterns(const std::vector<Scan>& scans, const PaperOdometryOptions& options,
                   const Figures& figures) {
     std::vector<Eigen::Matrix3Xf> patterns;
     std::vector<std::string> captions;
     for (const auto& scan : scans) {
         patterns.push_back(
-            rotation::removeOutliers(normalsOf(scan, options), options.outliers).directions);
+            paper::removeOutliers(normalsOf(scan, options), options.outliers).directions);
         captions.push_back("scan " + std::to_string(scan.index));
     }
-    figures.save("normals_sphere", *map::sphereScene(patterns, captions),
-                 map::sphereView(patterns.size()));
+    figures.save("normals_sphere", *picture::sphereScene(patterns, captions),
+                 picture::sphereView(patterns.size()));
 }
 
 /** All normals of a scan, and what each round of outlier removal leaves of them. */
-void drawOutlierRemoval(const Scan& scan, const OdometryOptions& options, const Figures& figures) {
+void drawOutlierRemoval(const Scan& scan, const PaperOdometryOptions& options,
+                        const Figures& figures) {
     const auto normals = normalsOf(scan, options);
     std::vector<Eigen::Matrix3Xf> steps;
     std::vector<std::string> captions;
     for (unsigned round = 0; round <= options.outliers.rounds; ++round) {
         steps.push_back(
-            rotation::removeOutliers(normals, options.outliers.firstRounds(round)).directions);
+            paper::removeOutliers(normals, options.outliers.firstRounds(round)).directions);
         captions.push_back(std::to_string(steps.back().cols()) + " normals");
     }
-    figures.save("outlier_removal", *map::sphereScene(steps, captions),
-                 map::sphereView(steps.size()));
+    figures.save("outlier_removal", *picture::sphereScene(steps, captions),
+                 picture::sphereView(steps.size()));
 }
 
 /** The line cloud of a scan, and the pairs with the next one's before and after registration. */
-void drawLines(const std::vector<Scan>& scans, const OdometryOptions& options,
+void drawLines(const std::vector<Scan>& scans, const PaperOdometryOptions& options,
                const Figures& figures) {
-    OdometryOptions stages = options;
-    stages.tracker.enabled = false;  // lines are drawn on the paper's way only
-    Odometry odometry(stages);
-    const auto from = odometry.process(scans[0]);
-    const auto to = odometry.process(scans[1]);
-    map::SnapshotOptions view = map::topView();
+    PaperOdometry odometry(options);
+    const Step first = odometry.process(scans[0]), second = odometry.process(scans[1]);
+    const auto linesOf = [](const Step& step) -> const paper::LineCloud& {
+        return std::static_pointer_cast<const PaperFeatures>(step.features)->lines;
+    };
+    const Eigen::Isometry3d& pose = second.increment.pose;
+    const paper::LineCloud& from = linesOf(first);
+    const paper::LineCloud to = paper::rotated(linesOf(second), pose.linear());
+    picture::SnapshotOptions view = picture::topView();
     view.zoom_m = 60;
-    figures.save("line_cloud", *map::lineScene(from.features->lines), view);
-    const auto& pose = to.increment.pose;
-    const auto unrotated =
-        translation::rotated(to.features->lines, pose.getRotationMatrix().asEigen());
+    figures.save("line_cloud", *picture::lineScene(from), view);
     view.zoom_m = 30;
-    figures.save("line_matches_before",
-                 *map::matchScene(from.features->lines, unrotated, Eigen::Vector3d::Zero()), view);
-    figures.save("line_matches_after",
-                 *map::matchScene(from.features->lines, unrotated,
-                                  Eigen::Vector3d(pose.x(), pose.y(), pose.z())),
+    figures.save("line_matches_before", *picture::matchScene(from, to, Eigen::Vector3d::Zero()),
                  view);
+    figures.save("line_matches_after", *picture::matchScene(from, to, pose.translation()), view);
+}
+
+/** What the command line chooses for the stages of the paper. Throws Error as Options does. */
+PaperOdometryOptions optionsFor(const std::string& profile, const io::ScanReader& reader,
+                                const std::vector<std::string>& assignments) {
+    Options options = Options::forDrive(profile, reader.meta());
+    for (const auto& assignment : assignments) options.set(assignment);
+    options.method.method = "paper";  // whose stages are drawn, whatever the profile goes by
+    options.check();
+    return options.paper;
 }
 }  // namespace
 
@@ -131,21 +137,19 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg verbose("", "verbose", "All the text of errors", cmd);
 
     return cli::run(cmd, argc, argv, verbose, [&] {
-        Options options;
+        const auto reader = io::openScans(input.getValue());
+        PaperOdometryOptions options;
         try {
-            options = Options::ofProfile(profile.getValue());
-            if (const auto meta = io::readDriveMeta(input.getValue()))
-                options.odometry.preprocess.vertical_correction_deg = meta->verticalCorrectionDeg;
-            for (const auto& assignment : set.getValue()) options.set(assignment);
+            options = optionsFor(profile.getValue(), *reader, set.getValue());
         } catch (const Error& e) {
             cli::inform(e.what());
             return cli::kExitBadCommandLine;
         }
-        const auto scans = readScans(input.getValue(), scan.getValue());
+        const auto scans = readScans(*reader, input.getValue(), scan.getValue());
         const Figures figures(output.getValue(), force.getValue());
-        drawPatterns(scans, options.odometry, figures);
-        drawOutlierRemoval(scans[0], options.odometry, figures);
-        drawLines(scans, options.odometry, figures);
+        drawPatterns(scans, options, figures);
+        drawOutlierRemoval(scans[0], options, figures);
+        drawLines(scans, options, figures);
         return cli::kExitSuccess;
     });
 }

@@ -1,13 +1,13 @@
 #include "eval_inputs.h"
 
+#include <mrpt/core/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
 
 #include "cli.h"
-#include "delio/error.h"
-#include "delio/evaluation/association.h"
-#include "delio/evaluation/frame_check.h"
+#include "delio/core/error.h"
 #include "delio/io/scan_table.h"
 #include "delio/io/trajectory.h"
 
@@ -16,19 +16,20 @@ namespace fs = std::filesystem;
 using evaluation::Comparison;
 
 namespace {
-constexpr double kKittiInterval_s = 0.1;
+// What delio-slam writes into its folder.
+constexpr const char* kPosesOfCam0 = "trajectory_kitti_cam0.txt";
+constexpr const char* kPoses = "trajectory_kitti.txt";
+constexpr const char* kScanTable = "scans.csv";
 
 /** The pose file of an estimate: a folder that delio-slam has written stands for the trajectory in
  *  it that is, or after --calib will be, in the frame of cam0. */
 std::string poseFile(const std::string& path, bool calibrationGiven) {
     if (!fs::is_directory(path)) return path;
-    for (const char* name : {"trajectory_kitti_cam0.txt", "trajectory_kitti.txt"}) {
-        const fs::path file = fs::path(path) / name;
-        const bool inCam0 = std::string(name) == "trajectory_kitti_cam0.txt";
-        if (fs::exists(file) && !(inCam0 && calibrationGiven)) return file.string();
-    }
-    throw Error("'" + path +
-                "' is a folder without a trajectory_kitti.txt; give --ref a folder too to score "
+    const fs::path ofCam0 = fs::path(path) / kPosesOfCam0, file = fs::path(path) / kPoses;
+    if (fs::exists(ofCam0) && !calibrationGiven) return ofCam0.string();
+    if (fs::exists(file)) return file.string();
+    throw Error("'" + path + "' is a folder without a " + kPoses +
+                "; give --ref a folder too to score "
                 "every NN.txt in it, or name a pose file");
 }
 
@@ -54,7 +55,7 @@ std::vector<Sequence> sharedSequences(const fs::path& reference, const fs::path&
         const fs::path own = estimate / file.filename(), folder = estimate / file.stem();
         if (fs::exists(own))
             sequences.push_back({file.string(), own.string()});
-        else if (fs::exists(folder / "trajectory_kitti.txt"))
+        else if (fs::exists(folder / kPoses))
             sequences.push_back({file.string(), poseFile(folder.string(), calibrationGiven)});
     }
     if (sequences.empty())
@@ -63,27 +64,19 @@ std::vector<Sequence> sharedSequences(const fs::path& reference, const fs::path&
     return sequences;
 }
 
-std::string faultOfFrames(evaluation::FrameMismatch mismatch, bool calibrationGiven) {
-    switch (mismatch) {
-        case evaluation::FrameMismatch::none:
-            return "";
-        case evaluation::FrameMismatch::lidarAgainstCamera:
-            return "the estimate looks like it is in the LiDAR frame (x forward), the reference in "
-                   "the camera frame (z forward); give --calib calib.txt to bring the estimate to "
-                   "cam0";
-        case evaluation::FrameMismatch::cameraAgainstLidar:
-            break;
-    }
-    return calibrationGiven
-               ? "the estimate looks like it is in cam0's frame already, or the reference in the "
-                 "LiDAR frame; leave --calib out"
-               : "the estimate looks like it is in the camera frame (z forward), the reference in "
-                 "the LiDAR frame (x forward); give both in the same frame";
+/** What is wrong with trajectories of different frames, and what to do. */
+std::string faultOfFrames(const evaluation::WrongFrames& fault, bool calibrationGiven) {
+    if (fault.mismatch() == evaluation::FrameMismatch::lidarAgainstCamera)
+        return std::string(fault.what()) + "; give --calib calib.txt to bring the estimate to cam0";
+    if (calibrationGiven)
+        return "the estimate looks like it is in cam0's frame already, or the reference in the "
+               "LiDAR frame; leave --calib out";
+    return std::string(fault.what()) + "; give both in the same frame";
 }
 
 /** The scans.csv beside a trajectory that delio-slam has written. */
 std::optional<io::ScanTable> scanTableBeside(const fs::path& estimateFile, std::size_t poses) {
-    const fs::path file = estimateFile.parent_path() / "scans.csv";
+    const fs::path file = estimateFile.parent_path() / kScanTable;
     if (estimateFile.filename().string().rfind("trajectory", 0) != 0 || !fs::exists(file))
         return {};
     auto table = io::readScanTable(file.string());
@@ -93,37 +86,43 @@ std::optional<io::ScanTable> scanTableBeside(const fs::path& estimateFile, std::
     return {};
 }
 
-/** Of a reference with a row for every scan, the rows of the scans that were used: delio-slam's
- *  --start, --count and --every leave some out. */
-void keepUsedScans(io::Trajectory& reference, const io::ScanTable& table, const std::string& pair) {
-    const std::size_t rows = reference.poses.size();
-    if (rows == table.scans.size() || table.scans.back() >= rows || !reference.stamps_s.empty())
-        return;
-    io::Trajectory used;
-    for (const std::size_t scan : table.scans) used.poses.push_back(reference.poses[scan]);
-    reference = std::move(used);
-    cli::inform(pair + "scored on the " + std::to_string(table.scans.size()) + " of " +
-                std::to_string(rows) + " scans that were used, as scans.csv has them");
+/** evaluation::compare() with messages for the command line. */
+Comparison compareOrSayWhy(const io::Trajectory& reference, const io::Trajectory& estimate,
+                           const EvalSettings& settings, const io::ScanTable* table,
+                           const std::string& pair) {
+    try {
+        return evaluation::compare(reference, estimate, settings.comparison, table);
+    } catch (const evaluation::WrongFrames& e) {
+        throw Error(pair + faultOfFrames(e, settings.Tr.has_value()));
+    } catch (const Error& e) {
+        throw Error(pair + e.what());
+    }
 }
 
-/** Seconds of each pair of poses. */
-void setTimes(Comparison& comparison, const evaluation::Association& matched,
-              const std::optional<io::ScanTable>& table) {
-    for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
-        const std::size_t row = matched.estimateRows[i];
-        if (!matched.stamps_s.empty())
-            comparison.times_s.push_back(matched.stamps_s[i] - matched.stamps_s[0]);
-        else if (table)
-            comparison.times_s.push_back(table->stamps_s[row] - table->stamps_s[0]);
-        else
-            comparison.times_s.push_back(kKittiInterval_s * static_cast<double>(i));
-        if (table) comparison.predicted.push_back(table->predicted[row]);
-    }
-    comparison.timesAreAssumed = matched.stamps_s.empty() && !table;
+/** What people should know of the poses that were compared. */
+void describe(const Comparison& comparison, bool verbose, const std::string& pair) {
+    const std::string matched = std::to_string(comparison.reference.size());
+    if (comparison.unusedReference > 0)
+        cli::inform(pair + "scored on the " + matched + " of " +
+                    std::to_string(comparison.reference.size() + comparison.unusedReference) +
+                    " scans that were used, as " + kScanTable + " has them");
+    if (comparison.unmatchedReference + comparison.unmatchedEstimate > 0)
+        cli::warn(pair + matched + " poses match in time; " +
+                  std::to_string(comparison.unmatchedEstimate) + " of the estimate and " +
+                  std::to_string(comparison.unmatchedReference) +
+                  " of the reference have no partner and are left out");
+    else if (verbose)
+        cli::inform(pair + matched + " poses");
+    const auto& row = comparison.row;
+    if (row.kitti.segments > 0) return;
+    const std::string lengths = textOf(evaluation::suggestedLengths_m(row.length_m));
+    cli::inform(
+        pair +
+        mrpt::format("the path of %.1f m is too short for the lengths asked for", row.length_m) +
+        (lengths.empty() ? "" : "; try --lengths " + lengths));
 }
 }  // namespace
 
-/** `[NAME=]PATH`, named after the file or folder where no name is given. */
 Estimate estimateOf(const std::string& text) {
     const auto equals = text.find('=');
     if (equals != std::string::npos && !fs::exists(text))
@@ -133,7 +132,6 @@ Estimate estimateOf(const std::string& text) {
     return {last.stem().string(), text};
 }
 
-/** What is wrong with the names of the estimates; empty if nothing. */
 std::string faultOfNames(const std::vector<Estimate>& estimates) {
     std::set<std::string> names;
     for (const auto& estimate : estimates) {
@@ -156,52 +154,21 @@ std::string textOf(const std::vector<double>& lengths) {
 
 Comparison compareFiles(const std::string& name, const std::string& referenceFile,
                         const std::string& estimateFile, const EvalSettings& settings) {
-    auto reference = io::readTrajectory(referenceFile);
+    const auto reference = io::readTrajectory(referenceFile);
     auto estimate = io::readTrajectory(estimateFile);
-    const std::string pair = "'" + estimateFile + "' against '" + referenceFile + "': ";
     const auto table = scanTableBeside(estimateFile, estimate.poses.size());
-    if (table && estimate.stamps_s.empty()) keepUsedScans(reference, *table, pair);
     if (settings.Tr) estimate = io::lidarToCam0(estimate, *settings.Tr);
-
-    evaluation::Association matched;
-    try {
-        matched = evaluation::associate(reference, estimate);
-    } catch (const Error& e) {
-        throw Error(pair + e.what());
-    }
-    if (matched.unmatchedReference + matched.unmatchedEstimate > 0)
-        cli::warn(pair + std::to_string(matched.estimate.size()) + " poses match in time; " +
-                  std::to_string(matched.unmatchedEstimate) + " of the estimate and " +
-                  std::to_string(matched.unmatchedReference) +
-                  " of the reference have no partner and are left out");
-    else if (settings.verbose)
-        cli::inform(pair + std::to_string(matched.estimate.size()) + " poses");
-    const std::string fault =
-        faultOfFrames(evaluation::findFrameMismatch(matched.reference, matched.estimate),
-                      settings.Tr.has_value());
-    if (!fault.empty()) throw Error(pair + fault);
-
-    Comparison comparison;
-    setTimes(comparison, matched, table);
-    comparison.row =
-        evaluation::score(matched.reference, matched.estimate, settings.lengths_m, settings.delta);
-    auto& row = comparison.row;
-    row.name = name;
-    row.sequence = fs::path(referenceFile).stem().string();
-    if (row.kitti.segments == 0) {
-        const std::string lengths = textOf(evaluation::suggestedLengths_m(row.length_m));
-        cli::inform(pair +
-                    mrpt::format("the path of %.1f m is too short for the lengths asked for",
-                                 row.length_m) +
-                    (lengths.empty() ? "" : "; try --lengths " + lengths));
-    }
-    comparison.reference = std::move(matched.reference);
-    comparison.estimate = std::move(matched.estimate);
+    const std::string pair = "'" + estimateFile + "' against '" + referenceFile + "': ";
+    auto comparison =
+        compareOrSayWhy(reference, estimate, settings, table ? &*table : nullptr, pair);
+    comparison.row.name = name;
+    comparison.row.sequence = fs::path(referenceFile).stem().string();
+    describe(comparison, settings.verbose, pair);
     return comparison;
 }
 
-std::vector<Comparison> compare(const std::string& reference, const Estimate& estimate,
-                                const EvalSettings& settings) {
+std::vector<Comparison> compareSequences(const std::string& reference, const Estimate& estimate,
+                                         const EvalSettings& settings) {
     const bool calibrationGiven = settings.Tr.has_value();
     if (!fs::is_directory(reference))
         return {compareFiles(estimate.name, reference, poseFile(estimate.path, calibrationGiven),

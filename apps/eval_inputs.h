@@ -1,5 +1,5 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
+#include <Eigen/Geometry>
 
 #include <optional>
 #include <string>
@@ -21,9 +21,8 @@ Estimate estimateOf(const std::string& text);
 std::string faultOfNames(const std::vector<Estimate>& estimates);
 
 struct EvalSettings {
-    std::optional<mrpt::poses::CPose3D> Tr;  //!< set: estimates are brought from LiDAR to cam0
-    std::vector<double> lengths_m;
-    std::size_t delta = 1;
+    std::optional<Eigen::Isometry3d> Tr;  //!< set: estimates are brought from LiDAR to cam0
+    evaluation::ComparisonSettings comparison;
     bool verbose = false;
 };
 
@@ -38,6 +37,7 @@ evaluation::Comparison compareFiles(const std::string& name, const std::string& 
 
 /** All sequences of one estimate. `reference` is a pose file, and the estimate one too or a folder
  *  of delio-slam; or it is a folder of NN.txt, and the estimate one of NN.txt or of folders NN. */
-std::vector<evaluation::Comparison> compare(const std::string& reference, const Estimate& estimate,
-                                            const EvalSettings& settings);
+std::vector<evaluation::Comparison> compareSequences(const std::string& reference,
+                                                     const Estimate& estimate,
+                                                     const EvalSettings& settings);
 }  // namespace delio

@@ -10,16 +10,15 @@
 #include <cstdlib>
 #include <unordered_set>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "delio/map/colormap.h"
-#include "delio/map/figures.h"
+#include "delio/picture/figures.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio {
 using mrpt::img::TColor;
 using mrpt::opengl::COpenGLScene;
 using mrpt::opengl::COpenGLViewport;
-using mrpt::poses::CPose3D;
 
 namespace {
 constexpr double kMapVoxel_m = 0.4;
@@ -56,22 +55,22 @@ void setCamera(COpenGLViewport& viewport, float azimuth_deg, float elevation_deg
 }  // namespace
 
 struct LiveView::Window {
-    explicit Window(const OdometryOptions& o) : options(o), window("DeLiO", 1280, 800) {}
+    explicit Window(const PaperOdometryOptions& o) : options(o), window("DeLiO", 1280, 800) {}
 
     void prepare();
-    void showInsets(const Scan& scan, const CPose3D& increment, COpenGLScene& scene);
-    void showMap(const Scan& scan, const CPose3D& pose, COpenGLScene& scene);
+    void showInsets(const Scan& scan, const Eigen::Isometry3d& increment, COpenGLScene& scene);
+    void showMap(const Scan& scan, const Eigen::Isometry3d& pose, COpenGLScene& scene);
 
-    OdometryOptions options;
+    PaperOdometryOptions options;
     mrpt::gui::CDisplayWindow3D window;
     mrpt::opengl::CPointCloudColoured::Ptr map = mrpt::opengl::CPointCloudColoured::Create();
     mrpt::opengl::CPointCloud::Ptr current = mrpt::opengl::CPointCloud::Create();
     mrpt::opengl::CSetOfLines::Ptr way = mrpt::opengl::CSetOfLines::Create();
     mrpt::opengl::CSetOfObjects::Ptr vehicle = mrpt::opengl::stock_objects::CornerXYZSimple(2, 3);
     std::unordered_set<std::uint64_t> taken;
-    CPose3D lastMapped, last;
+    Eigen::Isometry3d lastMapped = Eigen::Isometry3d::Identity(), last = lastMapped;
     bool first = true;
-    translation::LineCloud lines;  //!< of the scan before
+    paper::LineCloud lines;  //!< of the scan before
 };
 
 void LiveView::Window::prepare() {
@@ -104,47 +103,48 @@ void LiveView::Window::prepare() {
     window.addTextMessage(0.01, 0.02, "map, current scan (white), trajectory (yellow)");
 }
 
-void LiveView::Window::showInsets(const Scan& scan, const CPose3D& increment, COpenGLScene& scene) {
-    const auto cloud = scan::preprocess(scan, options.preprocess);
-    const auto normals = rotation::estimateNormals(cloud.points, options.normals);
+void LiveView::Window::showInsets(const Scan& scan, const Eigen::Isometry3d& increment,
+                                  COpenGLScene& scene) {
+    const auto cloud = scan::preprocess(scan, options.scan);
+    const auto normals = surfaces::estimateNormals(cloud.points, options.normals);
     replaceContent(
         *scene.getViewport("sphere"),
-        *map::sphereScene({rotation::removeOutliers(normals, options.outliers).directions}, {}));
-    auto drawn = translation::drawLines(cloud.points, cloud.rings, options.lines);
+        *picture::sphereScene({paper::removeOutliers(normals, options.outliers).directions}, {}));
+    auto drawn = paper::drawLines(cloud.points, scan::neighbouringRings(cloud), options.lines);
     if (!first) {
-        const auto unrotated = translation::rotated(drawn, increment.getRotationMatrix().asEigen());
-        replaceContent(
-            *scene.getViewport("lines"),
-            *map::matchScene(lines, unrotated, {increment.x(), increment.y(), increment.z()}));
+        const auto unrotated = paper::rotated(drawn, increment.linear());
+        replaceContent(*scene.getViewport("lines"),
+                       *picture::matchScene(lines, unrotated, increment.translation()));
     }
     lines = std::move(drawn);
 }
 
-void LiveView::Window::showMap(const Scan& scan, const CPose3D& pose, COpenGLScene&) {
-    const CPose3D sensor = pose + scan.sensorPose;
+void LiveView::Window::showMap(const Scan& scan, const Eigen::Isometry3d& pose, COpenGLScene&) {
+    const Eigen::Isometry3d sensor = pose * scan.sensorPose;
     current->loadFromPointsMap(scan.points.get());
-    current->setPose(sensor);
-    vehicle->setPose(pose);
-    if (!first) way->appendLine(last.translation(), pose.translation());
+    current->setPose(toMrpt(sensor));
+    vehicle->setPose(toMrpt(pose));
+    if (!first) way->appendLine(toMrpt(last).translation(), toMrpt(pose).translation());
     last = pose;
-    if (!first && pose.distanceTo(lastMapped) < kMapStep_m) return;
+    if (!first && (pose.translation() - lastMapped.translation()).norm() < kMapStep_m) return;
     lastMapped = pose;
     const auto& x = scan.points->getPointsBufferRef_x();
     const auto& y = scan.points->getPointsBufferRef_y();
     const auto& z = scan.points->getPointsBufferRef_z();
-    const double least = options.preprocess.min_range, most = options.preprocess.max_range;
+    const double least = options.scan.min_range, most = options.scan.max_range;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const mrpt::math::TPoint3D p(double{x[i]}, double{y[i]}, double{z[i]});
+        const Eigen::Vector3d p(double{x[i]}, double{y[i]}, double{z[i]});
         if (!(p.norm() >= least && p.norm() <= most)) continue;
-        const auto q = sensor.composePoint(p);
-        if (!taken.insert(scan::voxelKey({q.x, q.y, q.z}, kMapVoxel_m)).second) continue;
-        const TColor c = map::colourAt(map::Colormap::Turbo, kHeights.fractionAt(q.z - sensor.z()));
-        map->insertPoint({static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z),
-                          c.R, c.G, c.B});
+        const Eigen::Vector3d q = sensor * p;
+        if (!taken.insert(scan::voxelKey(q, kMapVoxel_m)).second) continue;
+        const TColor c = map::colourAt(map::Colormap::Turbo,
+                                       kHeights.fractionAt(q.z() - sensor.translation().z()));
+        map->insertPoint({static_cast<float>(q.x()), static_cast<float>(q.y()),
+                          static_cast<float>(q.z()), c.R, c.G, c.B});
     }
 }
 
-LiveView::LiveView(const OdometryOptions& options) {
+LiveView::LiveView(const PaperOdometryOptions& options) {
     // MRPT would wait for a while and then go on without a window.
     const char* display = std::getenv("DISPLAY");
     if (!display || !*display)
@@ -160,17 +160,17 @@ LiveView::LiveView(const OdometryOptions& options) {
 // still be drawing it.
 LiveView::~LiveView() { static_cast<void>(window_.release()); }
 
-void LiveView::show(const Scan& scan, const CPose3D& increment, const CPose3D& pose) {
+void LiveView::add(const SlamScan& told) {
     if (!isOpen()) return;
     {
         COpenGLScene::Ptr scene;
         mrpt::gui::CDisplayWindow3DLocker locked(window_->window, scene);
-        window_->showInsets(scan, increment, *scene);
-        window_->showMap(scan, pose, *scene);
+        window_->showInsets(told.scan, told.step.increment.pose, *scene);
+        window_->showMap(told.scan, told.pose, *scene);
     }
     window_->first = false;
-    window_->window.setCameraPointingToPoint(
-        static_cast<float>(pose.x()), static_cast<float>(pose.y()), static_cast<float>(pose.z()));
+    const Eigen::Vector3f at = told.pose.translation().cast<float>();
+    window_->window.setCameraPointingToPoint(at.x(), at.y(), at.z());
     window_->window.repaint();
 }
 

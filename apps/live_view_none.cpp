@@ -1,16 +1,16 @@
 // Where mrpt-gui is not installed there is no live view.
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "live_view.h"
 
 namespace delio {
 struct LiveView::Window {};
 
-LiveView::LiveView(const OdometryOptions&) {
+LiveView::LiveView(const PaperOdometryOptions&) {
     throw Error(
         "this delio-slam has no live view: install libmrpt-gui-dev and build it again, or leave "
         "out --gui");
 }
 LiveView::~LiveView() = default;
-void LiveView::show(const Scan&, const mrpt::poses::CPose3D&, const mrpt::poses::CPose3D&) {}
+void LiveView::add(const SlamScan&) {}
 bool LiveView::isOpen() const { return false; }
 }  // namespace delio

@@ -1,12 +1,12 @@
 // kitti2rawlog: a KITTI odometry sequence or raw drive as an MRPT rawlog.
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
-#include <cstring>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "cli.h"
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "delio/io/rawlog_writer.h"
 #include "delio/version.h"
 #include "kitti_drive.h"
@@ -31,49 +31,63 @@ std::string joined(const std::vector<std::string>& rows) {
     for (const auto& row : rows) text += row + "\n";
     return text;
 }
+struct Arguments {
+    TCLAP::CmdLine cmd{"kitti2rawlog: a KITTI odometry sequence or raw drive as an MRPT rawlog",
+                       ' ', kVersion};
+    TCLAP::ValueArg<std::string> input{
+        "i", "input", "Folder of the sequence or of the raw drive", true, "", "SEQUENCE_DIR", cmd};
+    TCLAP::ValueArg<std::string> output{"o",          "output", "Rawlog to write", true, "",
+                                        "OUT.rawlog", cmd};
+    TCLAP::SwitchArg embed{"", "embed", "Keep the points in the rawlog, not in OUT_Images/", cmd};
+    TCLAP::ValueArg<cli::Count> start{"",  "start", "First scan to take, from 0", false, {},
+                                      "N", cmd};
+    TCLAP::ValueArg<cli::Count> count{"",  "count", "How many scans to take; 0: all", false, {},
+                                      "N", cmd};
+    TCLAP::ValueArg<std::string> label{
+        "", "label", "Sensor label in the rawlog", false, "velodyne", "LABEL", cmd};
+    TCLAP::SwitchArg force{"", "force", "Overwrite what exists", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "All the text of errors", cmd};
+};
+
+/** False if Ctrl-C came before the last scan. */
+bool writeScans(const KittiDrive& drive, io::RawlogWriter& writer) {
+    cli::Progress progress("converting", drive.scans.size());
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+        if (cli::interrupted()) return false;
+        writer.add(drive.times_s[i], drive.meta.epoch_s, readScan(drive.scans[i]));
+        progress.update(i + 1);
+    }
+    return true;
+}
+
+std::vector<std::string> timeRowsOf(const KittiDrive& drive) {
+    if (!drive.timeRows.empty()) return drive.timeRows;
+    std::vector<std::string> rows;
+    for (const double time : drive.times_s) {
+        char row[32];
+        std::snprintf(row, sizeof(row), "%.9f", time);
+        rows.emplace_back(row);
+    }
+    return rows;
+}
+
+int convert(Arguments& args) {
+    cli::catchInterrupts();
+    auto drive =
+        openKittiDrive(args.input.getValue(), args.start.getValue(), args.count.getValue());
+    for (const auto& warning : drive.warnings) cli::warn(warning);
+    drive.meta.generator = std::string("kitti2rawlog (delio ") + kVersion + ")";
+    const std::string& output = args.output.getValue();
+    io::RawlogWriter writer(output, args.label.getValue(), args.embed.getValue(),
+                            args.force.getValue());
+    if (!writeScans(drive, writer)) return cli::kExitInterrupted;
+    writer.finish(drive.meta, joined(timeRowsOf(drive)), drive.calibText, joined(drive.poseRows));
+    cli::inform("wrote " + std::to_string(writer.scans()) + " scans to '" + output + "'");
+    return cli::kExitSuccess;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
-    TCLAP::CmdLine cmd("kitti2rawlog: a KITTI odometry sequence or raw drive as an MRPT rawlog",
-                       ' ', kVersion);
-    TCLAP::ValueArg<std::string> input("i", "input", "Folder of the sequence or of the raw drive",
-                                       true, "", "SEQUENCE_DIR", cmd);
-    TCLAP::ValueArg<std::string> output("o", "output", "Rawlog to write", true, "", "OUT.rawlog",
-                                        cmd);
-    TCLAP::SwitchArg embed("", "embed", "Keep the points in the rawlog, not in OUT_Images/", cmd);
-    TCLAP::ValueArg<cli::Count> start("", "start", "First scan to take, from 0", false, {}, "N",
-                                      cmd);
-    TCLAP::ValueArg<cli::Count> count("", "count", "How many scans to take; 0: all", false, {}, "N",
-                                      cmd);
-    TCLAP::ValueArg<std::string> label("", "label", "Sensor label in the rawlog", false, "velodyne",
-                                       "LABEL", cmd);
-    TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
-    TCLAP::SwitchArg verbose("", "verbose", "All the text of errors", cmd);
-
-    return cli::run(cmd, argc, argv, verbose, [&] {
-        cli::catchInterrupts();
-        auto drive = openKittiDrive(input.getValue(), start.getValue(), count.getValue());
-        for (const auto& warning : drive.warnings) cli::warn(warning);
-        drive.meta.generator = std::string("kitti2rawlog (delio ") + kVersion + ")";
-        io::RawlogWriter writer(output.getValue(), label.getValue(), embed.getValue(),
-                                force.getValue());
-        {
-            cli::Progress progress("converting", drive.scans.size());
-            for (std::size_t i = 0; i < drive.scans.size(); ++i) {
-                if (cli::interrupted()) return cli::kExitInterrupted;
-                writer.add(drive.times_s[i], drive.meta.epoch_s, readScan(drive.scans[i]));
-                progress.update(i + 1);
-            }
-        }
-        if (drive.timeRows.empty())
-            for (const double time : drive.times_s) {
-                char row[32];
-                std::snprintf(row, sizeof(row), "%.9f", time);
-                drive.timeRows.emplace_back(row);
-            }
-        writer.finish(drive.meta, joined(drive.timeRows), drive.calibText, joined(drive.poseRows));
-        cli::inform("wrote " + std::to_string(writer.scans()) + " scans to '" + output.getValue() +
-                    "'");
-        return cli::kExitSuccess;
-    });
+    Arguments args;
+    return cli::run(args.cmd, argc, argv, args.verbose, [&] { return convert(args); });
 }

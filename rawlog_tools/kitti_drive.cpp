@@ -8,12 +8,16 @@
 #include <map>
 #include <sstream>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
+#include "delio/core/geometry.h"
+#include "delio/core/numbers.h"
 #include "delio/io/rawlog_writer.h"
 #include "delio/io/trajectory.h"
 
 namespace delio {
 namespace fs = std::filesystem;
+// Poses are composed by MRPT: another order of sums would change the last digits of what is
+// written.
 using mrpt::poses::CPose3D;
 
 namespace {
@@ -130,7 +134,7 @@ double stampOf(const std::string& line, const fs::path& file) {
         throw Error("'" + file.string() + "': '" + line + "' is not a date and time");
     date.tm_year -= 1900;
     date.tm_mon -= 1;
-    return static_cast<double>(timegm(&date)) + std::stod(std::string("0.") + fraction);
+    return static_cast<double>(timegm(&date)) + *numberIn<double>(std::string("0.") + fraction);
 }
 
 using Rows = std::map<std::string, std::vector<double>>;
@@ -187,7 +191,7 @@ void readOxts(const fs::path& folder, const CPose3D& imuToCam0, KittiDrive& driv
         }
         const CPose3D imu = poseOfOxts(file, scale);
         if (drive.poseRows.empty()) first = imu;
-        drive.poseRows.push_back(io::kittiRow(imuToCam0 + (imu - first) + (-imuToCam0)));
+        drive.poseRows.push_back(io::kittiRow(fromMrpt(imuToCam0 + (imu - first) + (-imuToCam0))));
         drive.poseRows.back().pop_back();  // rows are kept without their line feed
     }
 }
@@ -216,7 +220,7 @@ void readRawDrive(const fs::path& folder, KittiDrive& drive) {
     }
     const CPose3D Tr = rigid(readRawCalibration(camToCam), "R_rect_00", "", camToCam) +
                        rigid(readRawCalibration(veloToCam), "R", "T", veloToCam);
-    drive.calibText = "Tr: " + io::kittiRow(Tr);
+    drive.calibText = "Tr: " + io::kittiRow(fromMrpt(Tr));
     if (!fs::exists(folder / "oxts") || !fs::exists(imuToVelo)) return;
     readOxts(folder, Tr + rigid(readRawCalibration(imuToVelo), "R", "T", imuToVelo), drive);
 }

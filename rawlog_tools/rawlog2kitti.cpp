@@ -5,12 +5,16 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
 
 #include "cli.h"
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "delio/io/drive_meta.h"
 #include "delio/io/output_file.h"
-#include "delio/io/scan_source.h"
+#include "delio/io/rawlog_reader.h"
 #include "delio/version.h"
 
 namespace {
@@ -57,64 +61,82 @@ struct PartialFolder {
         fs::remove_all(path, ignored);
     }
 };
+struct Arguments {
+    TCLAP::CmdLine cmd{"rawlog2kitti: the LiDAR scans of a rawlog as a KITTI odometry sequence",
+                       ' ', kVersion};
+    TCLAP::ValueArg<std::string> input{"i", "input", "Rawlog to read", true, "", "IN.rawlog", cmd};
+    TCLAP::ValueArg<std::string> output{"o", "output", "Folder to make", true, "", "SEQUENCE_DIR",
+                                        cmd};
+    TCLAP::ValueArg<std::string> label{
+        "", "sensor-label", "Sensor to take; default: the first one", false, "", "L", cmd};
+    TCLAP::ValueArg<std::string> images{"",    "images", "Folder of the external files", false, "",
+                                        "DIR", cmd};
+    TCLAP::SwitchArg force{"", "force", "Overwrite what exists", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "All the text of errors", cmd};
+};
+
+/** The folder to make; throws Error where it cannot be made. */
+fs::path targetOf(Arguments& args) {
+    const fs::path target =
+        fs::absolute(fs::path(args.output.getValue()) / "").lexically_normal().parent_path();
+    cli::refuseExisting(target.string(), args.force.getValue());
+    if (fs::exists(target) && !fs::is_directory(target))
+        throw Error("'" + target.string() + "' exists and is no folder; choose another name");
+    return target;
+}
+
+/** Fills velodyne/ of `folder`; the rows of times.txt, or nothing if Ctrl-C came before the end. */
+std::optional<std::vector<std::string>> writeScans(io::RawlogReader& reader,
+                                                   const fs::path& folder) {
+    std::vector<std::string> times;
+    cli::Progress progress("converting", 0);
+    while (const auto scan = reader.next()) {
+        if (cli::interrupted()) return {};
+        char text[64];
+        std::snprintf(text, sizeof(text), "%06zu.bin", times.size());
+        writeScan(*scan->points, folder / "velodyne" / text);
+        std::snprintf(text, sizeof(text), "%.7f\n", scan->stamp_s);
+        times.emplace_back(text);
+        progress.update(times.size());
+    }
+    return times;
+}
+
+void copySideFiles(const std::string& rawlog, const fs::path& folder) {
+    for (const std::string name : kNames) {
+        const fs::path side = io::sidecarPath(rawlog, "." + name);
+        if (fs::is_regular_file(side))
+            fs::copy_file(side, folder / name, fs::copy_options::overwrite_existing);
+    }
+}
+
+int convert(Arguments& args) {
+    cli::catchInterrupts();
+    const fs::path target = targetOf(args);
+    const std::string& rawlog = args.input.getValue();
+    io::RawlogReader reader(rawlog, args.label.getValue(), args.images.getValue());
+
+    const PartialFolder partial{target.parent_path() / (".partial-" + target.filename().string())};
+    std::error_code fault;
+    fs::create_directories(partial.path / "velodyne", fault);
+    if (fault) throw Error("cannot write '" + target.string() + "': " + fault.message());
+
+    const auto times = writeScans(reader, partial.path);
+    if (!times) return cli::kExitInterrupted;
+    if (times->empty()) throw Error("'" + rawlog + "' holds no LiDAR scans");
+    for (const auto& other : reader.otherLabels())
+        cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
+    io::replaceTextFile((partial.path / "times.txt").string(), [&](std::ostream& out) {
+        for (const auto& time : *times) out << time;
+    });
+    copySideFiles(rawlog, partial.path);
+    putInPlace(partial.path, target);
+    cli::inform("wrote " + std::to_string(times->size()) + " scans to '" + target.string() + "'");
+    return cli::kExitSuccess;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
-    TCLAP::CmdLine cmd("rawlog2kitti: the LiDAR scans of a rawlog as a KITTI odometry sequence",
-                       ' ', kVersion);
-    TCLAP::ValueArg<std::string> input("i", "input", "Rawlog to read", true, "", "IN.rawlog", cmd);
-    TCLAP::ValueArg<std::string> output("o", "output", "Folder to make", true, "", "SEQUENCE_DIR",
-                                        cmd);
-    TCLAP::ValueArg<std::string> label("", "sensor-label", "Sensor to take; default: the first one",
-                                       false, "", "L", cmd);
-    TCLAP::ValueArg<std::string> images("", "images", "Folder of the external files", false, "",
-                                        "DIR", cmd);
-    TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
-    TCLAP::SwitchArg verbose("", "verbose", "All the text of errors", cmd);
-
-    return cli::run(cmd, argc, argv, verbose, [&] {
-        cli::catchInterrupts();
-        const fs::path target =
-            fs::absolute(fs::path(output.getValue()) / "").lexically_normal().parent_path();
-        cli::refuseExisting(target.string(), force.getValue());
-        if (fs::exists(target) && !fs::is_directory(target))
-            throw Error("'" + target.string() + "' exists and is no folder; choose another name");
-        const auto meta = io::readDriveMeta(input.getValue());
-        io::ScanSource source(input.getValue(), label.getValue(), images.getValue(),
-                              meta ? meta->epoch_s : 0);
-
-        const PartialFolder partial{target.parent_path() /
-                                    (".partial-" + target.filename().string())};
-        std::error_code fault;
-        fs::create_directories(partial.path / "velodyne", fault);
-        if (fault) throw Error("cannot write '" + target.string() + "': " + fault.message());
-
-        std::string times;
-        std::size_t count = 0;
-        {
-            cli::Progress progress("converting", 0);
-            while (const auto scan = source.next()) {
-                if (cli::interrupted()) return cli::kExitInterrupted;
-                char text[64];
-                std::snprintf(text, sizeof(text), "%06zu.bin", count);
-                writeScan(*scan->points, partial.path / "velodyne" / text);
-                std::snprintf(text, sizeof(text), "%.7f\n", scan->stamp_s);
-                times += text;
-                progress.update(++count);
-            }
-        }
-        if (count == 0) throw Error("'" + input.getValue() + "' holds no LiDAR scans");
-        for (const auto& other : source.otherLabels())
-            cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
-        io::replaceTextFile((partial.path / "times.txt").string(),
-                            [&](std::ostream& out) { out << times; });
-        for (const std::string name : kNames) {
-            const fs::path side = io::sidecarPath(input.getValue(), "." + name);
-            if (fs::is_regular_file(side))
-                fs::copy_file(side, partial.path / name, fs::copy_options::overwrite_existing);
-        }
-        putInPlace(partial.path, target);
-        cli::inform("wrote " + std::to_string(count) + " scans to '" + target.string() + "'");
-        return cli::kExitSuccess;
-    });
+    Arguments args;
+    return cli::run(args.cmd, argc, argv, args.verbose, [&] { return convert(args); });
 }

@@ -13,7 +13,7 @@
 #include <iostream>
 #include <vector>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 
 namespace delio::cli {
 namespace {

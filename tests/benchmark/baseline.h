@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/prediction.h"
+#include "delio/odometry/prediction.h"
 #include "delio/scan/preprocess.h"
 #include "delio/scan/scan.h"
 

@@ -1,7 +1,7 @@
 #include "baseline.h"
-#include "delio/profile.h"
-#include "delio/slam.h"
-#include "delio/translation/coupled_registration.h"
+#include "delio/slam/options.h"
+#include "delio/slam/slam.h"
+#include "delio/paper/coupled_registration.h"
 
 namespace delio::benchmark {
 using mrpt::poses::CPose3D;
@@ -32,33 +32,33 @@ class Delio : public Baseline {
 /** Rotation and translation together from line clouds, as Velas et al., with the lines of profile
  *  paper. Of the first pair the motion is searched for, as DeLiO does: without it, line clouds do
  *  not find a vehicle that is moving already. */
-class CoupledLines : public ScanToScan<translation::LineCloud> {
+class CoupledLines : public ScanToScan<paper::LineCloud> {
  public:
     CoupledLines(const DriveFacts& facts, const OdometryOptions& options)
         : ScanToScan(facts), draw_(options.lines), registration_(options.lineRegistration) {}
 
  protected:
-    translation::LineCloud extract(const scan::PointCloud& cloud) override {
+    paper::LineCloud extract(const scan::PointCloud& cloud) override {
         ++draw_.seed;  // the same draw twice would pair lines with themselves
-        return translation::drawLines(cloud.points, cloud.rings, draw_);
+        return paper::drawLines(cloud.points, cloud.rings, draw_);
     }
-    CPose3D align(const translation::LineCloud& from, const translation::LineCloud& to,
+    CPose3D align(const paper::LineCloud& from, const paper::LineCloud& to,
                   const CPose3D& guess) override {
         Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
         start.linear() = guess.getRotationMatrix().asEigen();
         const Eigen::Vector3d t(guess.x(), guess.y(), guess.z());
-        start.translation() = first_ ? translation::searchTranslation(
+        start.translation() = first_ ? paper::searchTranslation(
                                            from, to, t, registration_.search_radius, registration_)
                                            .translation
                                      : t;
         first_ = false;
-        const auto found = translation::registerCoupled(from, to, start, registration_);
+        const auto found = paper::registerCoupled(from, to, start, registration_);
         return {Eigen::Matrix3d(found.pose.linear()), Eigen::Vector3d(found.pose.translation())};
     }
 
  private:
-    translation::LineCloudOptions draw_;
-    translation::LineRegistrationOptions registration_;
+    paper::LineCloudOptions draw_;
+    paper::LineRegistrationOptions registration_;
     bool first_ = true;
 };
 }  // namespace

@@ -18,8 +18,8 @@
 #include <iostream>
 
 #include "baseline.h"
-#include "delio/error.h"
-#include "delio/evaluation/report.h"
+#include "delio/core/error.h"
+#include "delio/evaluation/report/report.h"
 #include "delio/io/drive_meta.h"
 #include "delio/io/scan_source.h"
 #include "delio/io/trajectory.h"

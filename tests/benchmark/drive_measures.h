@@ -13,7 +13,7 @@ namespace delio::benchmark {
  *  metres, angles in degrees; the sensor stands 1.73 m above the ground. */
 class DriveMeasures {
  public:
-    /** `pose`: of the sensor in the world. Adds the measures of one scan. */
+    /** Adds the measures of one scan. */
     void add(const Scan& scan);
     /** Adds how well two consecutive scans coincide; `motion` maps `later` to `earlier`. */
     void addPair(const Scan& earlier, const Scan& later, const Eigen::Isometry3d& motion);

@@ -13,21 +13,27 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "../common/poses.h"
 #include "delio/evaluation/kitti_metric.h"
 #include "delio/evaluation/relative_error.h"
 #include "delio/graph/pose_graph.h"
 #include "delio/io/drive_meta.h"
-#include "delio/io/scan_source.h"
+#include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
-#include "delio/slam.h"
+#include "delio/odometry/make_odometry.h"
+#include "delio/slam/graph_builder.h"
+#include "delio/slam/options.h"
+#include "delio/slam/slam.h"
 
 namespace {
 using namespace delio;
-using mrpt::poses::CPose3D;
+using Poses = std::vector<Eigen::Isometry3d>;
+using test::poseAt;
 
 constexpr double kSigma_m = 0.01, kSigma_rad = 0.05 * M_PI / 180;
 
@@ -35,11 +41,11 @@ class Noise {
  public:
     double operator()() { return normal_(engine_); }
     std::size_t below(std::size_t count) { return engine_() % count; }
-    CPose3D operator()(const CPose3D& pose) {
+    Eigen::Isometry3d operator()(const Eigen::Isometry3d& pose) {
         const double x = kSigma_m * (*this)(), y = kSigma_m * (*this)(), z = kSigma_m * (*this)();
         const double a = kSigma_rad * (*this)(), b = kSigma_rad * (*this)(),
                      c = kSigma_rad * (*this)();
-        return pose + CPose3D::FromXYZYawPitchRoll(x, y, z, a, b, c);
+        return pose * poseAt(x, y, z, a, b, c);
     }
 
  private:
@@ -47,9 +53,8 @@ class Noise {
     std::normal_distribution<double> normal_;
 };
 
-graph::Edge edgeOf(std::size_t from, std::size_t to, const CPose3D& measured) {
-    graph::Edge edge{from, to, {measured, {}}};
-    edge.increment.covariance.setZero();
+graph::Edge edgeOf(std::size_t from, std::size_t to, const Eigen::Isometry3d& measured) {
+    graph::Edge edge{from, to, {measured, Matrix6::Zero()}};
     for (int i = 0; i < 3; ++i) {
         edge.increment.covariance(i, i) = kSigma_m * kSigma_m;
         edge.increment.covariance(3 + i, 3 + i) = kSigma_rad * kSigma_rad;
@@ -57,20 +62,19 @@ graph::Edge edgeOf(std::size_t from, std::size_t to, const CPose3D& measured) {
     return edge;
 }
 
-std::vector<CPose3D> blocks(std::size_t nodes) {
-    std::vector<CPose3D> poses{CPose3D()};
+Poses blocks(std::size_t nodes) {
+    Poses poses{Eigen::Isometry3d::Identity()};
     while (poses.size() < nodes) {
         const bool corner = poses.size() % 200 < 10;
-        poses.push_back(poses.back() +
-                        CPose3D::FromXYZYawPitchRoll(1, 0, 0, corner ? M_PI / 20 : 0, 0, 0));
+        poses.push_back(poses.back() * poseAt(1, 0, 0, corner ? M_PI / 20 : 0));
     }
     return poses;
 }
 
-void report(const char* what, const std::vector<CPose3D>& truth, const graph::PoseGraph& graph) {
+void report(const char* what, const Poses& truth, const graph::PoseGraph& graph) {
     double squares = 0, largest = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
-        const double d = truth[i].distanceTo(graph.poses()[i]);
+        const double d = test::metresBetween(truth[i], graph.poses()[i]);
         squares += d * d;
         largest = std::max(largest, d);
     }
@@ -92,12 +96,12 @@ void run(std::size_t nodes, std::size_t reach, std::size_t loops, std::size_t wr
     driven.addNode(truth[0]);
     std::vector<double> window_ms;
     for (std::size_t i = 1; i < nodes; ++i) {
-        const CPose3D step = noise(truth[i] - truth[i - 1]);
-        graph.addNode(graph.poses().back() + step);
+        const Eigen::Isometry3d step = noise(truth[i - 1].inverse() * truth[i]);
+        graph.addNode(graph.poses().back() * step);
         graph.addEdge(edgeOf(i - 1, i, step));
         for (std::size_t k = 2; k <= std::min(reach, i); ++k)
-            graph.addEdge(edgeOf(i - k, i, noise(truth[i] - truth[i - k])));
-        driven.addNode(driven.poses().back() + step);
+            graph.addEdge(edgeOf(i - k, i, noise(truth[i - k].inverse() * truth[i])));
+        driven.addNode(driven.poses().back() * step);
         for (auto edge = graph.edges().rbegin(); edge != graph.edges().rend() && edge->to == i;
              ++edge)
             driven.addEdge(*edge);
@@ -108,11 +112,12 @@ void run(std::size_t nodes, std::size_t reach, std::size_t loops, std::size_t wr
     for (std::size_t i = 0; i < loops && nodes > 800; ++i) {
         const std::size_t from = noise.below(nodes - 800);
         const std::size_t to = from + 800 * (1 + noise.below((nodes - 1 - from) / 800));
-        graph.addEdge(edgeOf(from, to, noise(truth[to] - truth[from])));
+        graph.addEdge(edgeOf(from, to, noise(truth[from].inverse() * truth[to])));
     }
     for (std::size_t i = 0; i < wrong; ++i) {
         const std::size_t from = noise.below(nodes - 1);
-        graph.addEdge(edgeOf(from, from + 1 + noise.below(nodes - 1 - from), CPose3D()));
+        graph.addEdge(
+            edgeOf(from, from + 1 + noise.below(nodes - 1 - from), Eigen::Isometry3d::Identity()));
     }
     std::printf("%zu nodes, %zu edges, %zu loop closures, %zu wrong edges\n", nodes,
                 graph.edges().size(), loops, wrong);
@@ -130,27 +135,30 @@ void run(std::size_t nodes, std::size_t reach, std::size_t loops, std::size_t wr
 }
 
 /** True poses of the LiDAR, from its first one. */
-std::vector<CPose3D> truePoses(const std::string& rawlog) {
+Poses truePoses(const std::string& rawlog) {
     const auto Tr = io::readCalibration(io::sidecarPath(rawlog, ".calib.txt")).Tr;
-    std::vector<CPose3D> poses;
+    Poses poses;
     const auto cam0 = io::readTrajectory(io::sidecarPath(rawlog, ".poses.txt")).poses;
-    for (const auto& pose : cam0) poses.push_back((-Tr) + (pose - cam0.front()) + Tr);
+    for (const auto& pose : cam0)
+        poses.push_back(Tr.inverse() * cam0.front().inverse() * pose * Tr);
     return poses;
 }
 
 /** Edges over `span` scans beside the odometry's way between the same scans. */
-void reportEdges(const Slam& slam, const std::vector<CPose3D>& truth, std::size_t span) {
+void reportEdges(const graph::PoseGraph& graph, const Poses& odometry, const Poses& truth,
+                 std::size_t span) {
     std::vector<double> rotation, translation, rotationNes, translationNes;
     std::vector<double> rotationOfChain, translationOfChain;
     double both = 0, own = 0, ofChain = 0;
-    for (const auto& edge : slam.poseGraph().edges()) {
+    for (const auto& edge : graph.edges()) {
         if (edge.to - edge.from != span) continue;
-        const auto& odometry = slam.odometry().poses;
-        const CPose3D motion = truth[edge.to] - truth[edge.from];
-        const auto e = graph::residualOf(edge.increment.pose, {}, motion).error;
-        const auto c = graph::residualOf(odometry[edge.to] - odometry[edge.from], {}, motion).error;
+        const auto errorOf = [&](const Eigen::Isometry3d& measured) {
+            return graph::residualOf(measured, truth[edge.from], truth[edge.to]).error;
+        };
+        const Vector6 e = errorOf(edge.increment.pose);
+        const Vector6 c = errorOf(odometry[edge.from].inverse() * odometry[edge.to]);
         const Eigen::Vector3d t = e.head<3>(), w = e.tail<3>();
-        const graph::Matrix6 covariance = edge.increment.covariance.asEigen();
+        const Matrix6& covariance = edge.increment.covariance;
         rotation.push_back(w.norm() * 180 / M_PI);
         translation.push_back(t.norm());
         rotationOfChain.push_back(c.tail<3>().norm() * 180 / M_PI);
@@ -171,8 +179,7 @@ void reportEdges(const Slam& slam, const std::vector<CPose3D>& truth, std::size_
         evaluation::spreadOf(translationOfChain).rmse, meanOf(translationNes));
 }
 
-void reportTrajectory(const char* what, const std::vector<CPose3D>& truth,
-                      const std::vector<CPose3D>& estimate) {
+void reportTrajectory(const char* what, const Poses& truth, const Poses& estimate) {
     auto lengths = evaluation::kittiLengths_m();
     const double path_m = evaluation::pathLength_m(truth);
     if (path_m < 2 * lengths.front()) lengths = evaluation::suggestedLengths_m(path_m);
@@ -186,29 +193,33 @@ void reportTrajectory(const char* what, const std::vector<CPose3D>& truth,
 }
 
 void run(const std::string& rawlog, Options options) {
-    if (const auto meta = io::readDriveMeta(rawlog))
-        options.odometry.preprocess.vertical_correction_deg = meta->verticalCorrectionDeg;
-    io::ScanSource source(rawlog);
-    Slam slam(options, true, false, source.label());
-    std::vector<CPose3D> live;
+    const auto reader = io::openScans(rawlog);
+    if (reader->meta())
+        options.planes.scan.vertical_correction_deg = options.paper.scan.vertical_correction_deg =
+            reader->meta()->verticalCorrectionDeg;
+    Slam slam(makeOdometry(options));
+    const auto builder = std::make_shared<GraphBuilder>(options.graph);
+    slam.attach(builder);
+    const auto& poses = builder->graph().poses();
+    Poses live;
     std::vector<double> graph_ms;
-    while (const auto scan = source.next()) {
-        graph_ms.push_back(slam.process(*scan).graph_ms);
-        live.push_back(slam.trajectory().poses.back());
+    while (const auto scan = reader->next()) {
+        graph_ms.push_back(slam.process(*scan).listeners_ms.front().second);
+        live.push_back(poses.back());
     }
     auto truth = truePoses(rawlog);
     truth.resize(live.size());
-    const auto window = slam.trajectory().poses;
-    const auto result = slam.optimise();
+    const auto window = poses;
+    const auto result = builder->optimise();
     std::printf("%s: %.0f m, %zu edges, edges and window %.1f ms a scan, cost %.0f to %.0f\n",
-                rawlog.c_str(), evaluation::pathLength_m(truth), slam.poseGraph().edges().size(),
+                rawlog.c_str(), evaluation::pathLength_m(truth), builder->graph().edges().size(),
                 meanOf(graph_ms), result.initial_cost, result.final_cost);
     for (std::size_t span = 1; span <= options.graph.skip_edges + 1; ++span)
-        reportEdges(slam, truth, span);
-    reportTrajectory("odometry", truth, slam.odometry().poses);
+        reportEdges(builder->graph(), slam.trajectory().poses, truth, span);
+    reportTrajectory("odometry", truth, slam.trajectory().poses);
     reportTrajectory("window, as driven", truth, live);
     reportTrajectory("window, after the drive", truth, window);
-    reportTrajectory("optimised", truth, slam.trajectory().poses);
+    reportTrajectory("optimised", truth, poses);
 }
 }  // namespace
 

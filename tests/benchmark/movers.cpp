@@ -10,11 +10,11 @@
 #include <iostream>
 #include <iterator>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "delio/io/drive_meta.h"
-#include "delio/io/scan_source.h"
-#include "delio/odometry.h"
-#include "delio/profile.h"
+#include "delio/io/rawlog_reader.h"
+#include "delio/odometry/make_odometry.h"
+#include "delio/slam/options.h"
 
 namespace {
 using namespace delio;
@@ -50,21 +50,22 @@ void measure(const std::string& rawlog, const Options& options) {
     std::array<Counts, kEdges_m.size()> counts;  // the last: all
     double ms = 0;
     std::size_t scans = 0;
-    io::ScanSource source(rawlog);
-    Odometry odometry(options.odometry);
-    while (const auto scan = source.next()) {
-        const auto result = odometry.process(*scan);
-        ms += result.times_ms[kMoving];
+    io::RawlogReader reader(rawlog);
+    const auto odometry = makeOdometry(options);
+    while (const auto scan = reader.next()) {
+        const Step step = odometry->process(*scan);
+        for (const auto& [stage, time_ms] : step.times_ms)
+            if (stage == "dynamic") ms += time_ms;
         ++scans;
-        if (scan->stamp_s < kStart_s || result.used.moving.empty()) continue;
+        if (scan->stamp_s < kStart_s || step.used.dynamic.empty()) continue;
         const auto labels = labelsOf(rawlog, scan->index);
-        for (std::size_t i = 0; i < result.used.indices.size(); ++i) {
-            const float range = result.used.points.col(static_cast<Eigen::Index>(i)).norm();
-            const bool moves = labels.at(result.used.indices[i]) != 0;
+        for (std::size_t i = 0; i < step.used.indices.size(); ++i) {
+            const float range = step.used.points.col(static_cast<Eigen::Index>(i)).norm();
+            const bool moves = labels.at(step.used.indices[i]) != 0;
             for (std::size_t k = 0; k + 1 < kEdges_m.size(); ++k)
                 if (range >= kEdges_m[k] && range < kEdges_m[k + 1])
-                    counts[k].add(moves, result.used.moving[i] != 0);
-            if (range < kEdges_m.back()) counts.back().add(moves, result.used.moving[i] != 0);
+                    counts[k].add(moves, step.used.dynamic[i] != 0);
+            if (range < kEdges_m.back()) counts.back().add(moves, step.used.dynamic[i] != 0);
         }
     }
     std::printf("%-28s", fs::path(rawlog).filename().string().c_str());
@@ -74,7 +75,7 @@ void measure(const std::string& rawlog, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-    TCLAP::CmdLine cmd("benchmark_movers: moving objects against labels");
+    TCLAP::CmdLine cmd("benchmark_movers: dynamic objects against labels");
     TCLAP::MultiArg<std::string> set("", "set", "One option; may be repeated", false,
                                      "section.key=value", cmd);
     TCLAP::UnlabeledMultiArg<std::string> rawlogs("rawlogs", "Drives with labels", true,
@@ -83,9 +84,9 @@ int main(int argc, char** argv) try {
     std::printf("precision / recall in %% of the points\n%-28s  %-13s  %-13s  %-13s  %-13s  %s\n",
                 "", "0-20 m", "20-40 m", "40-60 m", "0-60 m", "ms/scan");
     for (const auto& rawlog : rawlogs.getValue()) {
-        Options options = Options::ofProfile("accurate");
-        if (const auto meta = io::readDriveMeta(rawlog)) options.adaptTo(*meta);
+        Options options = Options::forDrive("accurate", io::readDriveMeta(rawlog));
         for (const auto& assignment : set.getValue()) options.set(assignment);
+        options.check();
         measure(rawlog, options);
     }
     return 0;

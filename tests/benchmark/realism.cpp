@@ -1,16 +1,14 @@
 // benchmark_realism: what can be counted in the scans of several drives, side by side: how close
 // are synthetic drives to real ones? Prints a Markdown table. Needs OUT.poses.txt and
 // OUT.calib.txt beside each rawlog.
-#include <mrpt/poses/CPose3D.h>
-
 #include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "delio/io/drive_meta.h"
-#include "delio/io/scan_source.h"
+#include "delio/io/rawlog_reader.h"
 #include "delio/io/trajectory.h"
 #include "drive_measures.h"
 
@@ -20,29 +18,22 @@ using Rows = std::vector<std::pair<std::string, std::string>>;
 
 constexpr std::size_t kMostScans = 12;
 
-Eigen::Isometry3d toEigen(const mrpt::poses::CPose3D& pose) {
-    Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-    result.linear() = pose.getRotationMatrix().asEigen();
-    result.translation() = Eigen::Vector3d(pose.x(), pose.y(), pose.z());
-    return result;
-}
-
 /** Of some scans spread over the drive, each with the one after it. */
 Rows measure(const std::string& rawlog) {
     const auto cam0 = io::readTrajectory(io::sidecarPath(rawlog, ".poses.txt")).poses;
     const auto Tr = io::readCalibration(io::sidecarPath(rawlog, ".calib.txt")).Tr;
     const std::size_t stride = std::max<std::size_t>(1, (cam0.size() - 1) / kMostScans);
-    io::ScanSource source(rawlog);
+    io::RawlogReader reader(rawlog);
     benchmark::DriveMeasures measures;
     std::optional<Scan> before;
-    while (auto scan = source.next()) {
+    while (auto scan = reader.next()) {
         const std::size_t i = scan->index;
         if (i >= cam0.size()) break;
         if (before && i % stride == 1 % stride && !before->points->empty() &&
             !scan->points->empty()) {
-            const auto motion = (-Tr) + ((-cam0[i - 1]) + cam0[i]) + Tr;
+            const Eigen::Isometry3d motion = Tr.inverse() * cam0[i - 1].inverse() * cam0[i] * Tr;
             measures.add(*scan);
-            measures.addPair(*before, *scan, toEigen(motion));
+            measures.addPair(*before, *scan, motion);
         }
         before = std::move(scan);
     }

@@ -16,14 +16,14 @@
 #include <string>
 #include <vector>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "delio/evaluation/relative_error.h"
 #include "delio/evaluation/rotation_angle.h"
 #include "delio/io/drive_meta.h"
 #include "delio/io/scan_source.h"
 #include "delio/io/trajectory.h"
-#include "delio/odometry.h"
-#include "delio/profile.h"
+#include "delio/odometry/odometry.h"
+#include "delio/slam/options.h"
 #include "delio/scan/preprocess.h"
 #include "map_measures.h"
 

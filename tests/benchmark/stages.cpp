@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "delio/evaluation/relative_error.h"
 #include "delio/io/drive_meta.h"
 #include "delio/io/scan_source.h"
 #include "delio/io/trajectory.h"
-#include "delio/odometry.h"
-#include "delio/profile.h"
-#include "delio/translation/coupled_registration.h"
+#include "delio/odometry/odometry.h"
+#include "delio/slam/options.h"
+#include "delio/paper/coupled_registration.h"
 
 namespace {
 using namespace delio;
@@ -69,7 +69,7 @@ void compareLines(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, const CPos
                   const Features& before, const Features& now, const OdometryOptions& options,
                   Errors& errors) {
     const Eigen::Vector3d start = translationOf(predicted);
-    const auto lines = translation::registerLines(before.lines, translation::rotated(now.lines, R),
+    const auto lines = paper::registerLines(before.lines, paper::rotated(now.lines, R),
                                                   start, options.lineRegistration);
     const Eigen::Vector3d given = lines.translation - t;
     errors.givenRotation.push_back(given.norm());
@@ -78,7 +78,7 @@ void compareLines(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, const CPos
     guess.linear() = predicted.getRotationMatrix().asEigen();
     guess.translation() = start;
     const auto coupled =
-        translation::registerCoupled(before.lines, now.lines, guess, options.lineRegistration).pose;
+        paper::registerCoupled(before.lines, now.lines, guess, options.lineRegistration).pose;
     errors.coupledTranslation.push_back((coupled.translation() - t).norm());
     const Eigen::AngleAxisd turn(Eigen::Matrix3d(R.transpose() * coupled.linear()));
     errors.coupledRotation.push_back(turn.angle() * 180 / M_PI);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "command.h"
-#include "delio/graph/graph_file.h"
+#include "delio/io/graph_file.h"
 #include "delio/io/trajectory.h"
 #include "test_data.h"
 
@@ -53,7 +53,7 @@ TEST(Covariance, HasTheSizeOfTheTrueErrors) {
             runTool("delio-slam", {"-i", rawlog, "-o", out, "--no-map", "--profile", profile,
                                    "--set", "line_registration.search_radius=1"});
         ASSERT_EQ(run.exitCode, 0) << run.err;
-        const auto graph = graph::loadG2o(out + "/posegraph.g2o");
+        const auto graph = io::loadG2o(out + "/posegraph.g2o");
         const bool isPaper = profile == "paper";
         for (const std::size_t span :
              isPaper ? std::vector<std::size_t>{1, 2, 5} : std::vector<std::size_t>{1}) {

@@ -1,8 +1,13 @@
 #include <gtest/gtest.h>
 #include <mrpt/img/CImage.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
 #include "command.h"
-#include "delio/map/scene.h"
+#include "delio/picture/scene.h"
 #include "test_data.h"
 #include "toy_drive.h"
 
@@ -17,6 +22,20 @@ std::string toyRawlog(const test::TemporaryFolder& folder, std::size_t scans) {
     return rawlog;
 }
 
+/** Share of the pixels that have a colour, which what is drawn has, and neither the background nor
+ *  grids and captions have. */
+double colouredShare(const mrpt::img::CImage& picture) {
+    std::size_t coloured = 0;
+    for (unsigned y = 0; y < picture.getHeight(); ++y)
+        for (unsigned x = 0; x < picture.getWidth(); ++x) {
+            const auto* bgr = picture.ptr<std::uint8_t>(x, y);
+            const auto [low, high] = std::minmax({bgr[0], bgr[1], bgr[2]});
+            coloured += high - low > 40;
+        }
+    return static_cast<double>(coloured) /
+           static_cast<double>(picture.getWidth() * picture.getHeight());
+}
+
 TEST(DelioFigures, MakesASceneAndAPictureOfEachStage) {
     const test::TemporaryFolder folder;
     const std::string rawlog = toyRawlog(folder, 4);
@@ -24,12 +43,18 @@ TEST(DelioFigures, MakesASceneAndAPictureOfEachStage) {
     const auto made = test::runTool("delio-figures", {"-i", rawlog, "-o", out});
     ASSERT_EQ(made.exitCode, 0) << made.err;
     EXPECT_EQ(made.out, "");
-    for (const std::string name : {"normals_sphere", "outlier_removal", "line_cloud",
-                                   "line_matches_before", "line_matches_after"}) {
-        EXPECT_TRUE(map::loadScene(out + "/" + name + ".3Dscene"));
+    // Dots on spheres, or lines all over: about half of what there is.
+    const std::vector<std::pair<std::string, double>> figures = {{"normals_sphere", 0.001},
+                                                                 {"outlier_removal", 0.002},
+                                                                 {"line_cloud", 0.05},
+                                                                 {"line_matches_before", 0.1},
+                                                                 {"line_matches_after", 0.1}};
+    for (const auto& [name, share] : figures) {
+        EXPECT_TRUE(picture::loadScene(out + "/" + name + ".3Dscene"));
         mrpt::img::CImage picture;
         EXPECT_TRUE(picture.loadFromFile(out + "/" + name + ".png"));
         EXPECT_GT(picture.getWidth(), 900U);
+        EXPECT_GT(colouredShare(picture), share) << name;
     }
     // The profile that draws no lines of its own gives the same figures.
     EXPECT_EQ(test::runTool("delio-figures",

@@ -9,13 +9,13 @@
 #include "command.h"
 #include "delio/map/map_builder.h"
 #include "delio/map/ply.h"
-#include "delio/map/scene.h"
 #include "delio/map/simplemap.h"
+#include "delio/picture/scene.h"
+#include "poses.h"
 #include "test_data.h"
 
 namespace {
 using namespace delio;
-using mrpt::poses::CPose3D;
 using test::runTool;
 
 /** One map in every form that the tool reads. */
@@ -31,15 +31,15 @@ class SnapshotTool : public testing::Test {
                                      static_cast<float>(j % 3), static_cast<float>(i % 100) / 100,
                                      0, 0);
         map::MapBuilder builder((map::MapOptions()), "velodyne");
-        const std::vector<CPose3D> poses = {CPose3D(), CPose3D::FromTranslation(5, 0, 0)};
+        const std::vector<Eigen::Isometry3d> poses = {test::poseAt(0, 0, 0), test::poseAt(5, 0, 0)};
         for (std::size_t i = 0; i < poses.size(); ++i)
-            builder.add(i, poses[i], cloud, CPose3D::FromTranslation(0, 0, 1.7),
+            builder.add(i, poses[i], cloud, test::poseAt(0, 0, 1.7),
                         mrpt::Clock::fromDouble(1316995200.0));
         map::saveSimplemap(builder.simplemap(poses), at("map.simplemap"));
         const auto points = builder.points(poses);
         count_ = points.size();
         map::savePly(points, at("map.ply"));
-        map::saveScene(*map::mapScene(points, {poses, {}, {}}), at("map.3Dscene"));
+        picture::saveScene(*picture::mapScene(points, {poses, {}, {}}), at("map.3Dscene"));
     }
     std::string at(const std::string& name) const { return folder_ / name; }
 
@@ -169,7 +169,7 @@ TEST_F(SnapshotTool, RefusesBadInput) {
     expectRefusal({"-i", at("empty.simplemap"), "-o", out}, 1);
     map::savePly(mrpt::maps::CPointsMapXYZI(), at("empty.ply"));
     expectRefusal({"-i", at("empty.ply"), "-o", out}, 1);
-    map::saveScene(mrpt::opengl::COpenGLScene(), at("empty.3Dscene"));
+    picture::saveScene(mrpt::opengl::COpenGLScene(), at("empty.3Dscene"));
     expectRefusal({"-i", at("empty.3Dscene"), "-o", out}, 1);
     expectRefusal({"-i", at("map.3Dscene"), "-o", out, "--color-by", "intensity"}, 1);
 }

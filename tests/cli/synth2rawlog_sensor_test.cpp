@@ -11,9 +11,9 @@
 
 #include "command.h"
 #include "delio/io/drive_meta.h"
-#include "delio/io/rawlog_writer.h"
-#include "delio/io/scan_source.h"
+#include "delio/io/rawlog_reader.h"
 #include "delio/io/trajectory.h"
+#include "poses.h"
 #include "test_data.h"
 
 namespace {
@@ -96,10 +96,10 @@ TEST(Synth2rawlogSensor, SideFilesHaveAValueForEachPoint) {
         if (!embed.empty()) words.push_back(embed);
         const auto run = synth(folder / "d.rawlog", words);
         ASSERT_EQ(run.exitCode, 0) << run.err;
-        io::ScanSource source(folder / "d.rawlog");
+        io::RawlogReader reader(folder / "d.rawlog");
         for (std::size_t i = 0; i < 2; ++i) {
             const std::string name = "d_Images/" + scanName(i);
-            const auto count = source.next()->points->size();
+            const auto count = reader.next()->points->size();
             const auto times = valuesOf<float>(folder / (name + ".time"));
             const auto rings = valuesOf<std::uint16_t>(folder / (name + ".ring"));
             const auto labels = valuesOf<std::uint8_t>(folder / (name + ".label"));
@@ -168,7 +168,7 @@ TEST(Synth2rawlogSensor, FaultsAreInTheRawlogAsListed) {
     const auto faults = faultsOf(folder / "bad.faults.tsv");
     ASSERT_EQ(times.size(), poses.size());
     std::map<std::string, int> kinds;
-    io::ScanSource source(folder / "bad.rawlog", "", "", io::kDriveEpoch_s);
+    io::RawlogReader reader(folder / "bad.rawlog");
     std::size_t written = 0;
     std::string last;
     auto fault = faults.begin();
@@ -181,11 +181,11 @@ TEST(Synth2rawlogSensor, FaultsAreInTheRawlogAsListed) {
         }
         ++kinds[kind];
         if (kind == "dropped") continue;
-        const auto observation = source.next();
+        const auto observation = reader.next();
         ASSERT_TRUE(observation);
         EXPECT_NEAR(observation->stamp_s, 0.1 * static_cast<double>(scan), 1e-6);
         EXPECT_NEAR(times[written], 0.1 * static_cast<double>(scan), 1e-9);
-        EXPECT_LT(poses[written].distanceTo(goodPoses[scan]), 1e-12);
+        EXPECT_LT(test::metresBetween(poses[written], goodPoses[scan]), 1e-12);
         const auto bytes = test::readText(folder / ("bad_Images/" + scanName(written) + ".bin"));
         const auto good = test::readText(folder / ("good_Images/" + scanName(scan) + ".bin"));
         if (kind == "none") {
@@ -199,7 +199,7 @@ TEST(Synth2rawlogSensor, FaultsAreInTheRawlogAsListed) {
         ++written;
     }
     EXPECT_EQ(written, times.size());
-    EXPECT_FALSE(source.next());
+    EXPECT_FALSE(reader.next());
     EXPECT_EQ(fault, faults.end());
     for (const auto* kind : {"none", "dropped", "repeated", "empty"}) EXPECT_GT(kinds[kind], 1);
 }

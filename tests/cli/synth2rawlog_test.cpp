@@ -8,7 +8,7 @@
 
 #include "command.h"
 #include "delio/io/drive_meta.h"
-#include "delio/io/scan_source.h"
+#include "delio/io/rawlog_reader.h"
 #include "delio/io/trajectory.h"
 #include "test_data.h"
 
@@ -62,11 +62,10 @@ double misfit(const Points& from, const Eigen::Isometry3d& pose, const Points& t
     return median(distances);
 }
 
-Eigen::Isometry3d toEigen(const mrpt::poses::CPose3D& pose) {
-    Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-    result.linear() = pose.getRotationMatrix().asEigen();
-    result.translation() = Eigen::Vector3d(pose.x(), pose.y(), pose.z());
-    return result;
+/** Of the LiDAR, from `later` to `earlier`. */
+Eigen::Isometry3d motionBetween(const Eigen::Isometry3d& earlier, const Eigen::Isometry3d& later,
+                                const Eigen::Isometry3d& Tr) {
+    return Tr.inverse() * earlier.inverse() * later * Tr;
 }
 
 /** How far, along their rays, points on the near ground lie off the plane of their neighbours in
@@ -125,9 +124,9 @@ TEST(Synth2rawlog, SideFilesAreConsistent) {
     const auto times = io::readTimes(io::sidecarPath(rawlog, ".times.txt"));
     ASSERT_EQ(poses.size(), 5U);
     ASSERT_EQ(times.size(), 5U);
-    EXPECT_LT(mrpt::poses::CPose3D().distanceTo(poses[0]), 1e-12);
-    EXPECT_NEAR(poses[0].getRotationMatrix()(0, 0), 1, 1e-12);
-    EXPECT_GT(poses[4].z(), poses[3].z());  // cam0 looks along z
+    EXPECT_LT(poses[0].translation().norm(), 1e-12);
+    EXPECT_NEAR(poses[0](0, 0), 1, 1e-12);
+    EXPECT_GT(poses[4].translation().z(), poses[3].translation().z());  // cam0 looks along z
     EXPECT_DOUBLE_EQ(times[4], 0.4);
     EXPECT_TRUE(io::readCalibration(io::sidecarPath(rawlog, ".calib.txt")).hasTr);
     const auto meta = io::readDriveMeta(rawlog);
@@ -149,7 +148,7 @@ TEST(Synth2rawlog, TheTruthMakesScansCoincide) {
     ASSERT_EQ(run.exitCode, 0) << run.err;
     const auto cam0 = io::readTrajectory(folder / "d.poses.txt").poses;
     const auto Tr = io::readCalibration(folder / "d.calib.txt").Tr;
-    const auto truth = toEigen((-Tr) + ((-cam0[38]) + cam0[39]) + Tr);
+    const auto truth = motionBetween(cam0[38], cam0[39], Tr);
     EXPECT_GT(truth.translation().x(), 0.4);
     const auto to = nearby(pointsOf(folder / "d_Images/000038.bin"), 1);
     const auto from = nearby(pointsOf(folder / "d_Images/000039.bin"), 25);
@@ -170,7 +169,7 @@ TEST(Synth2rawlog, WithoutNoiseTheGroundIsTheSameInAllScans) {
     ASSERT_EQ(run.exitCode, 0) << run.err;
     const auto poses = io::readTrajectory(folder / "d.poses.txt").poses;
     const auto Tr = io::readCalibration(folder / "d.calib.txt").Tr;
-    const auto truth = toEigen((-Tr) + ((-poses[36]) + poses[39]) + Tr);
+    const auto truth = motionBetween(poses[36], poses[39], Tr);
     auto moved = pointsOf(folder / "d_Images/000039.bin");
     for (auto& point : moved) point = truth * point;
     EXPECT_LT(groundNoise(moved, pointsOf(folder / "d_Images/000036.bin")), 2e-3);
@@ -194,7 +193,7 @@ TEST(Synth2rawlog, EmbeddedPointsAreTheSame) {
     EXPECT_FALSE(fs::exists(folder / "b_Images/000000.bin"));
     EXPECT_EQ(test::readText(folder / "a_Images/000001.ring"),
               test::readText(folder / "b_Images/000001.ring"));
-    io::ScanSource external(folder / "a.rawlog"), embedded(folder / "b.rawlog");
+    io::RawlogReader external(folder / "a.rawlog"), embedded(folder / "b.rawlog");
     for (int i = 0; i < 2; ++i) {
         const auto a = external.next(), b = embedded.next();
         ASSERT_TRUE(a && b);

@@ -53,7 +53,7 @@ TEST(SynthScenes, ADriveAlongGivenPosesEndsWithThem) {
     }
     const auto poses = io::readTrajectory(folder / "d1.poses.txt").poses;
     ASSERT_EQ(poses.size(), 4U);
-    EXPECT_NEAR(std::hypot(poses[3].x(), poses[3].z()), 2.7, 0.03);
+    EXPECT_NEAR(std::hypot(poses[3].translation().x(), poses[3].translation().z()), 2.7, 0.03);
     for (int i = 0; i < 4; ++i) {
         const std::string name = "00000" + std::to_string(i) + ".bin";
         EXPECT_EQ(test::readText(folder / "d1_Images" / name),

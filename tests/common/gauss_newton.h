@@ -1,6 +1,4 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
-
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 #include <cmath>
@@ -13,19 +11,6 @@ namespace delio::test {
  *  in place of Jacobians, undamped Gauss-Newton. Shares no code with the library. */
 using Poses = std::vector<Eigen::Isometry3d>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-inline Eigen::Isometry3d isometryOf(const mrpt::poses::CPose3D& pose) {
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.linear() = pose.getRotationMatrix().asEigen();
-    T.translation() << pose.x(), pose.y(), pose.z();
-    return T;
-}
-
-inline Poses isometriesOf(const std::vector<mrpt::poses::CPose3D>& poses) {
-    Poses result;
-    for (const auto& pose : poses) result.push_back(isometryOf(pose));
-    return result;
-}
 
 /** T * (exp(w), t) for e = [t w]. */
 inline Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6d& e) {
@@ -58,7 +43,7 @@ inline double costOf(const graph::PoseGraph& graph, const Poses& poses, double k
     double cost = 0;
     for (std::size_t i = 0; i < graph.edges().size(); ++i) {
         const auto& edge = graph.edges()[i];
-        cost += edgeCost(errorOf(isometryOf(edge.increment.pose), poses[edge.from], poses[edge.to]),
+        cost += edgeCost(errorOf(edge.increment.pose, poses[edge.from], poses[edge.to]),
                          graph.information(i), kernelWidth);
     }
     return cost;
@@ -71,7 +56,7 @@ inline Eigen::VectorXd gradientOf(const graph::PoseGraph& graph, const Poses& po
     const double h = 1e-6;
     for (std::size_t i = 0; i < graph.edges().size(); ++i) {
         const auto& edge = graph.edges()[i];
-        const auto Z = isometryOf(edge.increment.pose);
+        const auto& Z = edge.increment.pose;
         for (int k = 0; k < 6; ++k) {
             const auto slope = [&](const auto& error) {
                 const Vector6d step = h * Vector6d::Unit(k);
@@ -92,7 +77,7 @@ inline Eigen::VectorXd gradientOf(const graph::PoseGraph& graph, const Poses& po
 
 /** `steps` undamped Gauss-Newton steps without a kernel; node 0 stays. */
 inline Poses gaussNewton(const graph::PoseGraph& graph, int steps) {
-    Poses poses = isometriesOf(graph.poses());
+    Poses poses = graph.poses();
     const auto size = 6 * static_cast<Eigen::Index>(poses.size() - 1);
     const double h = 1e-6;
     for (int step = 0; step < steps; ++step) {
@@ -100,7 +85,7 @@ inline Poses gaussNewton(const graph::PoseGraph& graph, int steps) {
         Eigen::VectorXd b = Eigen::VectorXd::Zero(size);
         for (std::size_t i = 0; i < graph.edges().size(); ++i) {
             const auto& edge = graph.edges()[i];
-            const auto Z = isometryOf(edge.increment.pose);
+            const auto& Z = edge.increment.pose;
             const auto& from = poses[edge.from];
             const auto& to = poses[edge.to];
             Eigen::Matrix<double, 6, 12> J;

@@ -7,8 +7,6 @@
 #include <limits>
 
 namespace delio::test {
-using mrpt::poses::CPose3D;
-
 namespace {
 /** Where the ray first meets the block's surface; infinite if nowhere. */
 double distanceTo(const Block& block, const Eigen::Vector3d& from, const Eigen::Vector3d& ray) {
@@ -40,15 +38,6 @@ Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double degrees) {
     return Eigen::AngleAxisd(degrees * M_PI / 180, axis.normalized()).toRotationMatrix();
 }
 
-double degreesBetween(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-    return Eigen::AngleAxisd(a.transpose() * b).angle() * 180 / M_PI;
-}
-
-double degreesBetween(const CPose3D& a, const CPose3D& b) {
-    return degreesBetween(Eigen::Matrix3d(a.getRotationMatrix().asEigen()),
-                          Eigen::Matrix3d(b.getRotationMatrix().asEigen()));
-}
-
 Scene yard() {
     return {{{-60, -60, -3}, {60, 60, -1.8}}, {{-30, -24, -5}, {37, 19, 12}},
             {{8, 7, -2}, {13, 12, 1.5}},      {{-9, 9, -2}, {-4, 17, 5}},
@@ -71,9 +60,9 @@ Scene corridor() {
             {{-1e4, 5, -2}, {1e4, 6, 30}}};
 }
 
-RingScan ringScan(const Scene& scene, const CPose3D& pose, const Sensor& sensor, Noise& noise) {
-    const Eigen::Matrix3d R = pose.getRotationMatrix().asEigen();
-    const Eigen::Vector3d at(pose.x(), pose.y(), pose.z());
+RingScan ringScan(const Scene& scene, const Eigen::Isometry3d& pose, const Sensor& sensor, Noise& noise) {
+    const Eigen::Matrix3d R = pose.linear();
+    const Eigen::Vector3d at = pose.translation();
     RingScan scan;
     scan.points.resize(3, static_cast<Eigen::Index>(sensor.rings) * sensor.columns);
     Eigen::Index count = 0;

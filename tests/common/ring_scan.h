@@ -1,12 +1,11 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
-
 #include <Eigen/Core>
 #include <cstdint>
 #include <random>
 #include <vector>
 
 #include "delio/scan/scan.h"
+#include "poses.h"
 
 namespace delio::test {
 /** Numbers that are the same wherever the test runs, which std's distributions are not. */
@@ -23,8 +22,6 @@ class Noise {
 };
 
 Eigen::Matrix3d rotationAbout(const Eigen::Vector3d& axis, double degrees);
-double degreesBetween(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
-double degreesBetween(const mrpt::poses::CPose3D& a, const mrpt::poses::CPose3D& b);
 
 /** A block with its faces along the axes; rays meet it from outside or from inside. */
 struct Block {
@@ -54,7 +51,7 @@ struct RingScan {
     Eigen::Matrix3Xf points;
     std::vector<std::uint16_t> rings;
 };
-RingScan ringScan(const Scene& scene, const mrpt::poses::CPose3D& pose, const Sensor& sensor,
+RingScan ringScan(const Scene& scene, const Eigen::Isometry3d& pose, const Sensor& sensor,
                   Noise& noise);
 
 /** As a rawlog gives it, without its rings. */

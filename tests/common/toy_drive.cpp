@@ -9,11 +9,11 @@
 #include <sstream>
 
 #include "delio/io/trajectory.h"
+#include "poses.h"
 #include "test_data.h"
 
 namespace delio::test {
 namespace fs = std::filesystem;
-using mrpt::poses::CPose3D;
 
 namespace {
 /** Turned about the z axis, so that there are walls of many directions. */
@@ -46,13 +46,13 @@ std::vector<Box> street() {
 }
 
 /** Distance along the ray to the ground or to a box. */
-double rangeOf(const std::vector<Box>& boxes, const CPose3D& pose,
+double rangeOf(const std::vector<Box>& boxes, const Eigen::Vector3d& at,
                const std::array<double, 3>& ray) {
-    double nearest = ray[2] < 0 ? (-1.7 - pose.z()) / ray[2] : 1e9;
+    double nearest = ray[2] < 0 ? (-1.7 - at.z()) / ray[2] : 1e9;
     for (const auto& box : boxes) {
         const double c = std::cos(box.yaw), sn = std::sin(box.yaw);
-        const double dx = pose.x() - box.x, dy = pose.y() - box.y;
-        const std::array<double, 3> from = {c * dx + sn * dy, c * dy - sn * dx, pose.z()};
+        const double dx = at.x() - box.x, dy = at.y() - box.y;
+        const std::array<double, 3> from = {c * dx + sn * dy, c * dy - sn * dx, at.z()};
         const std::array<double, 3> along = {c * ray[0] + sn * ray[1], c * ray[1] - sn * ray[0],
                                              ray[2]};
         double in = 0, out = 1e9;
@@ -68,9 +68,9 @@ double rangeOf(const std::vector<Box>& boxes, const CPose3D& pose,
 }
 }  // namespace
 
-Floats toyScan(const CPose3D& pose) {
+Floats toyScan(const Eigen::Vector3d& position) {
     const auto boxes = street();
-    std::mt19937 random(static_cast<unsigned>(std::lround(1000 * pose.x())));
+    std::mt19937 random(static_cast<unsigned>(std::lround(1000 * position.x())));
     Floats points;
     for (int ring = 0; ring < 64; ++ring)
         for (int i = 0; i < 600; ++i) {
@@ -80,7 +80,7 @@ Floats toyScan(const CPose3D& pose) {
                                                std::cos(elevation) * std::sin(azimuth),
                                                std::sin(elevation)};
             const double noise = 0.06 * (static_cast<double>(random()) / 4294967296.0 - 0.5);
-            const double range = rangeOf(boxes, pose, ray) + noise;
+            const double range = rangeOf(boxes, position, ray) + noise;
             if (range > 70) continue;
             for (const double axis : ray) points.push_back(static_cast<float>(axis * range));
             points.push_back(static_cast<float>(ring) / 64.0F);
@@ -91,7 +91,7 @@ Floats toyScan(const CPose3D& pose) {
 std::vector<Floats> toyScans(std::size_t count, double step_m) {
     std::vector<Floats> scans;
     for (std::size_t i = 0; i < count; ++i)
-        scans.push_back(toyScan(CPose3D::FromTranslation(step_m * static_cast<double>(i), 0, 0)));
+        scans.push_back(toyScan({step_m * static_cast<double>(i), 0, 0}));
     return scans;
 }
 
@@ -101,7 +101,7 @@ void writeSequence(const fs::path& folder, const std::vector<Floats>& scans, dou
     std::string times;
     for (std::size_t i = 0; i < scans.size(); ++i) {
         writeFloats(folder / "velodyne" / scanName(i), scans[i]);
-        cam0.poses.push_back(CPose3D::FromTranslation(0, 0, step_m * static_cast<double>(i)));
+        cam0.poses.push_back(poseAt(0, 0, step_m * static_cast<double>(i)));
         char row[32];
         std::snprintf(row, sizeof(row), "%.6e\n", 0.1 * static_cast<double>(i));
         times += row;

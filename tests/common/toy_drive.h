@@ -1,5 +1,5 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
+#include <Eigen/Geometry>
 
 #include <filesystem>
 #include <string>
@@ -8,9 +8,9 @@
 namespace delio::test {
 using Floats = std::vector<float>;
 
-/** What a LiDAR of 64 rings sees at `pose` in a street of blocks: x y z intensity, ring by ring as
+/** What a LiDAR of 64 rings, looking along x, sees at `position` (metres) in a street of blocks: x y z intensity, ring by ring as
  *  KITTI has it. About 30 000 points, quick to make. */
-Floats toyScan(const mrpt::poses::CPose3D& pose);
+Floats toyScan(const Eigen::Vector3d& position);
 
 /** The `count` scans of a straight drive along x. */
 std::vector<Floats> toyScans(std::size_t count, double step_m = 1);

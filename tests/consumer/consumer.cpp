@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "delio/aligner.h"
-#include "delio/odometry.h"
-#include "delio/profile.h"
+#include "delio/odometry/aligner.h"
+#include "delio/odometry/odometry.h"
+#include "delio/slam/options.h"
 
 namespace {
 /** 32 rings of a LiDAR, turned by `yaw`, in a box: walls 15 m, 15 m, 7 m and 9 m away, floor 1.7 m

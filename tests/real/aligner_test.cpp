@@ -1,5 +1,5 @@
 // delio::Aligner where a program would use mrpt::slam::CICP, on real scans.
-#include "delio/aligner.h"
+#include "delio/odometry/aligner.h"
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>

@@ -77,7 +77,7 @@ TEST(Evaluator, SeesTheWrongFrameOnEverySequence) {
             io::readTrajectory(test::dataFolder() / "evaluator" / expected.method / file);
         using evaluation::findFrameMismatch, evaluation::FrameMismatch;
         EXPECT_EQ(findFrameMismatch(truth.poses, estimate.poses), FrameMismatch::none);
-        const auto lidar = io::lidarToCam0(estimate, -Tr);  // the reverse of its name
+        const auto lidar = io::lidarToCam0(estimate, Tr.inverse());  // the reverse of its name
         EXPECT_EQ(findFrameMismatch(truth.poses, lidar.poses), FrameMismatch::lidarAgainstCamera);
         const auto twice = io::lidarToCam0(estimate, Tr);
         EXPECT_EQ(findFrameMismatch(truth.poses, twice.poses), FrameMismatch::cameraAgainstLidar);

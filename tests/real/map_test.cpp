@@ -7,13 +7,14 @@
 
 #include "delio/io/trajectory.h"
 #include "delio/map/map_builder.h"
-#include "delio/map/scene.h"
-#include "delio/map/snapshot.h"
+#include "delio/picture/render.h"
+#include "delio/picture/scene.h"
 #include "test_data.h"
 
 namespace {
-using mrpt::poses::CPose3D;
+using Eigen::Isometry3d;
 namespace map = delio::map;
+namespace picture = delio::picture;
 
 mrpt::maps::CPointsMapXYZI readScan(const std::filesystem::path& path) {
     mrpt::maps::CPointsMapXYZI points;
@@ -26,22 +27,22 @@ mrpt::maps::CPointsMapXYZI readScan(const std::filesystem::path& path) {
 
 struct Drive {
     map::MapBuilder builder{map::MapOptions()};
-    std::vector<CPose3D> poses;
+    std::vector<Isometry3d> poses;
 };
 
 Drive readDrive(const std::string& name) {
     const auto folder = delio::test::dataFolder() / "kitti" / name;
     const auto calibration = delio::io::readCalibration((folder / "calib.txt").string());
     Drive drive;
-    const CPose3D identity, toLidar = identity - calibration.Tr;
+    const Isometry3d toLidar = calibration.Tr.inverse();
     for (const auto& cam0 : delio::io::readTrajectory((folder / "poses.txt").string()).poses)
-        drive.poses.push_back(toLidar + cam0 + calibration.Tr);
+        drive.poses.push_back(toLidar * cam0 * calibration.Tr);
     std::vector<std::filesystem::path> scans;
     for (const auto& file : std::filesystem::directory_iterator(folder / "velodyne"))
         scans.push_back(file.path());
     std::sort(scans.begin(), scans.end());
     for (std::size_t i = 0; i < scans.size(); ++i)
-        drive.builder.add(i, drive.poses.at(i), readScan(scans[i]), CPose3D(),
+        drive.builder.add(i, drive.poses.at(i), readScan(scans[i]), Isometry3d::Identity(),
                           mrpt::Clock::fromDouble(1e9 + 0.1 * static_cast<double>(i)));
     return drive;
 }
@@ -69,23 +70,23 @@ Coverage coverageOf(const mrpt::img::CImage& image) {
         static_cast<std::size_t>(end - values.begin())};
 }
 
-void expectAPictureOfStreets(const std::string& name, std::size_t minKeyScans) {
+void expectAPictureOfStreets(const std::string& name, std::size_t minKeyframes) {
     const Drive drive = readDrive(name);
-    EXPECT_GE(drive.builder.keyScans(), minKeyScans);
+    EXPECT_GE(drive.builder.keyframes(), minKeyframes);
     const auto points = drive.builder.points(drive.poses);
     EXPECT_GT(points.size(), 50000U);
-    const auto scene = map::mapScene(points, {drive.poses, {}, {}});
-    const auto coverage = coverageOf(map::picture(*scene, {}));
+    const auto scene = picture::mapScene(points, {drive.poses, {}, {}});
+    const auto coverage = coverageOf(picture::picture(*scene, {}));
     EXPECT_GT(coverage.share, 0.1);
     EXPECT_GT(coverage.colours, 1000U);
     // For looking at: DELIO_PICTURES=FOLDER keeps the pictures.
     if (const char* folder = std::getenv("DELIO_PICTURES")) {
         const std::string stem = std::string(folder) + "/" + name;
-        map::saveScene(*scene, stem + ".3Dscene");
-        map::savePicture(*scene, {}, stem + "_map.png");
-        map::savePicture(*scene, map::topView(), stem + "_top.png");
-        const auto way = map::trajectoryScene(drive.poses);
-        map::savePicture(*way, map::topView(), stem + "_trajectory.png");
+        picture::saveScene(*scene, stem + ".3Dscene");
+        picture::savePicture(*scene, {}, stem + "_map.png");
+        picture::savePicture(*scene, picture::topView(), stem + "_top.png");
+        const auto way = picture::trajectoryScene(drive.poses);
+        picture::savePicture(*way, picture::topView(), stem + "_trajectory.png");
     }
 }
 

@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "delio/io/scan_source.h"
+#include "delio/io/rawlog_reader.h"
 #include "test_data.h"
 
 namespace {
 using namespace delio;
 
 Scan onlyScanOf(const std::string& file) {
-    io::ScanSource source((test::dataFolder() / "mrpt" / file).string());
-    auto scan = source.next();
+    io::RawlogReader reader((test::dataFolder() / "mrpt" / file).string());
+    auto scan = reader.next();
     EXPECT_TRUE(scan) << file;
-    EXPECT_FALSE(source.next());
+    EXPECT_FALSE(reader.next());
     return *scan;
 }
 

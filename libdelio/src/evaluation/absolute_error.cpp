@@ -5,19 +5,17 @@
 #include <limits>
 
 namespace delio::evaluation {
-using mrpt::poses::CPose3D;
-
 namespace {
-Eigen::Matrix3Xd positions(const std::vector<CPose3D>& poses) {
+Eigen::Matrix3Xd positions(const std::vector<Eigen::Isometry3d>& poses) {
     Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(poses.size()));
     for (std::size_t i = 0; i < poses.size(); ++i)
-        result.col(static_cast<Eigen::Index>(i)) << poses[i].x(), poses[i].y(), poses[i].z();
+        result.col(static_cast<Eigen::Index>(i)) = poses[i].translation();
     return result;
 }
 }  // namespace
 
-AbsoluteError absoluteError(const std::vector<CPose3D>& reference,
-                            const std::vector<CPose3D>& estimate) {
+AbsoluteError absoluteError(const std::vector<Eigen::Isometry3d>& reference,
+                            const std::vector<Eigen::Isometry3d>& estimate) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     if (reference.empty()) return {none, none};
     const Eigen::Matrix3Xd wanted = positions(reference);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 
 namespace delio::evaluation {
 namespace {

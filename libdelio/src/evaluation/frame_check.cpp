@@ -4,30 +4,31 @@
 #include <cmath>
 
 namespace delio::evaluation {
-using mrpt::poses::CPose3D;
-
 namespace {
 constexpr double kStep_m = 1;      // long enough for a direction that noise does not hide
 constexpr int kStepsToTell = 5;    // fewer say too little
 constexpr double kDisagree = 0.5;  // mean cosines
 constexpr double kAgree = 0.9;
 
+double metresBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+    return (b.translation() - a.translation()).norm();
+}
+
 /** Where the moving frame went from pose `a` to pose `b`, in its own axes at `a`. */
-Eigen::Vector3d direction(const CPose3D& a, const CPose3D& b) {
-    const CPose3D motion = b - a;
-    return Eigen::Vector3d(motion.x(), motion.y(), motion.z()).normalized();
+Eigen::Vector3d direction(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+    return (a.inverse() * b).translation().normalized();
 }
 }  // namespace
 
-FrameMismatch findFrameMismatch(const std::vector<CPose3D>& reference,
-                                const std::vector<CPose3D>& estimate) {
+FrameMismatch findFrameMismatch(const std::vector<Eigen::Isometry3d>& reference,
+                                const std::vector<Eigen::Isometry3d>& estimate) {
     Eigen::Matrix3d lidarToCamera;
     lidarToCamera << 0, -1, 0, 0, 0, -1, 1, 0, 0;
     double asIs = 0, fromLidar = 0, fromCamera = 0;
     int steps = 0;
     std::size_t begin = 0;
     for (std::size_t i = 1; i < reference.size(); ++i) {
-        if (reference[i].distanceTo(reference[begin]) < kStep_m) continue;
+        if (metresBetween(reference[begin], reference[i]) < kStep_m) continue;
         const Eigen::Vector3d wanted = direction(reference[begin], reference[i]);
         const Eigen::Vector3d found = direction(estimate[begin], estimate[i]);
         asIs += wanted.dot(found);
@@ -42,11 +43,11 @@ FrameMismatch findFrameMismatch(const std::vector<CPose3D>& reference,
     return FrameMismatch::none;
 }
 
-bool movesAlongZ(const std::vector<CPose3D>& poses) {
+bool movesAlongZ(const std::vector<Eigen::Isometry3d>& poses) {
     double alongX = 0, alongZ = 0;
     std::size_t begin = 0;
     for (std::size_t i = 1; i < poses.size(); ++i) {
-        if (poses[i].distanceTo(poses[begin]) < kStep_m) continue;
+        if (metresBetween(poses[begin], poses[i]) < kStep_m) continue;
         const Eigen::Vector3d step = direction(poses[begin], poses[i]);
         alongX += std::abs(step.x());
         alongZ += std::abs(step.z());

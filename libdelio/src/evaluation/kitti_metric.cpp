@@ -9,14 +9,12 @@
 #include "delio/evaluation/rotation_angle.h"
 
 namespace delio::evaluation {
-using mrpt::poses::CPose3D;
-
 namespace {
 constexpr std::size_t kStep = 10;  // KITTI's: one second of its drives
 
 /** All segments of one length. */
-std::vector<Segment> segmentsOf(const std::vector<CPose3D>& reference,
-                                const std::vector<CPose3D>& estimate,
+std::vector<Segment> segmentsOf(const std::vector<Eigen::Isometry3d>& reference,
+                                const std::vector<Eigen::Isometry3d>& estimate,
                                 const std::vector<double>& travelled, double length) {
     std::vector<Segment> segments;
     for (std::size_t first = 0; first < travelled.size(); first += kStep) {
@@ -24,9 +22,10 @@ std::vector<Segment> segmentsOf(const std::vector<CPose3D>& reference,
             std::upper_bound(travelled.begin(), travelled.end(), travelled[first] + length);
         if (beyond == travelled.end()) break;  // nor is there one for any later start
         const auto last = static_cast<std::size_t>(beyond - travelled.begin());
-        const CPose3D error =
-            (reference[last] - reference[first]) - (estimate[last] - estimate[first]);
-        segments.push_back({first, last, length, 100 * error.norm() / length,
+        const Eigen::Isometry3d wanted = reference[first].inverse() * reference[last];
+        const Eigen::Isometry3d found = estimate[first].inverse() * estimate[last];
+        const Eigen::Isometry3d error = found.inverse() * wanted;
+        segments.push_back({first, last, length, 100 * error.translation().norm() / length,
                             100 * mrpt::RAD2DEG(rotationAngle_rad(error)) / length});
     }
     return segments;
@@ -47,11 +46,11 @@ SegmentErrors meanOf(const std::vector<Segment>& segments) {
     return mean;
 }
 
-std::vector<double> travelled_m(const std::vector<CPose3D>& poses) {
+std::vector<double> travelled_m(const std::vector<Eigen::Isometry3d>& poses) {
     std::vector<double> result;
     double sum = 0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        if (i > 0) sum += poses[i].distanceTo(poses[i - 1]);
+        if (i > 0) sum += (poses[i].translation() - poses[i - 1].translation()).norm();
         result.push_back(sum);
     }
     return result;
@@ -59,7 +58,7 @@ std::vector<double> travelled_m(const std::vector<CPose3D>& poses) {
 
 std::vector<double> kittiLengths_m() { return {100, 200, 300, 400, 500, 600, 700, 800}; }
 
-double pathLength_m(const std::vector<CPose3D>& poses) {
+double pathLength_m(const std::vector<Eigen::Isometry3d>& poses) {
     return poses.empty() ? 0 : travelled_m(poses).back();
 }
 
@@ -72,7 +71,8 @@ std::vector<double> suggestedLengths_m(double path_m) {
     return {unit, 2 * unit, 3 * unit, 4 * unit};
 }
 
-KittiErrors kittiErrors(const std::vector<CPose3D>& reference, const std::vector<CPose3D>& estimate,
+KittiErrors kittiErrors(const std::vector<Eigen::Isometry3d>& reference,
+                        const std::vector<Eigen::Isometry3d>& estimate,
                         const std::vector<double>& lengths_m) {
     const auto travelled = travelled_m(reference);
     KittiErrors result;

@@ -9,8 +9,6 @@
 #include "delio/evaluation/rotation_angle.h"
 
 namespace delio::evaluation {
-using mrpt::poses::CPose3D;
-
 Spread spreadOf(std::vector<double> errors) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     if (errors.empty()) return {none, none, none, none};
@@ -26,13 +24,14 @@ Spread spreadOf(std::vector<double> errors) {
     return spread;
 }
 
-RelativeError relativeError(const std::vector<CPose3D>& reference,
-                            const std::vector<CPose3D>& estimate, std::size_t delta) {
+RelativeError relativeError(const std::vector<Eigen::Isometry3d>& reference,
+                            const std::vector<Eigen::Isometry3d>& estimate, std::size_t delta) {
     RelativeError result;
     for (std::size_t i = 0; i + delta < reference.size(); ++i) {
-        const CPose3D error =
-            (reference[i + delta] - reference[i]) - (estimate[i + delta] - estimate[i]);
-        result.translations_m.push_back(error.norm());
+        const Eigen::Isometry3d wanted = reference[i].inverse() * reference[i + delta];
+        const Eigen::Isometry3d found = estimate[i].inverse() * estimate[i + delta];
+        const Eigen::Isometry3d error = found.inverse() * wanted;
+        result.translations_m.push_back(error.translation().norm());
         result.rotations_deg.push_back(mrpt::RAD2DEG(rotationAngle_rad(error)));
     }
     result.translation_m = spreadOf(result.translations_m);

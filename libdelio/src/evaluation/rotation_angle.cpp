@@ -4,8 +4,8 @@
 #include <cmath>
 
 namespace delio::evaluation {
-double rotationAngle_rad(const mrpt::poses::CPose3D& pose) {
-    const Eigen::Matrix3d nearly = pose.getRotationMatrix().asEigen();
+double rotationAngle_rad(const Eigen::Isometry3d& pose) {
+    const Eigen::Matrix3d nearly = pose.linear();
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(nearly, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
     const Eigen::Vector3d skew(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));

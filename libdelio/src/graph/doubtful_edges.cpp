@@ -9,16 +9,6 @@ namespace {
 constexpr std::size_t kShort = 10;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-/** Moves a right tangent [t w] from the frame of `pose` to the world's. */
-Matrix6 adjointOf(const mrpt::poses::CPose3D& pose) {
-    const Eigen::Matrix3d R = pose.getRotationMatrix().asEigen();
-    Eigen::Matrix3d lever;
-    lever << 0, -pose.z(), pose.y(), pose.z(), 0, -pose.x(), -pose.y(), pose.x(), 0;
-    Matrix6 adjoint;
-    adjoint << R, lever * R, Eigen::Matrix3d::Zero(), R;
-    return adjoint;
-}
-
 Vector6 errorOf(const PoseGraph& graph, const Edge& edge) {
     return residualOf(edge.increment.pose, graph.poses()[edge.from], graph.poses()[edge.to]).error;
 }
@@ -44,7 +34,7 @@ class Chain {
             if (!known) continue;
             const Edge& edge = graph.edges()[i];
             const Matrix6 A = adjointOf(graph.poses()[edge.to]);
-            covariances_[step + 1] += A * edge.increment.covariance.asEigen() * A.transpose();
+            covariances_[step + 1] += A * edge.increment.covariance * A.transpose();
         }
     }
 
@@ -81,9 +71,9 @@ std::vector<bool> doubtfulEdges(const PoseGraph& graph, double width) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const auto [first, last] = spanOf(edges[i]);
         if (chain.edgeOf(first) == i || !chain.knows(first, last)) continue;
-        const Matrix6 A = adjointOf(-graph.poses()[edges[i].to]);
-        const Matrix6 covariance = edges[i].increment.covariance.asEigen() +
-                                   A * chain.covarianceOf(first, last) * A.transpose();
+        const Matrix6 A = adjointOf(graph.poses()[edges[i].to].inverse());
+        const Matrix6 covariance =
+            edges[i].increment.covariance + A * chain.covarianceOf(first, last) * A.transpose();
         const Vector6 e = errorOf(graph, edges[i]);
         doubtful[i] = e.dot(covariance.ldlt().solve(e)) > width * width;
         if (last - first > kShort) continue;

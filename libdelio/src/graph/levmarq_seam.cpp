@@ -55,10 +55,11 @@ double computeJacobiansAndErrors<WhitenedGraph>(
     errors.reserve(observations.size());
     double cost = 0;
     for (const auto& observation : observations) {
-        const auto r =
-            delio::graph::residualOf(*observation.edge_mean, *observation.P1, *observation.P2);
-        const delio::graph::Matrix6 U = observation.edge->second.cov_inv.asEigen();
-        const delio::graph::Vector6 whitened = U * r.error;
+        const auto r = delio::graph::residualOf(delio::fromMrpt(*observation.edge_mean),
+                                                delio::fromMrpt(*observation.P1),
+                                                delio::fromMrpt(*observation.P2));
+        const delio::Matrix6 U = observation.edge->second.cov_inv.asEigen();
+        const delio::Vector6 whitened = U * r.error;
         const auto kernel =
             delio::graph::kernelAt(whitened.squaredNorm(), graph.widthOf(*observation.edge));
         const double weight = std::sqrt(kernel.slope);
@@ -77,7 +78,8 @@ namespace delio::graph {
 namespace {
 double squaredError(const WhitenedGraph& graph, const WhitenedGraph::MapEntry& edge) {
     const auto& [ids, measured] = edge;
-    const auto r = residualOf(measured.mean, graph.nodes.at(ids.first), graph.nodes.at(ids.second));
+    const auto r = residualOf(fromMrpt(measured.mean), fromMrpt(graph.nodes.at(ids.first)),
+                              fromMrpt(graph.nodes.at(ids.second)));
     return (measured.cov_inv.asEigen() * r.error).squaredNorm();
 }
 }  // namespace

@@ -5,19 +5,22 @@
 #include <numeric>
 #include <string>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "doubtful_edges.h"
 #include "levmarq_seam.h"
 
 namespace delio::graph {
-using mrpt::poses::CPose3D;
-
 namespace {
 /** Farther than anything on earth, squares lose the metres. */
-bool isFinite(const CPose3D& pose) {
+bool isFinite(const Eigen::Isometry3d& pose) {
     constexpr double kFarthest_m = 1e9;
-    return pose.getRotationMatrix().asEigen().allFinite() &&
-           (pose.m_coords.asEigen().array().abs() <= kFarthest_m).all();
+    return pose.linear().allFinite() && (pose.translation().array().abs() <= kFarthest_m).all();
+}
+
+void requireFinite(const Eigen::Isometry3d& pose, std::size_t node) {
+    if (!isFinite(pose))
+        throw Error("pose graph: the pose of node " + std::to_string(node) +
+                    " is not finite, or beyond 1e9 m");
 }
 
 bool isPositiveDefinite(const Matrix6& m) {
@@ -35,46 +38,42 @@ std::string nameOf(std::size_t from, std::size_t to) {
 }
 }  // namespace
 
-std::vector<OptionField> PoseGraphOptions::fields() {
+std::vector<OptionField> PoseGraphOptions::fields() const {
     return {
-        {"skip_edges", &skip_edges,
+        {"skip_edges", &PoseGraphOptions::skip_edges,
          "edges beyond the chain: 1 adds (i,i+2), 2 also (i,i+3), 0 none", 0, 100},
-        {"min_overlap", &min_overlap,
+        {"min_overlap", &PoseGraphOptions::min_overlap,
          "share of a scan's lines that the other has lines next to; with less there is no such "
          "edge",
          0, 1},
-        {"window", &window, "last nodes that are optimised while driving; 0: only at the end", 0,
-         1000},
-        {"max_iterations", &max_iterations, "limit of Levenberg-Marquardt steps", 1, 100000},
-        {"kernel_width", &kernel_width,
+        {"window", &PoseGraphOptions::window,
+         "last nodes that are optimised while driving; 0: only at the end", 0, 1000},
+        {"max_iterations", &PoseGraphOptions::max_iterations, "limit of Levenberg-Marquardt steps",
+         1, 100000},
+        {"kernel_width", &PoseGraphOptions::kernel_width,
          "width of the Geman-McClure kernel in standard deviations; 0: no robust kernel", 0, 1e9}};
 }
 
-std::size_t PoseGraph::addNode(const CPose3D& initial) {
-    if (!isFinite(initial))
-        throw Error("pose graph: the pose of node " + std::to_string(poses_.size()) +
-                    " is not finite, or beyond 1e9 m");
+std::size_t PoseGraph::addNode(const Eigen::Isometry3d& initial) {
+    requireFinite(initial, poses_.size());
     poses_.push_back(initial);
     edgesUpTo_.emplace_back();
     return poses_.size() - 1;
 }
 
 void PoseGraph::addEdge(const Edge& edge) {
-    const Matrix6 covariance = edge.increment.covariance.asEigen();
-    if (!isPositiveDefinite(covariance))
+    if (!isPositiveDefinite(edge.increment.covariance))
         throw Error("pose graph: the covariance of " + nameOf(edge.from, edge.to) +
                     " is not symmetric and positive definite");
-    append(edge, inverseOf(covariance));
+    append(edge, inverseOf(edge.increment.covariance));
 }
 
-void PoseGraph::addEdge(std::size_t from, std::size_t to, const CPose3D& pose,
+void PoseGraph::addEdge(std::size_t from, std::size_t to, const Eigen::Isometry3d& pose,
                         const Matrix6& information) {
     if (!isPositiveDefinite(information))
         throw Error("pose graph: the information of " + nameOf(from, to) +
                     " is not symmetric and positive definite");
-    Edge edge{from, to, {pose, {}}};
-    edge.increment.covariance.asEigen() = inverseOf(information);
-    append(edge, information);
+    append({from, to, {pose, inverseOf(information)}}, information);
 }
 
 void PoseGraph::append(const Edge& edge, const Matrix6& information) {
@@ -96,6 +95,32 @@ void PoseGraph::append(const Edge& edge, const Matrix6& information) {
     edgesUpTo_[std::max(edge.from, edge.to)].push_back(edges_.size());
     edges_.push_back(edge);
     information_.push_back(information);
+}
+
+void PoseGraph::removeLast() {
+    if (poses_.empty()) throw Error("pose graph: there are no nodes");
+    auto& removed = edgesUpTo_.back();
+    std::sort(removed.begin(), removed.end());
+    for (auto last = removed.rbegin(); last != removed.rend(); ++last) {
+        const std::size_t i = *last;
+        edges_.erase(edges_.begin() + static_cast<std::ptrdiff_t>(i));
+        information_.erase(information_.begin() + static_cast<std::ptrdiff_t>(i));
+        if (i == edges_.size()) continue;  // it was the last one, as it is while driving
+        for (auto& ofNode : edgesUpTo_)
+            for (std::size_t& other : ofNode)
+                if (other > i) --other;
+    }
+    edgesUpTo_.pop_back();
+    poses_.pop_back();
+}
+
+void PoseGraph::restore(std::size_t firstNode, const std::vector<Eigen::Isometry3d>& poses) {
+    if (firstNode > poses_.size() || poses.size() > poses_.size() - firstNode)
+        throw Error("pose graph: " + std::to_string(poses.size()) + " poses from node " +
+                    std::to_string(firstNode) + " on need nodes that are not there (there are " +
+                    std::to_string(poses_.size()) + ")");
+    for (std::size_t i = 0; i < poses.size(); ++i) requireFinite(poses[i], firstNode + i);
+    std::copy(poses.begin(), poses.end(), poses_.begin() + static_cast<std::ptrdiff_t>(firstNode));
 }
 
 void PoseGraph::requireConnected(std::size_t firstFree) const {
@@ -126,24 +151,25 @@ WhitenedGraph PoseGraph::whitened(std::size_t firstFree, const std::vector<bool>
             graph.firstNode = std::min({graph.firstNode, edges_[i].from, edges_[i].to});
     for (std::size_t node = firstFree; node < poses_.size(); ++node) {
         graph.free.insert(graph.free.end(), node - graph.firstNode);
-        graph.nodes[node - graph.firstNode] = poses_[node];
+        graph.nodes[node - graph.firstNode] = toMrpt(poses_[node]);
         for (const std::size_t i : edgesUpTo_[node]) {
             const Edge& edge = edges_[i];
-            mrpt::poses::CPose3DPDFGaussianInf measured(edge.increment.pose);
+            mrpt::poses::CPose3DPDFGaussianInf measured(toMrpt(edge.increment.pose));
             const Matrix6 U = information_[i].llt().matrixU();
             measured.cov_inv.asEigen() = U;
             const auto entry = graph.edges.emplace(
                 std::make_pair(edge.from - graph.firstNode, edge.to - graph.firstNode), measured);
             if (!doubtful.empty() && doubtful[i]) graph.doubtful.insert(&*entry);
             for (const std::size_t end : {edge.from, edge.to})
-                graph.nodes[end - graph.firstNode] = poses_[end];
+                graph.nodes[end - graph.firstNode] = toMrpt(poses_[end]);
         }
     }
     return graph;
 }
 
 void PoseGraph::takeFreePoses(const WhitenedGraph& graph) {
-    for (const auto node : graph.free) poses_[node + graph.firstNode] = graph.nodes.at(node);
+    for (const auto node : graph.free)
+        poses_[node + graph.firstNode] = fromMrpt(graph.nodes.at(node));
 }
 
 OptimisationResult PoseGraph::optimise(const PoseGraphOptions& options) {

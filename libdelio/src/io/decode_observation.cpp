@@ -6,6 +6,7 @@
 #include <mrpt/obs/CObservationRotatingScan.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
+#include "delio/core/geometry.h"
 #include "rotating_scan.h"
 #include "velodyne_packets.h"
 
@@ -58,7 +59,9 @@ Scan decodeObservation(const mrpt::obs::CObservation& observation) {
     else if (const auto* depth = dynamic_cast<const CObservation3DRangeScan*>(&observation))
         decode(*depth, scan);
     if (!scan.points) scan.points = mrpt::maps::CSimplePointsMap::Create();
-    observation.getSensorPose(scan.sensorPose);
+    mrpt::poses::CPose3D sensorPose;
+    observation.getSensorPose(sensorPose);
+    scan.sensorPose = fromMrpt(sensorPose);
     return scan;
 }
 }  // namespace delio::io

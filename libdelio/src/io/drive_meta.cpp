@@ -2,22 +2,21 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <ostream>
 #include <set>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
 #include "delio/io/output_file.h"
 
 namespace delio::io {
 namespace {
 void take(const std::string& key, const std::string& text, double& value) {
-    const char* const end = text.data() + text.size();
-    const auto result = std::from_chars(text.data() + (text[0] == '+' ? 1 : 0), end, value);
-    if (result.ec != std::errc() || result.ptr != end)
-        throw Error(key + " has to be a number, not '" + text + "'");
+    const auto number = numberIn<double>(text[0] == '+' ? text.substr(1) : text);
+    if (!number) throw Error(key + " has to be a number, not '" + text + "'");
+    value = *number;
 }
 
 void take(const std::string& key, const std::string& text, bool& value) {
@@ -62,12 +61,6 @@ DriveMeta metaOf(const YAML::Node& node) {
     if (!(meta.epoch_s >= 0 && meta.epoch_s < 1e10))
         throw Error("epoch_unix_s has to be Unix seconds");
     return meta;
-}
-
-/** The digits that give the same double back. */
-std::string digitsOf(double value) {
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof(text), value).ptr};
 }
 }  // namespace
 

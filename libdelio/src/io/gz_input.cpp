@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 
 namespace delio::io {
 GzInput::GzInput(const std::string& path) : file_(nullptr) {

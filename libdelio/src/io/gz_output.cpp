@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 
 namespace delio::io {
 GzOutput::GzOutput(const std::string& path) : file_(gzopen(path.c_str(), "wb1")) {

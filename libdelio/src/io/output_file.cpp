@@ -6,7 +6,7 @@
 #include <fstream>
 #include <locale>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;

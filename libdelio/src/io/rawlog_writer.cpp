@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "delio/io/output_file.h"
 
 namespace delio::io {

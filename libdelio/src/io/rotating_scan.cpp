@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "velodyne_packets.h"
 
 namespace delio::io {

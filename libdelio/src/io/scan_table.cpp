@@ -1,11 +1,15 @@
 #include "delio/io/scan_table.h"
 
+#include <mrpt/core/format.h>
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
+#include <ostream>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
+#include "delio/io/output_file.h"
 
 namespace delio::io {
 namespace {
@@ -27,6 +31,20 @@ std::size_t columnOf(const std::vector<std::string>& heading, const std::string&
         throw Error("'" + path + "' has no column '" + name + "'; is it delio-slam's scans.csv?");
     return static_cast<std::size_t>(found - heading.begin());
 }
+
+/** A text that stays in its cell. */
+std::string cellOf(std::string text) {
+    for (char& c : text) {
+        if (c == ',') c = ';';
+        if (c == '\n' || c == '\r') c = ' ';
+    }
+    return text;
+}
+
+bool sameColumns(const ScanRow& a, const ScanRow& b) {
+    return std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
+                      [](const auto& one, const auto& other) { return one.first == other.first; });
+}
 }  // namespace
 
 ScanTable readScanTable(const std::string& path) {
@@ -45,11 +63,11 @@ ScanTable readScanTable(const std::string& path) {
         double values[3] = {};
         for (int i = 0; i < 3; ++i) {
             const std::string cell = columns[i] < cells.size() ? cells[columns[i]] : "";
-            const char* const end = cell.data() + cell.size();
-            const auto result = std::from_chars(cell.data(), end, values[i]);
-            if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(values[i]))
+            const auto number = numberIn<double>(cell);
+            if (!number || !std::isfinite(*number))
                 throw Error("'" + path + "', line " + std::to_string(line) + ": '" +
                             heading[columns[i]] + "' is not a number");
+            values[i] = *number;
         }
         const double scan = values[0];
         if (scan < 0 || scan > 1e9 || scan != std::floor(scan) ||
@@ -61,5 +79,22 @@ ScanTable readScanTable(const std::string& path) {
         table.predicted.push_back(values[2] != 0);
     }
     return table;
+}
+
+void writeScanTable(const std::vector<ScanRow>& rows, const std::string& path) {
+    replaceTextFile(path, [&](std::ostream& out) {
+        out << "scan,stamp_s";
+        if (!rows.empty())
+            for (const auto& value : rows.front().values) out << ',' << cellOf(value.first);
+        out << ",predicted,reason\n";
+        for (const auto& row : rows) {
+            if (!sameColumns(row, rows.front()))
+                throw Error("cannot write '" + path + "': scan " + std::to_string(row.scan) +
+                            " has other columns than the first");
+            out << row.scan << mrpt::format(",%.7f", row.stamp_s);
+            for (const auto& value : row.values) out << ',' << cellOf(value.second);
+            out << ',' << row.predicted << ',' << cellOf(row.reason) << '\n';
+        }
+    });
 }
 }  // namespace delio::io

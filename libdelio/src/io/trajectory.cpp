@@ -1,42 +1,39 @@
 #include "delio/io/trajectory.h"
 
-#include <mrpt/math/CQuaternion.h>
-
 #include <Eigen/Dense>
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <ostream>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
+#include "delio/core/geometry.h"
+#include "delio/core/numbers.h"
 #include "delio/io/output_file.h"
 
 namespace delio::io {
-using mrpt::poses::CPose3D;
-
 namespace {
 std::string at(const std::string& path, std::size_t line) {
     return "'" + path + "', line " + std::to_string(line);
 }
 
+bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == ','; }
+
 /** The numbers of one line; throws for anything that is not one. */
 std::vector<double> numbersOf(const std::string& text, const std::string& where) {
     std::vector<double> numbers;
-    const char* p = text.data();
-    const char* const end = p + text.size();
-    const auto isSpace = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == ','; };
-    while (true) {
-        while (p != end && isSpace(*p)) ++p;
+    const auto end = text.end();
+    for (auto p = text.begin();;) {
+        p = std::find_if_not(p, end, isSpace);
         if (p == end) return numbers;
         if (*p == '+') ++p;
-        double value = 0;
-        const auto result = std::from_chars(p, end, value);
-        if (result.ec != std::errc{} || (result.ptr != end && !isSpace(*result.ptr)) ||
-            !std::isfinite(value))
+        const auto next = std::find_if(p, end, isSpace);
+        const auto number = numberIn<double>(std::string(p, next));
+        if (!number || !std::isfinite(*number))
             throw Error(where + ": not a finite number at '" + std::string(p, end).substr(0, 20) +
                         "'");
-        numbers.push_back(value);
-        p = result.ptr;
+        numbers.push_back(*number);
+        p = next;
     }
 }
 
@@ -59,7 +56,8 @@ void forEachLine(const std::string& path, const Use& use) {
     if (!any) throw Error("'" + path + "' is empty: no line with numbers in it");
 }
 
-CPose3D poseOf3x4(const std::vector<double>& numbers, std::size_t first, const std::string& where) {
+Eigen::Isometry3d poseOf3x4(const std::vector<double>& numbers, std::size_t first,
+                            const std::string& where) {
     using Rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
     const Rows m = Eigen::Map<const Rows>(numbers.data() + first);
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.leftCols<3>(),
@@ -67,7 +65,7 @@ CPose3D poseOf3x4(const std::vector<double>& numbers, std::size_t first, const s
     const Eigen::Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
     if (R.determinant() < 0 || (R - m.leftCols<3>()).cwiseAbs().maxCoeff() > 1e-2)
         throw Error(where + ": the 3x3 part of the pose is not a rotation");
-    return {R, Eigen::Vector3d(m.col(3))};
+    return isometry(R, m.col(3));
 }
 
 void appendTum(Trajectory& trajectory, const std::vector<double>& numbers,
@@ -79,17 +77,13 @@ void appendTum(Trajectory& trajectory, const std::vector<double>& numbers,
     const Eigen::Quaterniond q(numbers[7], numbers[4], numbers[5], numbers[6]);
     if (std::abs(q.norm() - 1) > 1e-2) throw Error(where + ": the quaternion is not of length 1");
     trajectory.stamps_s.push_back(numbers[0]);
-    trajectory.poses.emplace_back(q.normalized().toRotationMatrix(),
-                                  Eigen::Vector3d(numbers[1], numbers[2], numbers[3]));
+    trajectory.poses.push_back(
+        isometry(q.normalized().toRotationMatrix(), {numbers[1], numbers[2], numbers[3]}));
 }
 
 std::string rowOf(const std::vector<double>& numbers) {
     std::string row;
-    char text[64];
-    for (const double number : numbers) {
-        row.append(text, std::to_chars(text, text + sizeof(text), number).ptr);
-        row += ' ';
-    }
+    for (const double number : numbers) row += digitsOf(number) + ' ';
     row.back() = '\n';
     return row;
 }
@@ -111,13 +105,10 @@ Trajectory readTrajectory(const std::string& path) {
     return trajectory;
 }
 
-std::string kittiRow(const CPose3D& pose) {
-    const auto& R = pose.getRotationMatrix();
+std::string kittiRow(const Eigen::Isometry3d& pose) {
     std::vector<double> numbers;
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) numbers.push_back(R(i, j));
-        numbers.push_back(pose[static_cast<unsigned>(i)]);
-    }
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 4; ++j) numbers.push_back(pose(i, j));
     return rowOf(numbers);
 }
 
@@ -132,11 +123,11 @@ void writeTum(const Trajectory& trajectory, const std::string& path) {
         throw Error("cannot write '" + path + "': the trajectory has no time for every pose");
     replaceTextFile(path, [&](std::ostream& out) {
         for (std::size_t i = 0; i < trajectory.poses.size(); ++i) {
-            const auto& pose = trajectory.poses[i];
-            mrpt::math::CQuaternionDouble q;
-            pose.getAsQuaternion(q);
+            const Eigen::Vector3d at = trajectory.poses[i].translation();
+            Eigen::Quaterniond q(trajectory.poses[i].linear());
+            if (q.w() < 0) q.coeffs() *= -1;  // the same rotation, of which this is the usual form
             out << rowOf(
-                {trajectory.stamps_s[i], pose.x(), pose.y(), pose.z(), q.x(), q.y(), q.z(), q.r()});
+                {trajectory.stamps_s[i], at.x(), at.y(), at.z(), q.x(), q.y(), q.z(), q.w()});
         }
     });
 }
@@ -171,9 +162,9 @@ Calibration readCalibration(const std::string& path) {
     return calibration;
 }
 
-Trajectory lidarToCam0(const Trajectory& lidar, const CPose3D& Tr) {
+Trajectory lidarToCam0(const Trajectory& lidar, const Eigen::Isometry3d& Tr) {
     Trajectory cam0 = lidar;
-    for (auto& pose : cam0.poses) pose = Tr + pose + (-Tr);
+    for (auto& pose : cam0.poses) pose = Tr * pose * Tr.inverse();
     return cam0;
 }
 }  // namespace delio::io

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 
 namespace delio::io {
 using Velodyne = mrpt::obs::CObservationVelodyneScan;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 
 namespace delio::map {
 namespace {

@@ -1,15 +1,17 @@
 #include "delio/map/ply.h"
 
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <locale>
 #include <sstream>
+#include <string_view>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
 #include "delio/io/output_file.h"
 
 namespace delio::map {
@@ -80,10 +82,10 @@ Header readHeader(std::istream& in, const std::string& path) {
             formatKnown = header.ascii || first == "binary_little_endian";
             if (!formatKnown) refuse(path, "its format '" + first + "' is not supported");
         } else if (keyword == "element" && ++element == 1) {
-            const auto end = second.data() + second.size();
-            const auto parsed = std::from_chars(second.data(), end, header.vertices);
-            if (first != "vertex" || parsed.ec != std::errc{} || parsed.ptr != end)
+            const auto count = numberIn<std::size_t>(second);
+            if (first != "vertex" || !count)
                 refuse(path, "its first element has to be 'vertex' with a count");
+            header.vertices = *count;
         } else if (keyword == "property" && element == 1) {
             if (bytesOf(first) == 0)
                 refuse(path, "a vertex has a property of type '" + first + "'");
@@ -106,6 +108,21 @@ std::array<int, 4> findColumns(const Header& header, const std::string& path) {
     for (std::size_t n = 0; n < 3; ++n)
         if (columns[n] < 0) refuse(path, "its vertices have no '" + names[n] + "'");
     return columns;
+}
+
+/** Reads the numbers that a line begins with, as many as `values` holds; false if they are fewer.
+ */
+bool readNumbers(std::string_view line, std::vector<double>& values) {
+    constexpr const char* kSpaces = " \t\r";
+    for (auto& value : values) {
+        line.remove_prefix(std::min(line.find_first_not_of(kSpaces), line.size()));
+        const auto word = line.substr(0, line.find_first_of(kSpaces));
+        const auto number = numberIn<double>(word);
+        if (!number) return false;
+        value = *number;
+        line.remove_prefix(word.size());
+    }
+    return true;
 }
 }  // namespace
 
@@ -159,14 +176,7 @@ CPointsMapXYZI loadPly(const std::string& path) {
     for (std::size_t i = 0; i < header.vertices; ++i) {
         bool whole = true;
         if (header.ascii) {
-            whole = static_cast<bool>(std::getline(in, line));
-            const char *at = line.data(), *const end = at + line.size();
-            for (auto& value : values) {
-                while (at != end && (*at == ' ' || *at == '\t')) ++at;
-                const auto parsed = std::from_chars(at, end, value);
-                whole = whole && parsed.ec == std::errc{};
-                at = parsed.ptr;
-            }
+            whole = std::getline(in, line) && readNumbers(line, values);
         } else {
             whole = static_cast<bool>(in.read(bytes.data(), static_cast<std::streamsize>(stride)));
             for (std::size_t p = 0; p < values.size(); ++p)

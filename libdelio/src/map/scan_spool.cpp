@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 
 namespace delio::map {
 ScanSpool::ScanSpool(const std::string& folder) : folder_(folder) {
@@ -17,7 +17,7 @@ ScanSpool::ScanSpool(const std::string& folder) : folder_(folder) {
         file_.reset(fdopen(descriptor, "w+b"));
     }
     if (!file_)
-        throw Error("cannot put key scans aside in '" + folder + "': " + std::strerror(errno));
+        throw Error("cannot put keyframes aside in '" + folder + "': " + std::strerror(errno));
 }
 
 ScanSpool::Place ScanSpool::append(const Floats& cloud) {
@@ -27,7 +27,7 @@ ScanSpool::Place ScanSpool::append(const Floats& cloud) {
         std::fwrite(cloud.data(), sizeof(float), cloud.size(), file_.get()) == cloud.size() &&
         std::fflush(file_.get()) == 0;
     if (!written)
-        throw Error("cannot put key scans aside in '" + folder_ + "': " + std::strerror(errno) +
+        throw Error("cannot put keyframes aside in '" + folder_ + "': " + std::strerror(errno) +
                     "; make room there, or do without the map (--no-map)");
     end_ += cloud.size() * sizeof(float);
     return place;
@@ -37,7 +37,7 @@ ScanSpool::Floats ScanSpool::read(const Place& place) const {
     Floats cloud(place.floats);
     if (std::fseek(file_.get(), static_cast<long>(place.offset), SEEK_SET) != 0 ||
         std::fread(cloud.data(), sizeof(float), cloud.size(), file_.get()) != cloud.size())
-        throw Error("cannot read the key scans that were put aside in '" + folder_ + "'");
+        throw Error("cannot read the keyframes that were put aside in '" + folder_ + "'");
     return cloud;
 }
 }  // namespace delio::map

@@ -4,36 +4,37 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
-#include "delio/error.h"
-#include "gz_object.h"
+#include "../io/gz_object.h"
+#include "delio/core/error.h"
+#include "delio/core/geometry.h"
 
 namespace delio::map {
 using mrpt::maps::CPointsMapXYZI;
 using mrpt::maps::CSimpleMap;
 using mrpt::poses::CPose3D;
 
-void saveSimplemap(const CSimpleMap& map, const std::string& path) { saveWhole(map, path); }
+void saveSimplemap(const CSimpleMap& map, const std::string& path) { io::saveWhole(map, path); }
 
 CSimpleMap loadSimplemap(const std::string& path) {
     CSimpleMap map;
-    loadWhole(path, "a .simplemap", map);
+    io::loadWhole(path, "a .simplemap", map);
     for (std::size_t i = 0; i < map.size(); ++i)
         if (!map.getAsPair(i).pose || !map.getAsPair(i).sf)
-            throw Error("'" + path + "' has a key frame without a pose or without observations");
+            throw Error("'" + path + "' has a keyframe without a pose or without observations");
     return map;
 }
 
-std::vector<CPose3D> posesOf(const CSimpleMap& map) {
-    std::vector<CPose3D> poses;
+std::vector<Eigen::Isometry3d> posesOf(const CSimpleMap& map) {
+    std::vector<Eigen::Isometry3d> poses;
     for (std::size_t i = 0; i < map.size(); ++i)
-        poses.push_back(map.getAsPair(i).pose->getMeanVal());
+        poses.push_back(fromMrpt(map.getAsPair(i).pose->getMeanVal()));
     return poses;
 }
 
 CPointsMapXYZI pointsOf(const CSimpleMap& map) {
     CPointsMapXYZI all;
-    const auto poses = posesOf(map);
     for (std::size_t i = 0; i < map.size(); ++i) {
+        const CPose3D pose = map.getAsPair(i).pose->getMeanVal();
         for (const auto& observation : *map.getAsPair(i).sf) {
             const auto* scan =
                 dynamic_cast<const mrpt::obs::CObservationPointCloud*>(observation.get());
@@ -45,12 +46,12 @@ CPointsMapXYZI pointsOf(const CSimpleMap& map) {
                                 scan->getExternalStorageFile() + "': " + plainMessage(e));
                 }
                 if (scan->pointcloud)
-                    all.insertAnotherMap(scan->pointcloud.get(), poses[i] + scan->sensorPose);
+                    all.insertAnotherMap(scan->pointcloud.get(), pose + scan->sensorPose);
                 scan->unload();
             } else {
                 mrpt::maps::CSimplePointsMap points;
                 points.insertionOptions.minDistBetweenLaserPoints = 0;
-                points.insertObservation(*observation, poses[i]);
+                points.insertObservation(*observation, pose);
                 all.insertAnotherMap(&points, CPose3D());
             }
         }

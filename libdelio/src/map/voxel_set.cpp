@@ -9,23 +9,34 @@ std::int64_t roundedDown(double v) {
 }
 }  // namespace
 
-bool VoxelSet::insert(const Eigen::Vector3d& point) {
-    if (size_ == 0) return true;
+VoxelSet::Place VoxelSet::placeOf(const Eigen::Vector3d& point) const {
     const std::int64_t x = roundedDown(point.x() / size_), y = roundedDown(point.y() / size_),
                        z = roundedDown(point.z() / size_);
     // 21 bits an axis: blocks within a million to either side of the origin do not mix.
     const auto part = [](std::int64_t v) {
         return static_cast<std::uint64_t>(v >> 3) & ((1U << 21) - 1);
     };
-    const std::uint64_t key = part(x) << 42 | part(y) << 21 | part(z);
-    if (!last_ || key != lastKey_) {
-        last_ = &blocks_[key];  // stays where it is when others are added
-        lastKey_ = key;
+    return {part(x) << 42 | part(y) << 21 | part(z), static_cast<std::size_t>(z & 7),
+            std::uint64_t{1} << (8 * (y & 7) + (x & 7))};
+}
+
+bool VoxelSet::insert(const Eigen::Vector3d& point) {
+    if (size_ == 0) return true;
+    const Place place = placeOf(point);
+    if (!last_ || place.block != lastKey_) {
+        last_ = &blocks_[place.block];  // stays where it is when others are added
+        lastKey_ = place.block;
     }
-    auto& layer = (*last_)[static_cast<std::size_t>(z & 7)];
-    const std::uint64_t bit = std::uint64_t{1} << (8 * (y & 7) + (x & 7));
-    if (layer & bit) return false;
-    layer |= bit;
+    auto& layer = (*last_)[place.layer];
+    if (layer & place.bit) return false;
+    layer |= place.bit;
     return true;
+}
+
+void VoxelSet::erase(const Eigen::Vector3d& point) noexcept {
+    if (size_ == 0) return;
+    const Place place = placeOf(point);
+    const auto block = blocks_.find(place.block);
+    if (block != blocks_.end()) block->second[place.layer] &= ~place.bit;
 }
 }  // namespace delio::map

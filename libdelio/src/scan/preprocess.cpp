@@ -6,19 +6,24 @@
 #include "delio/scan/rings.h"
 
 namespace delio::scan {
-std::vector<OptionField> PreprocessOptions::fields() {
-    return {{"min_range", &min_range, "m; nearer points are dropped (the vehicle itself)", 0, 1e3},
-            {"max_range", &max_range, "m; farther points are dropped", 1, 1e4},
-            {"vertical_correction_deg", &vertical_correction_deg,
+std::vector<OptionField> PreprocessOptions::fields() const {
+    return {{"min_range", &PreprocessOptions::min_range,
+             "m; nearer points are dropped (the vehicle itself)", 0, 1e3},
+            {"max_range", &PreprocessOptions::max_range, "m; farther points are dropped", 1, 1e4},
+            {"vertical_correction_deg", &PreprocessOptions::vertical_correction_deg,
              "deg added to each point's vertical angle; where absent: what DRIVE.meta.yaml says",
              -5, 5},
-            {"deskew", &deskew,
+            {"deskew", &PreprocessOptions::deskew,
              "true: points are brought to the stamp of their scan, where their times are known; "
              "where absent: not if DRIVE.meta.yaml says that they are there already"},
-            {"sweep_s", &sweep_s,
+            {"sweep_s", &PreprocessOptions::sweep_s,
              "s; time of a turn, by which points that come without times get them from their "
              "azimuth (clockwise, stamped at the front); 0: such points stay as they are",
              0, 10}};
+}
+
+void PreprocessOptions::check(const std::string& section) const {
+    requireOrder(section + ".min_range", min_range, section + ".max_range", max_range);
 }
 
 PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
@@ -57,8 +62,10 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     cloud.points.conservativeResize(3, kept);
     if (options.deskew && scan.times_s.empty() && options.sweep_s > 0)
         cloud.times_s = azimuthTimes(cloud.points, options.sweep_s);
-    cloud.rings =
-        scan.rings.empty() ? ringsOf(cloud.points) : ringsFromTop(cloud.points, cloud.rings);
     return cloud;
+}
+
+std::vector<std::uint16_t> neighbouringRings(const PointCloud& cloud) {
+    return cloud.rings.empty() ? ringsOf(cloud.points) : ringsFromTop(cloud.points, cloud.rings);
 }
 }  // namespace delio::scan

@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
+#include "poses.h"
 
 namespace {
 using namespace delio;
@@ -12,19 +13,19 @@ using evaluation::associate;
 io::Trajectory stamped(const std::vector<double>& stamps_s) {
     io::Trajectory trajectory;
     trajectory.stamps_s = stamps_s;
-    for (const double t : stamps_s) trajectory.poses.emplace_back(t, 0, 0);
+    for (const double t : stamps_s) trajectory.poses.push_back(test::poseAt(t, 0, 0));
     return trajectory;
 }
 
 io::Trajectory unstamped(std::size_t count) {
     io::Trajectory trajectory;
-    trajectory.poses.resize(count);
+    trajectory.poses.assign(count, Eigen::Isometry3d::Identity());
     return trajectory;
 }
 
-std::vector<double> xOf(const std::vector<mrpt::poses::CPose3D>& poses) {
+std::vector<double> xOf(const std::vector<Eigen::Isometry3d>& poses) {
     std::vector<double> xs;
-    for (const auto& pose : poses) xs.push_back(pose.x());
+    for (const auto& pose : poses) xs.push_back(pose.translation().x());
     return xs;
 }
 

@@ -5,25 +5,27 @@
 
 #include <cmath>
 
+#include "poses.h"
+
 namespace {
 using namespace delio::evaluation;
-using mrpt::poses::CPose3D;
-using Poses = std::vector<CPose3D>;
+using delio::test::poseAt;
+using Poses = std::vector<Eigen::Isometry3d>;
 
 // Steps that sum up without rounding: a segment of L metres ends at L + kStep_m exactly.
 constexpr double kStep_m = 0.5;
 
 /** A drive of `count` poses with the same motion between any two. */
-Poses chain(const CPose3D& motion, std::size_t count) {
-    Poses poses(1);
-    while (poses.size() < count) poses.push_back(poses.back() + motion);
+Poses chain(const Eigen::Isometry3d& motion, std::size_t count) {
+    Poses poses = {Eigen::Isometry3d::Identity()};
+    while (poses.size() < count) poses.push_back(poses.back() * motion);
     return poses;
 }
 
-Poses straight(double step_m, std::size_t count) { return chain(CPose3D(0, 0, step_m), count); }
+Poses straight(double step_m, std::size_t count) { return chain(poseAt(0, 0, step_m), count); }
 
 TEST(KittiMetric, IdenticalTrajectoriesHaveNoError) {
-    const auto drive = chain(CPose3D::FromXYZYawPitchRoll(0.02, 0.01, 1.1, 0.01, -0.002, 0.3), 900);
+    const auto drive = chain(poseAt(0.02, 0.01, 1.1, 0.01, -0.002, 0.3), 900);
     const auto errors = kittiErrors(drive, drive);
     EXPECT_GT(errors.segments, 100U);
     EXPECT_NEAR(errors.t_percent, 0, 1e-10);
@@ -46,9 +48,9 @@ TEST(KittiMetric, AScaleErrorOfOnePercentIsOnePercent) {
 TEST(KittiMetric, AYawDriftGivesItsDegreesPer100MetresAndItsArc) {
     const double driftPerMetre_deg = 0.02;
     const double turn = mrpt::DEG2RAD(driftPerMetre_deg) * kStep_m;
-    const auto motion = CPose3D::FromXYZYawPitchRoll(kStep_m, 0, 0, turn, 0, 0);
+    const auto motion = poseAt(kStep_m, 0, 0, turn, 0, 0);
     const auto errors =
-        kittiErrors(chain(CPose3D(kStep_m, 0, 0), 2000), chain(motion, 2000), kittiLengths_m());
+        kittiErrors(chain(poseAt(kStep_m, 0, 0), 2000), chain(motion, 2000), kittiLengths_m());
     for (const auto& one : errors.perLength) {
         const double driven = one.length_m + kStep_m;
         EXPECT_NEAR(one.r_deg_per_100m, 100 * driftPerMetre_deg * driven / one.length_m, 1e-9);
@@ -82,7 +84,7 @@ TEST(KittiMetric, TheMeanIsOverSegmentsNotOverLengths) {
 }
 
 TEST(KittiMetric, ADriveThatIsTooShortHasNoFigure) {
-    for (const auto& drive : {Poses(), Poses(1), straight(kStep_m, 201)}) {
+    for (const auto& drive : {Poses(), straight(kStep_m, 1), straight(kStep_m, 201)}) {
         const auto errors = kittiErrors(drive, drive);
         EXPECT_EQ(errors.segments, 0U);
         EXPECT_TRUE(std::isnan(errors.t_percent));
@@ -91,10 +93,10 @@ TEST(KittiMetric, ADriveThatIsTooShortHasNoFigure) {
 }
 
 TEST(KittiMetric, TheFixedFramesMayDiffer) {
-    const auto drive = chain(CPose3D::FromXYZYawPitchRoll(1, 0, 0, 0.01, 0, 0), 500);
+    const auto drive = chain(poseAt(1, 0, 0, 0.01, 0, 0), 500);
     auto moved = drive;
-    const auto world = CPose3D::FromXYZYawPitchRoll(400, -90, 7, 2, 0.4, 1);
-    for (auto& pose : moved) pose = world + pose;
+    const auto world = poseAt(400, -90, 7, 2, 0.4, 1);
+    for (auto& pose : moved) pose = world * pose;
     EXPECT_NEAR(kittiErrors(drive, moved).t_percent, 0, 1e-9);
 }
 

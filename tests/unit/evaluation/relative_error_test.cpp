@@ -6,14 +6,16 @@
 #include <cmath>
 #include <numeric>
 
+#include "poses.h"
+
 namespace {
 using namespace delio::evaluation;
-using mrpt::poses::CPose3D;
-using Poses = std::vector<CPose3D>;
+using delio::test::poseAt;
+using Poses = std::vector<Eigen::Isometry3d>;
 
-Poses chain(const CPose3D& motion, std::size_t count) {
-    Poses poses(1);
-    while (poses.size() < count) poses.push_back(poses.back() + motion);
+Poses chain(const Eigen::Isometry3d& motion, std::size_t count) {
+    Poses poses = {Eigen::Isometry3d::Identity()};
+    while (poses.size() < count) poses.push_back(poses.back() * motion);
     return poses;
 }
 
@@ -31,11 +33,12 @@ TEST(RelativeError, SpreadOfAList) {
 }
 
 TEST(RelativeError, OneBadStepIsOneBadEntry) {
-    const auto drive = chain(CPose3D::FromXYZYawPitchRoll(1, 0, 0, 0.1, 0, 0), 50);
+    const auto drive = chain(poseAt(1, 0, 0, 0.1, 0, 0), 50);
     auto estimate = drive;
     // From pose 20 on everything is displaced as a body: only the motion from 19 to 20 is wrong.
-    const CPose3D slip = CPose3D::FromXYZYawPitchRoll(0.3, 0.4, 0, mrpt::DEG2RAD(2.0), 0, 0);
-    for (std::size_t i = 20; i < 50; ++i) estimate[i] = drive[20] + slip + (drive[i] - drive[20]);
+    const Eigen::Isometry3d slip = poseAt(0.3, 0.4, 0, mrpt::DEG2RAD(2.0), 0, 0);
+    for (std::size_t i = 20; i < 50; ++i)
+        estimate[i] = drive[20] * slip * drive[20].inverse() * drive[i];
     const auto error = relativeError(drive, estimate);
     ASSERT_EQ(error.translations_m.size(), 49U);
     for (std::size_t i = 0; i < 49; ++i) {
@@ -49,7 +52,7 @@ TEST(RelativeError, OneBadStepIsOneBadEntry) {
 }
 
 TEST(RelativeError, SpansDeltaPoses) {
-    const auto drive = chain(CPose3D(1, 0, 0), 30), longer = chain(CPose3D(1.01, 0, 0), 30);
+    const auto drive = chain(poseAt(1, 0, 0), 30), longer = chain(poseAt(1.01, 0, 0), 30);
     EXPECT_NEAR(relativeError(drive, longer, 1).translation_m.rmse, 0.01, 1e-12);
     EXPECT_NEAR(relativeError(drive, longer, 10).translation_m.rmse, 0.1, 1e-12);
     EXPECT_EQ(relativeError(drive, longer, 10).translations_m.size(), 20U);

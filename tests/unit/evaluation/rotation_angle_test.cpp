@@ -4,22 +4,21 @@
 
 #include <Eigen/Dense>
 
+#include "delio/core/geometry.h"
+
 namespace {
 using delio::evaluation::rotationAngle_rad;
-using mrpt::poses::CPose3D;
 
 /** A turn by `angle_rad` about a slanting axis, with `noise` on every entry of the matrix. */
-CPose3D turn(double angle_rad, double noise = 0) {
+Eigen::Isometry3d turn(double angle_rad, double noise = 0) {
     const Eigen::Vector3d axis = Eigen::Vector3d(1, -2, 0.5).normalized();
     Eigen::Matrix3d R = Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
     for (int i = 0; i < 9; ++i) R(i / 3, i % 3) += i % 2 ? noise : -noise;
-    CPose3D pose;
-    pose.setRotationMatrix(mrpt::math::CMatrixDouble33(R));
-    return pose;
+    return delio::isometry(R, Eigen::Vector3d::Zero());
 }
 
 TEST(RotationAngle, IsExactFromZeroToHalfATurn) {
-    EXPECT_EQ(rotationAngle_rad(CPose3D()), 0);
+    EXPECT_EQ(rotationAngle_rad(Eigen::Isometry3d::Identity()), 0);
     for (const double angle : {1e-12, 1e-8, 1e-3, 1.0, M_PI / 2, 3.0, M_PI - 1e-8, M_PI})
         EXPECT_NEAR(rotationAngle_rad(turn(angle)), angle, 1e-14) << angle;
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "poses.h"
+
 namespace {
 using namespace delio::evaluation;
 
@@ -10,8 +12,8 @@ Comparison drive(double speed_mps, double percent, std::size_t poses) {
     Comparison comparison;
     for (std::size_t i = 0; i < poses; ++i) {
         const double x = 0.1 * speed_mps * static_cast<double>(i);
-        comparison.reference.emplace_back(x, 0, 0);
-        comparison.estimate.emplace_back(x * (1 + percent / 100), 0, 0);
+        comparison.reference.push_back(delio::test::poseAt(x, 0, 0));
+        comparison.estimate.push_back(delio::test::poseAt(x * (1 + percent / 100), 0, 0));
         comparison.times_s.push_back(0.1 * static_cast<double>(i));
     }
     comparison.row = score(comparison.reference, comparison.estimate, {50, 100}, 1);

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/containers/yaml.h>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "test_data.h"
 
 namespace {

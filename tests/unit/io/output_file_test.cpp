@@ -4,7 +4,7 @@
 
 #include <ostream>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "test_data.h"
 #include "toy_drive.h"
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "delio/error.h"
-#include "delio/io/scan_source.h"
+#include "delio/core/error.h"
+#include "delio/io/rawlog_reader.h"
 #include "test_data.h"
 #include "toy_drive.h"
 
@@ -94,10 +94,9 @@ TEST(RawlogWriter, WhatWasWrittenIsRead) {
         meta.epoch_s = epoch_s;
         writer.finish(meta, "", "", "");
         EXPECT_EQ(std::filesystem::exists(folder / "out_Images/000003.bin"), !embed);
-        const double epochBack_s = io::readDriveMeta(folder / "out.rawlog")->epoch_s;
-        io::ScanSource source(folder / "out.rawlog", "", "", epochBack_s);
+        io::RawlogReader reader(folder / "out.rawlog");
         for (const double stamp_s : stamps_s) {
-            const auto scan = source.next();
+            const auto scan = reader.next();
             ASSERT_TRUE(scan);
             EXPECT_NEAR(scan->stamp_s, stamp_s, 5.1e-8);
             ASSERT_EQ(scan->points->size(), 2U);
@@ -107,8 +106,8 @@ TEST(RawlogWriter, WhatWasWrittenIsRead) {
                 EXPECT_TRUE(std::equal(fields.begin(), fields.end(), &kPoints[4 * i]));
             }
         }
-        EXPECT_FALSE(source.next());
-        EXPECT_EQ(source.label(), "lidar");
+        EXPECT_FALSE(reader.next());
+        EXPECT_EQ(reader.label(), "lidar");
     }
 }
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "test_data.h"
 
 namespace {
@@ -21,6 +21,10 @@ class ScanTable : public testing::Test {
             return e.what();
         }
         return "";
+    }
+    void expectUnwritable(const std::vector<io::ScanRow>& rows) const {
+        EXPECT_THROW(io::writeScanTable(rows, folder_ / "unlike.csv"), Error);
+        EXPECT_FALSE(std::filesystem::exists(folder_ / "unlike.csv"));
     }
     test::TemporaryFolder folder_;
 };
@@ -45,5 +49,32 @@ TEST_F(ScanTable, NamesWhatIsWrong) {
     EXPECT_NE(faultOf(heading + "1,2,0\n1,3,0\n").find("line 3"), std::string::npos);
     EXPECT_NE(faultOf(heading + "-1,2,0\n").find("line 2"), std::string::npos);
     EXPECT_THROW(io::readScanTable(folder_ / "none.csv"), Error);
+}
+
+TEST_F(ScanTable, IsReadAsItWasWritten) {
+    const std::vector<io::ScanRow> rows = {
+        {2, 1.5, {{"points", "120000"}, {"read_ms", "3.250"}}, false, ""},
+        {5, 1317000000.1234567, {{"points", "7"}, {"read_ms", "0.100"}}, true, "few, of\r\nall"}};
+    io::writeScanTable(rows, folder_ / "scans.csv");
+    EXPECT_EQ(test::readText(folder_ / "scans.csv"),
+              "scan,stamp_s,points,read_ms,predicted,reason\n"
+              "2,1.5000000,120000,3.250,0,\n"
+              "5,1317000000.1234567,7,0.100,1,few; of  all\n");
+    const auto table = io::readScanTable(folder_ / "scans.csv");
+    EXPECT_EQ(table.scans, (std::vector<std::size_t>{2, 5}));
+    EXPECT_EQ(table.stamps_s, (std::vector<double>{1.5, 1317000000.1234567}));
+    EXPECT_EQ(table.predicted, (std::vector<bool>{false, true}));
+}
+
+TEST_F(ScanTable, OfNoScansIsAHeading) {
+    io::writeScanTable({}, folder_ / "scans.csv");
+    EXPECT_EQ(test::readText(folder_ / "scans.csv"), "scan,stamp_s,predicted,reason\n");
+    EXPECT_TRUE(io::readScanTable(folder_ / "scans.csv").scans.empty());
+}
+
+TEST_F(ScanTable, EveryRowHasTheSameColumns) {
+    const io::ScanRow first{1, 0, {{"points", "5"}, {"lines", "2"}}, false, ""};
+    expectUnwritable({first, {2, 1, {{"points", "5"}}, false, ""}});
+    expectUnwritable({first, {2, 1, {{"lines", "2"}, {"points", "5"}}, false, ""}});
 }
 }  // namespace

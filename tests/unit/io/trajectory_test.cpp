@@ -3,13 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <fstream>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
+#include "poses.h"
 #include "test_data.h"
 
 namespace {
 using namespace delio;
-using mrpt::poses::CPose3D;
 
 const std::string kIdentityRow = "1 0 0 0 0 1 0 0 0 0 1 0";
 
@@ -26,8 +27,7 @@ TEST(Trajectory, KittiAndTumGiveTheSameDoublesBack) {
     const test::TemporaryFolder folder;
     io::Trajectory drive;
     for (int i = 0; i < 50; ++i) {
-        drive.poses.push_back(
-            CPose3D::FromXYZYawPitchRoll(1.0 / 3 * i, -0.1 * i, 7e-9, 0.06 * i, 0.01, -0.3));
+        drive.poses.push_back(test::poseAt(1.0 / 3 * i, -0.1 * i, 7e-9, 0.06 * i, 0.01, -0.3));
         drive.stamps_s.push_back(0.1037359 * i);
     }
     io::writeKitti(drive, folder / "kitti.txt");
@@ -38,13 +38,31 @@ TEST(Trajectory, KittiAndTumGiveTheSameDoublesBack) {
     ASSERT_EQ(tum.poses.size(), drive.poses.size());
     EXPECT_EQ(tum.stamps_s, drive.stamps_s);
     for (std::size_t i = 0; i < drive.poses.size(); ++i) {
-        EXPECT_EQ(kitti.poses[i].x(), drive.poses[i].x());
-        const auto difference =
-            (kitti.poses[i].getRotationMatrix() - drive.poses[i].getRotationMatrix());
-        EXPECT_LT(difference.asEigen().cwiseAbs().maxCoeff(), 1e-14);
-        const auto tumDifference =
-            (tum.poses[i].getRotationMatrix() - drive.poses[i].getRotationMatrix());
-        EXPECT_LT(tumDifference.asEigen().cwiseAbs().maxCoeff(), 1e-14);
+        EXPECT_EQ(kitti.poses[i].translation().x(), drive.poses[i].translation().x());
+        const Eigen::Matrix3d R = drive.poses[i].linear();
+        EXPECT_LT((kitti.poses[i].linear() - R).cwiseAbs().maxCoeff(), 1e-14);
+        EXPECT_LT((tum.poses[i].linear() - R).cwiseAbs().maxCoeff(), 1e-14);
+    }
+}
+
+TEST(Trajectory, TumHasTheQuaternionWhoseScalarIsNotNegative) {
+    const test::TemporaryFolder folder;
+    io::Trajectory drive;
+    for (int i = 0; i < 36; ++i) {
+        drive.poses.push_back(test::poseAtDeg(0, 0, 0, 10 * i, 3, -2));
+        drive.stamps_s.push_back(i);
+    }
+    io::writeTum(drive, folder / "tum.txt");
+    std::ifstream in(folder / "tum.txt");
+    double number = 0, scalar = 0;
+    for (std::size_t i = 0; i < drive.poses.size(); ++i) {
+        for (int k = 0; k < 7; ++k) in >> number;
+        in >> scalar;
+        ASSERT_TRUE(in);
+        EXPECT_GE(scalar, 0);
+        EXPECT_LT(
+            test::degreesBetween(io::readTrajectory(folder / "tum.txt").poses[i], drive.poses[i]),
+            1e-6);
     }
 }
 
@@ -78,7 +96,7 @@ TEST(Trajectory, ACalibrationWithoutTrIsNoError) {
     const auto calibration = io::readCalibration(folder / "calib.txt");
     ASSERT_TRUE(calibration.hasTr);
     io::Trajectory lidar;
-    lidar.poses = {CPose3D(), CPose3D(2, 0, 0)};
-    EXPECT_NEAR(io::lidarToCam0(lidar, calibration.Tr).poses[1].z(), 2, 1e-12);
+    lidar.poses = {test::poseAt(0, 0, 0), test::poseAt(2, 0, 0)};
+    EXPECT_NEAR(io::lidarToCam0(lidar, calibration.Tr).poses[1].translation().z(), 2, 1e-12);
 }
 }  // namespace

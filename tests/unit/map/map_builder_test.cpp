@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CSimplePointsMap.h>
-#include <mrpt/obs/CObservationPointCloud.h>
-#include <mrpt/obs/CSensoryFrame.h>
 #include <unistd.h>
 
 #include <Eigen/Dense>
@@ -13,39 +11,24 @@
 #include <set>
 #include <tuple>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "delio/map/simplemap.h"
+#include "map_support.h"
 #include "memory_limit.h"
+#include "poses.h"
 #include "test_data.h"
 
 namespace {
 using namespace delio;
+using Eigen::Isometry3d;
 using map::MapBuilder;
 using map::MapOptions;
-using mrpt::maps::CPointsMapXYZI;
 using mrpt::maps::CSimplePointsMap;
-using mrpt::poses::CPose3D;
-
-const auto kStamp = mrpt::Clock::fromDouble(1316995200.0);
-
-CPointsMapXYZI randomCloud(std::size_t count, unsigned seed, float reach = 20) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> place(-reach, reach), intensity(0, 1);
-    CPointsMapXYZI cloud;
-    for (std::size_t i = 0; i < count; ++i) {
-        const float x = place(random), y = place(random), z = place(random) / 10;
-        cloud.insertPointRGB(x, y, z, intensity(random), 0, 0);
-    }
-    return cloud;
-}
-
-MapOptions everything() {
-    MapOptions options;
-    options.voxelSize_m = 0;
-    options.minRange_m = 0;
-    options.maxRange_m = 1e6;
-    return options;
-}
+using test::everything;
+using test::kHere;
+using test::kStamp;
+using test::poseAt;
+using test::randomCloud;
 
 CSimplePointsMap oneCloud(std::initializer_list<mrpt::math::TPoint3Df> points) {
     CSimplePointsMap cloud;
@@ -59,41 +42,40 @@ Voxel voxelOf(double x, double y, double z, double size) {
             static_cast<int>(std::floor(z / size))};
 }
 
-TEST(MapBuilder, KeyScansByDistanceAndByAngle) {
+TEST(MapBuilder, KeyframesByDistanceAndByAngle) {
     MapOptions options = everything();
     options.keyframeDistance_m = 2;
     options.keyframeAngle_deg = 10;
     MapBuilder builder(options);
     const auto cloud = randomCloud(10, 1);
     const auto offer = [&](double x, double yaw_deg) {
-        return builder.add(0, CPose3D::FromXYZYawPitchRoll(x, 0, 0, mrpt::DEG2RAD(yaw_deg), 0, 0),
-                           cloud, CPose3D(), kStamp);
+        return builder.add(0, poseAt(x, 0, 0, mrpt::DEG2RAD(yaw_deg), 0, 0), cloud, kHere, kStamp);
     };
     EXPECT_TRUE(offer(0, 0));
     EXPECT_FALSE(offer(1.9, 0));
     EXPECT_TRUE(offer(2.1, 0));
-    EXPECT_FALSE(offer(0.2, 0)) << "1.9 m from the last key scan";
+    EXPECT_FALSE(offer(0.2, 0)) << "1.9 m from the last keyframe";
     EXPECT_FALSE(offer(2.1, -9));
     EXPECT_TRUE(offer(2.1, -11));
     EXPECT_FALSE(offer(2.1, -19));
     EXPECT_TRUE(offer(2.1, 349 + 11)) << "11 degrees, over the turn of the circle";
-    EXPECT_EQ(builder.keyScans(), 4U);
+    EXPECT_EQ(builder.keyframes(), 4U);
 }
 
-TEST(MapBuilder, UnusablePointsAreDroppedAndAnEmptyScanIsNoKeyScan) {
+TEST(MapBuilder, UnusablePointsAreDroppedAndAnEmptyScanIsNoKeyframe) {
     MapOptions options = everything();
     options.minRange_m = 2.5;
     options.maxRange_m = 60;
     MapBuilder builder(options);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();
-    EXPECT_FALSE(builder.add(0, CPose3D(), CSimplePointsMap(), CPose3D(), kStamp));
-    EXPECT_FALSE(builder.add(0, CPose3D(), oneCloud({{nan, 3, 0}, {1, 1, 1}, {0, 61, 0}}),
-                             CPose3D(), kStamp));
+    EXPECT_FALSE(builder.add(0, kHere, CSimplePointsMap(), kHere, kStamp));
+    EXPECT_FALSE(
+        builder.add(0, kHere, oneCloud({{nan, 3, 0}, {1, 1, 1}, {0, 61, 0}}), kHere, kStamp));
     EXPECT_TRUE(builder.add(
-        0, CPose3D(), oneCloud({{nan, 3, 0}, {0, 0, 3}, {0, inf, 0}, {3, nan, 0}, {0, 59, 0}}),
-        CPose3D(), kStamp));
-    const auto points = builder.points({CPose3D()});
+        0, kHere, oneCloud({{nan, 3, 0}, {0, 0, 3}, {0, inf, 0}, {3, nan, 0}, {0, 59, 0}}), kHere,
+        kStamp));
+    const auto points = builder.points({kHere});
     ASSERT_EQ(points.size(), 2U);
     EXPECT_EQ(points.getPointsBufferRef_z()[0], 3);
     EXPECT_EQ(points.getPointsBufferRef_y()[1], 59);
@@ -105,7 +87,7 @@ TEST(MapBuilder, OnePointPerVoxelAsBruteForceFindsIt) {
         options.voxelSize_m = size;
         MapBuilder builder(options);
         const auto cloud = randomCloud(20000, 2);
-        builder.add(0, CPose3D(), cloud, CPose3D(), kStamp);
+        builder.add(0, kHere, cloud, kHere, kStamp);
         std::set<Voxel> taken;
         std::vector<std::size_t> expected;
         for (std::size_t i = 0; i < cloud.size(); ++i)
@@ -115,7 +97,7 @@ TEST(MapBuilder, OnePointPerVoxelAsBruteForceFindsIt) {
                                     cloud.getPointsBufferRef_z()[i], size))
                     .second)
                 expected.push_back(i);
-        const auto points = builder.points({CPose3D()});
+        const auto points = builder.points({kHere});
         ASSERT_EQ(points.size(), expected.size()) << size;
         for (std::size_t k = 0; k < expected.size(); ++k) {
             const std::size_t i = expected[k];
@@ -131,47 +113,45 @@ TEST(MapBuilder, WhatSeveralScansSawIsThereOnce) {
     MapOptions options = everything();
     options.voxelSize_m = 0.5;
     const auto cloud = randomCloud(5000, 3);
-    const auto pointsOfTwo = [&](const CPose3D& second) {
+    const auto pointsOfTwo = [&](const Isometry3d& second) {
         MapBuilder builder(options);
-        builder.add(0, CPose3D(), cloud, CPose3D(), kStamp);
-        builder.add(1, second, cloud, CPose3D(), kStamp);
-        return builder.points({CPose3D(), second}).size();
+        builder.add(0, kHere, cloud, kHere, kStamp);
+        builder.add(1, second, cloud, kHere, kStamp);
+        return builder.points({kHere, second}).size();
     };
-    EXPECT_EQ(2 * pointsOfTwo(CPose3D()), pointsOfTwo(CPose3D::FromTranslation(100, 0, 0)));
+    EXPECT_EQ(2 * pointsOfTwo(kHere), pointsOfTwo(poseAt(100, 0, 0)));
     // What was thought to lie apart and comes together in the end is there once as well.
     MapBuilder builder(options);
-    builder.add(0, CPose3D(), cloud, CPose3D(), kStamp);
-    builder.add(1, CPose3D::FromTranslation(100, 0, 0), cloud, CPose3D(), kStamp);
-    EXPECT_EQ(builder.keyScans(), 2U);
-    EXPECT_EQ(builder.points({CPose3D(), CPose3D()}).size(), pointsOfTwo(CPose3D()));
+    builder.add(0, kHere, cloud, kHere, kStamp);
+    builder.add(1, poseAt(100, 0, 0), cloud, kHere, kStamp);
+    EXPECT_EQ(builder.keyframes(), 2U);
+    EXPECT_EQ(builder.points({kHere, kHere}).size(), pointsOfTwo(kHere));
 }
 
-TEST(MapBuilder, ScansBetweenKeyScansAddWhatWasNotSeenBefore) {
+TEST(MapBuilder, ScansBetweenKeyframesAddWhatWasNotSeenBefore) {
     MapOptions options = everything();
     options.voxelSize_m = 0.5;
     options.keyframeDistance_m = 100;
     MapBuilder builder(options);
-    const std::vector<CPose3D> poses = {CPose3D(), CPose3D::FromTranslation(1, 0, 0)};
-    EXPECT_TRUE(builder.add(0, poses[0], oneCloud({{10.1F, 0, 0}}), CPose3D(), kStamp));
-    EXPECT_FALSE(
-        builder.add(1, poses[1], oneCloud({{9.1F, 0, 0}, {20.1F, 0, 0}}), CPose3D(), kStamp));
+    const std::vector<Isometry3d> poses = {kHere, poseAt(1, 0, 0)};
+    EXPECT_TRUE(builder.add(0, poses[0], oneCloud({{10.1F, 0, 0}}), kHere, kStamp));
+    EXPECT_FALSE(builder.add(1, poses[1], oneCloud({{9.1F, 0, 0}, {20.1F, 0, 0}}), kHere, kStamp));
     const auto points = builder.points(poses);
     ASSERT_EQ(points.size(), 2U) << "the first place is one voxel, seen twice";
     EXPECT_NEAR(points.getPointsBufferRef_x()[1], 21.1, 1e-4);
-    EXPECT_EQ(builder.keyScans(), 1U);
+    EXPECT_EQ(builder.keyframes(), 1U);
     EXPECT_EQ(builder.keyPoses(poses).size(), 1U);
 }
 
 TEST(MapBuilder, WhatMovesIsLeftOut) {
     MapBuilder builder(everything());
-    EXPECT_TRUE(builder.add(0, CPose3D(), oneCloud({{10, 0, 0}, {11, 0, 0}, {12, 0, 0}}), CPose3D(),
-                            kStamp, {0, 1, 0}));
-    const auto points = builder.points({CPose3D()});
+    EXPECT_TRUE(builder.add(0, kHere, oneCloud({{10, 0, 0}, {11, 0, 0}, {12, 0, 0}}), kHere, kStamp,
+                            {0, 1, 0}));
+    const auto points = builder.points({kHere});
     ASSERT_EQ(points.size(), 2U);
     EXPECT_EQ(points.getPointsBufferRef_x()[1], 12);
-    EXPECT_EQ(map::pointsOf(builder.simplemap({CPose3D()})).size(), 2U);
-    EXPECT_FALSE(builder.add(1, CPose3D::FromTranslation(50, 0, 0), oneCloud({{10, 0, 0}}),
-                             CPose3D(), kStamp, {1}));
+    EXPECT_EQ(map::pointsOf(builder.simplemap({kHere})).size(), 2U);
+    EXPECT_FALSE(builder.add(1, poseAt(50, 0, 0), oneCloud({{10, 0, 0}}), kHere, kStamp, {1}));
 }
 
 std::size_t memoryInUse_mb() {
@@ -184,47 +164,45 @@ TEST(MapBuilder, MemoryGrowsWithTheSpaceAndNotWithTheScans) {
     if (!test::MemoryLimit::works()) GTEST_SKIP() << "the sanitizer keeps what is freed";
     MapOptions options = everything();
     options.voxelSize_m = 0.2;
-    options.keyframeDistance_m = 0;  // every scan is a key scan
+    options.keyframeDistance_m = 0;  // every scan is a keyframe
     MapBuilder builder(options);
     const auto cloud = randomCloud(50000, 9);
     const auto drive = [&](std::size_t scans) {
-        for (std::size_t i = 0; i < scans; ++i) builder.add(0, CPose3D(), cloud, CPose3D(), kStamp);
+        for (std::size_t i = 0; i < scans; ++i) builder.add(0, kHere, cloud, kHere, kStamp);
     };
     drive(5);
     const std::size_t before = memoryInUse_mb();
     drive(200);  // 200 x 0.8 MB, were they kept in memory
     EXPECT_LT(memoryInUse_mb(), before + 30);
-    EXPECT_EQ(builder.keyScans(), 205U);
+    EXPECT_EQ(builder.keyframes(), 205U);
     // Written one scan after the other as well.
     const test::TemporaryFolder folder;
-    map::saveSimplemap(builder.simplemap({CPose3D()}), folder / "map.simplemap");
+    map::saveSimplemap(builder.simplemap({kHere}), folder / "map.simplemap");
     EXPECT_LT(memoryInUse_mb(), before + 30);
 }
 
-TEST(MapBuilder, KeyScansLeaveNoFileBehind) {
+TEST(MapBuilder, KeyframesLeaveNoFileBehind) {
     const test::TemporaryFolder folder;
     MapBuilder builder(everything(), "lidar", folder.path().string());
-    builder.add(0, CPose3D(), randomCloud(100, 10), CPose3D(), kStamp);
+    builder.add(0, kHere, randomCloud(100, 10), kHere, kStamp);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-    EXPECT_EQ(map::pointsOf(builder.simplemap({CPose3D()})).size(), 100U);
+    EXPECT_EQ(map::pointsOf(builder.simplemap({kHere})).size(), 100U);
     MapBuilder nowhere(everything(), "lidar", folder / "no/such/folder");
-    EXPECT_FALSE(nowhere.add(0, CPose3D(), randomCloud(9, 1), CPose3D(), kStamp));
-    EXPECT_EQ(nowhere.points({CPose3D()}).size(), 9U);
-    EXPECT_THROW(nowhere.simplemap({CPose3D()}), Error);
+    EXPECT_FALSE(nowhere.add(0, kHere, randomCloud(9, 1), kHere, kStamp));
+    EXPECT_EQ(nowhere.points({kHere}).size(), 9U);
+    EXPECT_THROW(nowhere.simplemap({kHere}), Error);
 }
 
 TEST(MapBuilder, FinalPosesAndTheSensorsPlaceAreApplied) {
     MapBuilder builder(everything());
-    const auto sensor = CPose3D::FromXYZYawPitchRoll(0.5, -0.2, 1.7, 1.2, 0.1, -0.3);
+    const auto sensor = poseAt(0.5, -0.2, 1.7, 1.2, 0.1, -0.3);
     const auto cloud = randomCloud(200, 4);
-    builder.add(3, CPose3D(), cloud, sensor, kStamp);
-    std::vector<CPose3D> poses(4);
-    poses[3] = CPose3D::FromXYZYawPitchRoll(40, -7, 3, -2.5, 0.2, 0.4);
+    builder.add(3, kHere, cloud, sensor, kStamp);
+    std::vector<Isometry3d> poses(4, kHere);
+    poses[3] = poseAt(40, -7, 3, -2.5, 0.2, 0.4);
     const auto points = builder.points(poses);
     ASSERT_EQ(points.size(), cloud.size());
-    const Eigen::Matrix4d T =
-        poses[3].getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen() *
-        sensor.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen();
+    const Eigen::Matrix4d T = poses[3].matrix() * sensor.matrix();
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         const Eigen::Vector4d p(cloud.getPointsBufferRef_x()[i], cloud.getPointsBufferRef_y()[i],
                                 cloud.getPointsBufferRef_z()[i], 1);
@@ -245,57 +223,9 @@ TEST(MapBuilder, FinalPosesAndTheSensorsPlaceAreApplied) {
 
 TEST(MapBuilder, MissingPosesAreAnError) {
     MapBuilder builder(everything());
-    builder.add(5, CPose3D(), randomCloud(10, 5), CPose3D(), kStamp);
-    EXPECT_THROW(builder.points(std::vector<CPose3D>(5)), Error);
+    builder.add(5, kHere, randomCloud(10, 5), kHere, kStamp);
+    EXPECT_THROW(builder.points(std::vector<Isometry3d>(5, kHere)), Error);
     EXPECT_THROW(builder.simplemap({}), Error);
     EXPECT_THROW(builder.keyPoses({}), Error);
-}
-
-TEST(Simplemap, ReloadsEqualAndRepeatsByteForByte) {
-    const test::TemporaryFolder folder;
-    const auto sensor = CPose3D::FromXYZYawPitchRoll(0, 0, 1.7, 0.1, 0, 0);
-    const std::vector<CPose3D> poses = {CPose3D(),
-                                        CPose3D::FromXYZYawPitchRoll(5, 1, 0, 0.3, 0, 0)};
-    for (const char* name : {"a.simplemap", "b.simplemap"}) {
-        MapBuilder builder(MapOptions(), "velodyne");
-        builder.add(0, poses[0], randomCloud(3000, 6), sensor, kStamp);
-        builder.add(1, poses[1], randomCloud(3000, 7), sensor, kStamp);
-        map::saveSimplemap(builder.simplemap(poses), folder / name);
-    }
-    EXPECT_EQ(test::readText(folder / "a.simplemap"), test::readText(folder / "b.simplemap"));
-
-    const auto loaded = map::loadSimplemap(folder / "a.simplemap");
-    ASSERT_EQ(loaded.size(), 2U);
-    // MRPT's own reader makes the same of it.
-    mrpt::maps::CSimpleMap byMrpt;
-    EXPECT_TRUE(byMrpt.loadFromFile(folder / "a.simplemap"));
-    EXPECT_EQ(byMrpt.size(), 2U);
-    const auto pair = loaded.getAsPair(1);
-    EXPECT_LT((pair.pose->getMeanVal() - poses[1]).norm(), 1e-9);
-    const auto scan = pair.sf->getObservationByClass<mrpt::obs::CObservationPointCloud>();
-    ASSERT_TRUE(scan);
-    EXPECT_EQ(scan->sensorLabel, "velodyne");
-    EXPECT_EQ(scan->timestamp, kStamp);
-    EXPECT_FALSE(scan->isExternallyStored());
-    EXPECT_LT((scan->sensorPose - sensor).norm(), 1e-9);
-    MapBuilder again((MapOptions()));
-    again.add(0, -sensor, randomCloud(3000, 7), sensor, kStamp);
-    const auto kept = again.points({-sensor});
-    ASSERT_EQ(scan->pointcloud->size(), kept.size());
-}
-
-TEST(Simplemap, CutOffAnywhereIsAnError) {
-    const test::TemporaryFolder folder;
-    MapBuilder builder(everything());
-    builder.add(0, CPose3D(), randomCloud(300, 8), CPose3D(), kStamp);
-    map::saveSimplemap(builder.simplemap({CPose3D()}), folder / "whole.simplemap");
-    const std::string whole = test::readText(folder / "whole.simplemap");
-    for (std::size_t length = 0;
-         length<whole.size(); length += length + 40> whole.size() ? 1 : 17) {
-        test::writeText(folder / "cut.simplemap", whole.substr(0, length));
-        EXPECT_THROW(map::loadSimplemap(folder / "cut.simplemap"), Error) << length;
-    }
-    EXPECT_THROW(map::loadSimplemap(folder / "missing.simplemap"), Error);
-    EXPECT_THROW(map::loadSimplemap(folder.path().string()), Error);
 }
 }  // namespace

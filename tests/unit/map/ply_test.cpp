@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "test_data.h"
 
 namespace {

@@ -6,9 +6,10 @@
 #include <fstream>
 #include <set>
 
-#include "delio/error.h"
+#include "delio/core/error.h"
 #include "delio/io/trajectory.h"
 #include "drive.h"
+#include "poses.h"
 #include "ray_caster.h"
 #include "recording.h"
 #include "scene_support.h"
@@ -18,8 +19,6 @@
 namespace {
 using namespace delio;
 using namespace delio::synth;
-
-double yawOf(const Eigen::Isometry3d& pose) { return std::atan2(pose(1, 0), pose(0, 0)); }
 
 /** Places of the drive that are as near as `distance_m` in plan, but 30 s apart. */
 struct Meeting {
@@ -34,7 +33,8 @@ std::vector<Meeting> meetings(const Drive& drive, double distance_m) {
         for (std::size_t j = i + 200; j < poses.size(); ++j) {
             const double d = (poses[i].translation() - poses[j].translation()).head<2>().norm();
             if (d > distance_m) continue;
-            const double turned = std::remainder(yawOf(poses[j]) - yawOf(poses[i]), 2 * M_PI);
+            const double turned =
+                std::remainder(test::yawOf(poses[j]) - test::yawOf(poses[i]), 2 * M_PI);
             all.push_back({i, j, d, std::abs(turned)});
         }
     return all;
@@ -48,7 +48,7 @@ TEST(SynthLoop, ComesBackInTheSameAndInTheOppositeDirection) {
         double same = 1e9, opposite = 1e9;
         for (std::size_t i = 200; i < drive.scans(); ++i) {
             const Eigen::Isometry3d back = start.inverse() * drive.lidarPose(i);
-            const double yaw = std::abs(yawOf(back));
+            const double yaw = std::abs(test::yawOf(back));
             const double distance = back.translation().norm();
             if (yaw < 0.03) same = std::min(same, distance);
             if (yaw > M_PI - 0.03) opposite = std::min(opposite, distance);
@@ -119,13 +119,13 @@ void expectOnTime(const Drive& drive, const std::string& file, double place_m, d
     const auto Tr = test::kittiAxes();
     double before = -1e9;
     for (std::size_t i = 0; i < cam0.size(); ++i) {
-        const auto given = (-Tr) + cam0[i] + Tr;
+        const Eigen::Isometry3d given = Tr.inverse() * cam0[i] * Tr;
         const auto made = drive.lidarPose(i);
         // The sensor stands on a ground that leans: its head is not above the wheels' middle.
         const Eigen::Vector2d foot =
             (made * Eigen::Vector3d(0, 0, -Drive::kSensorHeight_m)).head<2>();
-        ASSERT_LT((foot - Eigen::Vector2d(given.x(), given.y())).norm(), place_m) << i;
-        ASSERT_LT(std::abs(std::remainder(yawOf(made) - given.yaw(), 2 * M_PI)),
+        ASSERT_LT((foot - given.translation().head<2>()).norm(), place_m) << i;
+        ASSERT_LT(std::abs(std::remainder(test::yawOf(made) - test::yawOf(given), 2 * M_PI)),
                   yaw_deg * M_PI / 180)
             << i;
         ASSERT_GE(drive.station(i), before);
@@ -233,8 +233,8 @@ TEST_F(SynthRecording, AHighwayDoesNotTurnSharply) {
     io::Trajectory poses;
     for (int i = 0; i < 40; ++i) {
         const double angle = 0.05 * i, radius = 10;
-        poses.poses.push_back(mrpt::poses::CPose3D(radius * std::sin(angle),
-                                                   radius * (1 - std::cos(angle)), 0, angle, 0, 0));
+        poses.poses.push_back(
+            test::poseAt(radius * std::sin(angle), radius * (1 - std::cos(angle)), 0, angle));
     }
     const std::string file = folder_ / "sharp.txt";
     io::writeKitti(io::lidarToCam0(poses, test::kittiAxes()), file);

@@ -3,19 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "delio/core/geometry.h"
 #include "delio/io/trajectory.h"
+#include "poses.h"
 #include "random.h"
 #include "test_data.h"
 
 namespace delio::test {
-using mrpt::poses::CPose3D;
-
-CPose3D kittiAxes() {
-    mrpt::math::CMatrixDouble33 R;
-    R.asEigen() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-    CPose3D Tr;
-    Tr.setRotationMatrix(R);
-    return Tr;
+Eigen::Isometry3d kittiAxes() {
+    Eigen::Matrix3d R;
+    R << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+    return isometry(R, Eigen::Vector3d::Zero());
 }
 
 std::unique_ptr<synth::Scene> sceneOf(const std::string& name, std::uint64_t seed,
@@ -39,7 +37,7 @@ void writeEight(const std::filesystem::path& file, double jitter_m) {
         const double angle = std::fmod(way, round) / kEightRadius_m;
         const double x = kEightRadius_m * std::sin(angle) + jitter_m * random.normal();
         const double y = side * kEightRadius_m * (1 - std::cos(angle)) + jitter_m * random.normal();
-        poses.poses.push_back(CPose3D(x, y, 0.02 * x, side * angle, 0, 0));
+        poses.poses.push_back(poseAt(x, y, 0.02 * x, side * angle));
         const bool brakes = standing == 0 && stop - s < speed * speed / (2 * kBraking_m_s2);
         if (brakes)
             speed = std::max(0.0, speed - kBraking_m_s2 * kPeriod_s);

@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -12,7 +13,7 @@ std::unique_ptr<synth::Scene> sceneOf(const std::string& name, std::uint64_t see
                                       std::size_t scans, const std::string& trajectory = "");
 
 /** KITTI's axes: x right, y down, z forward. */
-mrpt::poses::CPose3D kittiAxes();
+Eigen::Isometry3d kittiAxes();
 
 /** Poses of cam0 along an eight, at 8 m/s, twice round; in the middle of it the vehicle stands for
  *  3 s. What was measured jitters by `jitter_m`. */

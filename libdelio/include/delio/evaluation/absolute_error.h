@@ -1,5 +1,5 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
+#include <Eigen/Geometry>
 
 #include <vector>
 
@@ -12,6 +12,6 @@ struct AbsoluteError {
 
 /** APE: the positions of the estimate are moved onto those of the reference by the best rigid
  *  motion (Umeyama, no scale), whatever their fixed frames are. Same count of poses in both. */
-AbsoluteError absoluteError(const std::vector<mrpt::poses::CPose3D>& reference,
-                            const std::vector<mrpt::poses::CPose3D>& estimate);
+AbsoluteError absoluteError(const std::vector<Eigen::Isometry3d>& reference,
+                            const std::vector<Eigen::Isometry3d>& estimate);
 }  // namespace delio::evaluation

@@ -7,8 +7,8 @@
 namespace delio::evaluation {
 /** Two trajectories pose by pose: `reference[i]` and `estimate[i]` belong together. */
 struct Association {
-    std::vector<mrpt::poses::CPose3D> reference;
-    std::vector<mrpt::poses::CPose3D> estimate;
+    std::vector<Eigen::Isometry3d> reference;
+    std::vector<Eigen::Isometry3d> estimate;
     std::vector<std::size_t>
         estimateRows;                    //!< estimate[i] is row estimateRows[i] of what was given
     std::vector<double> stamps_s;        //!< of the pairs; empty where neither file has stamps

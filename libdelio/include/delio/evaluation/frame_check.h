@@ -1,5 +1,5 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
+#include <Eigen/Geometry>
 
 #include <vector>
 
@@ -16,9 +16,9 @@ enum class FrameMismatch {
  *  reported only where the directions disagree as they stand (mean cosine below 0.5) and agree
  *  after the axes are swapped (above 0.9): a bad estimate is no mismatch. Neither is one that
  *  moves too little to tell. Same count of poses in both. */
-FrameMismatch findFrameMismatch(const std::vector<mrpt::poses::CPose3D>& reference,
-                                const std::vector<mrpt::poses::CPose3D>& estimate);
+FrameMismatch findFrameMismatch(const std::vector<Eigen::Isometry3d>& reference,
+                                const std::vector<Eigen::Isometry3d>& estimate);
 
 /** True if the moving frame travels along its own z, as a camera does, rather than along x. */
-bool movesAlongZ(const std::vector<mrpt::poses::CPose3D>& poses);
+bool movesAlongZ(const std::vector<Eigen::Isometry3d>& poses);
 }  // namespace delio::evaluation

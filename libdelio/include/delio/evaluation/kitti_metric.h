@@ -1,5 +1,5 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
+#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <vector>
@@ -37,10 +37,10 @@ struct KittiErrors : SegmentErrors {
 std::vector<double> kittiLengths_m();
 
 /** Distance travelled through the positions up to each pose, metres. */
-std::vector<double> travelled_m(const std::vector<mrpt::poses::CPose3D>& poses);
+std::vector<double> travelled_m(const std::vector<Eigen::Isometry3d>& poses);
 
 /** Length of the path through the positions, metres. */
-double pathLength_m(const std::vector<mrpt::poses::CPose3D>& poses);
+double pathLength_m(const std::vector<Eigen::Isometry3d>& poses);
 
 /** Lengths that a drive of `path_m` metres has several segments of, for drives that are too short
  *  for KITTI's; empty where nothing moves. */
@@ -50,7 +50,7 @@ std::vector<double> suggestedLengths_m(double path_m);
  *  measured along the reference, that begin at every tenth pose. The means are over segments.
  *  Both trajectories have the same count of poses, of the same moving frame; their fixed frames
  *  may differ. The one change to the kit: rotationAngle_rad() in place of its acos. */
-KittiErrors kittiErrors(const std::vector<mrpt::poses::CPose3D>& reference,
-                        const std::vector<mrpt::poses::CPose3D>& estimate,
+KittiErrors kittiErrors(const std::vector<Eigen::Isometry3d>& reference,
+                        const std::vector<Eigen::Isometry3d>& estimate,
                         const std::vector<double>& lengths_m = kittiLengths_m());
 }  // namespace delio::evaluation

@@ -1,5 +1,5 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
+#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <vector>
@@ -24,7 +24,6 @@ struct RelativeError {
 
 /** RPE: errors of the relative motions over `delta` poses (1 or more). Same count of poses in
  *  both, of the same moving frame; their fixed frames may differ. */
-RelativeError relativeError(const std::vector<mrpt::poses::CPose3D>& reference,
-                            const std::vector<mrpt::poses::CPose3D>& estimate,
-                            std::size_t delta = 1);
+RelativeError relativeError(const std::vector<Eigen::Isometry3d>& reference,
+                            const std::vector<Eigen::Isometry3d>& estimate, std::size_t delta = 1);
 }  // namespace delio::evaluation

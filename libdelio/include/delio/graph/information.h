@@ -1,5 +1,5 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
+#include <Eigen/Geometry>
 
 #include "delio/graph/residual.h"
 
@@ -19,6 +19,6 @@ enum class InformationOf {
 
 /** The same information about the measured `pose` in other terms; to and from half angles exact to
  *  the bit. Yaw and roll are one at a pitch of +-90 deg, from where there is no way back. */
-Matrix6 convertInformation(const Matrix6& information, const mrpt::poses::CPose3D& pose,
+Matrix6 convertInformation(const Matrix6& information, const Eigen::Isometry3d& pose,
                            InformationOf from, InformationOf to);
 }  // namespace delio::graph

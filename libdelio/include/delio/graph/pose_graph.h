@@ -1,12 +1,12 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
+#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <vector>
 
+#include "delio/core/increment.h"
+#include "delio/core/stage_options.h"
 #include "delio/graph/residual.h"
-#include "delio/increment.h"
-#include "delio/stage_options.h"
 
 namespace delio::graph {
 struct WhitenedGraph;
@@ -22,17 +22,17 @@ struct PoseGraphOptions : StageOptions {
     /** More edges than the chain (i,i+1): 1 adds (i,i+2), 2 adds (i,i+3) too, as long as the two
      *  scans overlap by `min_overlap` (TranslationEstimate::overlap). For whoever makes the edges;
      *  optimise() takes those that were added. */
-    unsigned skip_edges = 4;
+    unsigned skip_edges = 0;
     double min_overlap = 0.5;
     /** Nodes that are moved while driving, for whoever adds them; 0: none. */
-    unsigned window = 10;
+    unsigned window = 0;
     unsigned max_iterations = 100;
     /** Width c of the Geman-McClure kernel: an edge costs s / (1 + s/c^2) with s = e' Omega e, so c
      *  is a count of standard deviations, and no edge ever costs more than c^2. 0: no kernel. */
     double kernel_width = 10;
 
  protected:
-    std::vector<OptionField> fields() override;
+    std::vector<OptionField> fields() const override;
 };
 
 struct OptimisationResult {
@@ -49,7 +49,7 @@ struct OptimisationResult {
 class PoseGraph {
  public:
     /** Returns the node's index: 0, 1, 2 ... Error for a pose that is not finite. */
-    std::size_t addNode(const mrpt::poses::CPose3D& initial);
+    std::size_t addNode(const Eigen::Isometry3d& initial);
 
     /** Several edges between the same nodes, and edges backwards, are welcome. Error for a node
      *  that does not exist, an edge from a node to itself, a pose that is not finite and a
@@ -57,8 +57,18 @@ class PoseGraph {
     void addEdge(const Edge& edge);
 
     /** The same from an information matrix Omega, which is kept to the bit. */
-    void addEdge(std::size_t from, std::size_t to, const mrpt::poses::CPose3D& pose,
+    void addEdge(std::size_t from, std::size_t to, const Eigen::Isometry3d& pose,
                  const Matrix6& information);
+
+    /** Takes back the last node with all edges that it has; the others keep their order. What came
+     *  after addNode() so is undone where a scan failed half-way. Error where there is no node;
+     *  otherwise it cannot fail. */
+    void removeLast();
+
+    /** Puts back poses that optimiseLast() moved: those of the nodes `firstNode`, `firstNode` + 1
+     *  ..., as poses() gave them before; node 0's too, if it is among them. Error, and nothing
+     *  changed, for a node that does not exist and for a pose that is not finite. */
+    void restore(std::size_t firstNode, const std::vector<Eigen::Isometry3d>& poses);
 
     /** Error, naming the node, where a node is not connected to node 0. */
     OptimisationResult optimise(const PoseGraphOptions& options);
@@ -69,7 +79,7 @@ class PoseGraph {
      *  large drift. Error as above. */
     OptimisationResult optimiseLast(std::size_t count, const PoseGraphOptions& options);
 
-    const std::vector<mrpt::poses::CPose3D>& poses() const { return poses_; }
+    const std::vector<Eigen::Isometry3d>& poses() const { return poses_; }
     const std::vector<Edge>& edges() const { return edges_; }
     /** Omega of edges()[i], in the order of delio::Increment. */
     const Matrix6& information(std::size_t i) const { return information_[i]; }
@@ -81,7 +91,7 @@ class PoseGraph {
     WhitenedGraph whitened(std::size_t firstFree, const std::vector<bool>& doubtful) const;
     void takeFreePoses(const WhitenedGraph& graph);
 
-    std::vector<mrpt::poses::CPose3D> poses_;
+    std::vector<Eigen::Isometry3d> poses_;
     std::vector<Edge> edges_;
     std::vector<Matrix6> information_;
     std::vector<std::vector<std::size_t>> edgesUpTo_;  //!< of each node: edges to earlier ones

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace delio::io {
@@ -14,4 +15,19 @@ struct ScanTable {
 /** Reads `scan`, `stamp_s` and `predicted` of a scans.csv, wherever these columns are.
  *  Throws Error with file and line where one is missing or malformed. */
 ScanTable readScanTable(const std::string& path);
+
+/** A row of scans.csv. */
+struct ScanRow {
+    std::size_t scan = 0;  //!< its number in its rawlog
+    double stamp_s = 0;
+    std::vector<std::pair<std::string, std::string>> values;  //!< name of the column, and text
+    bool predicted = false;
+    std::string reason;  //!< why it was predicted
+};
+
+/** Writes `scan,stamp_s,<values>,predicted,reason`, where the columns in the middle are those of
+ *  the first row (none where there are no rows); stamps have seven decimals. A comma in a text
+ *  becomes ';' and a line end a space. Throws Error where a row's columns are not those of the
+ *  first, or where the file cannot be written. */
+void writeScanTable(const std::vector<ScanRow>& rows, const std::string& path);
 }  // namespace delio::io

@@ -1,5 +1,5 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
+#include <Eigen/Geometry>
 
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@ namespace delio::io {
 /** Poses along a drive, in order of time: each maps the coordinates of the moving frame to those
  *  of the frame of the first pose (or of the world, if the file says so). */
 struct Trajectory {
-    std::vector<mrpt::poses::CPose3D> poses;
+    std::vector<Eigen::Isometry3d> poses;
     std::vector<double> stamps_s;  //!< one per pose, or empty where the file has none (KITTI)
 };
 
@@ -22,12 +22,12 @@ Trajectory readTrajectory(const std::string& path);
 
 /** A pose as KITTI writes it: 12 numbers, row-major 3x4, with the digits that give the same doubles
  *  back, and a line feed. */
-std::string kittiRow(const mrpt::poses::CPose3D& pose);
+std::string kittiRow(const Eigen::Isometry3d& pose);
 
 /** Writes a kittiRow() for each pose. */
 void writeKitti(const Trajectory& trajectory, const std::string& path);
 
-/** Writes `t x y z qx qy qz qw`; needs stamps. */
+/** Writes `t x y z qx qy qz qw` with qw of 0 or more; needs stamps. */
 void writeTum(const Trajectory& trajectory, const std::string& path);
 
 /** Reads times.txt: one number of seconds a line, as KITTI has it. Throws Error as above. */
@@ -36,12 +36,12 @@ std::vector<double> readTimes(const std::string& path);
 /** KITTI's calib.txt: `Tr`, which maps LiDAR coordinates to cam0 coordinates. */
 struct Calibration {
     bool hasTr = false;
-    mrpt::poses::CPose3D Tr;
+    Eigen::Isometry3d Tr = Eigen::Isometry3d::Identity();
 };
 
 /** Throws Error for a missing file or a malformed Tr; a file without Tr gives hasTr = false. */
 Calibration readCalibration(const std::string& path);
 
 /** Tr * T * Tr^-1 for each pose: a trajectory of the LiDAR as one of cam0. */
-Trajectory lidarToCam0(const Trajectory& lidar, const mrpt::poses::CPose3D& Tr);
+Trajectory lidarToCam0(const Trajectory& lidar, const Eigen::Isometry3d& Tr);
 }  // namespace delio::io

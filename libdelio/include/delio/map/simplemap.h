@@ -1,8 +1,8 @@
 #pragma once
 #include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/maps/CSimpleMap.h>
-#include <mrpt/poses/CPose3D.h>
 
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
@@ -18,6 +18,6 @@ mrpt::maps::CSimpleMap loadSimplemap(const std::string& path);
  *  other files cannot be read. */
 mrpt::maps::CPointsMapXYZI pointsOf(const mrpt::maps::CSimpleMap& map);
 
-/** Mean poses of its key frames, in their order. */
-std::vector<mrpt::poses::CPose3D> posesOf(const mrpt::maps::CSimpleMap& map);
+/** Mean poses of its keyframes, in their order. */
+std::vector<Eigen::Isometry3d> posesOf(const mrpt::maps::CSimpleMap& map);
 }  // namespace delio::map

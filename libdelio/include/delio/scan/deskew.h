@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "delio/motion.h"
+#include "delio/core/motion.h"
 
 namespace delio::scan {
 /** When each point of a turning LiDAR was measured, told by its azimuth: seconds from the moment at

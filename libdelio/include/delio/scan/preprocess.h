@@ -4,25 +4,27 @@
 #include <cstdint>
 #include <vector>
 
+#include "delio/core/stage_options.h"
 #include "delio/scan/scan.h"
-#include "delio/stage_options.h"
 
 namespace delio::scan {
 struct PreprocessOptions : public StageOptions {
     double min_range = 2.5;
-    double max_range = 80;
+    double max_range = 100;
     double vertical_correction_deg = 0;
     bool deskew = true;
     double sweep_s = 0;
 
+    void check(const std::string& section) const override;
+
  protected:
-    std::vector<OptionField> fields() override;
+    std::vector<OptionField> fields() const override;
 };
 
 /** A scan as the stages want it. */
 struct PointCloud {
     Eigen::Matrix3Xf points;             //!< metres, in the sensor's frame, in the sensor's order
-    std::vector<std::uint16_t> rings;    //!< ring of each point, from 0; see ringsOf()
+    std::vector<std::uint16_t> rings;    //!< of each point, as its source numbers them, or empty
     std::vector<float> times_s;          //!< of each point from the stamp; empty: all at the stamp
     std::vector<std::uint32_t> indices;  //!< of each point in the scan
     std::size_t notFinite = 0;   //!< points dropped because a coordinate was NaN or infinite
@@ -33,4 +35,8 @@ struct PointCloud {
  *  `vertical_correction_deg` (range kept): KITTI's HDL-64E needs 0.205 deg (IMLS-SLAM, KISS-ICP).
  */
 PointCloud preprocess(const Scan& scan, const PreprocessOptions& options);
+
+/** Ring of each point, from 0, neighbours with consecutive numbers: the source's, sorted from the
+ *  top, or where it does not say, told by ringsOf(). */
+std::vector<std::uint16_t> neighbouringRings(const PointCloud& cloud);
 }  // namespace delio::scan

@@ -1,7 +1,7 @@
 #pragma once
 #include <mrpt/core/Clock.h>
 #include <mrpt/maps/CPointsMap.h>
-#include <mrpt/poses/CPose3D.h>
+#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +26,6 @@ struct Scan {
     std::vector<float> times_s;
 
     /** Pose of the sensor in the vehicle: maps sensor coordinates to vehicle coordinates. */
-    mrpt::poses::CPose3D sensorPose;
+    Eigen::Isometry3d sensorPose = Eigen::Isometry3d::Identity();
 };
 }  // namespace delio

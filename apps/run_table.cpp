@@ -1,0 +1,72 @@
+#include "run_table.h"
+
+#include <mrpt/core/bits_math.h>
+#include <mrpt/core/format.h>
+
+#include <ostream>
+#include <utility>
+#include <vector>
+
+#include "delio/evaluation/rotation_angle.h"
+#include "delio/run/summary.h"
+
+namespace delio {
+using evaluation::Comparison;
+using mrpt::format;
+
+namespace {
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+Rows rowsOf(const Comparison& found) {
+    Rows rows;
+    const auto& kitti = found.row.kitti;
+    if (kitti.segments > 0) {
+        rows.emplace_back("KITTI segments", format("%zu of %g to %g m", kitti.segments,
+                                                   kitti.perLength.front().length_m,
+                                                   kitti.perLength.back().length_m));
+        rows.emplace_back("KITTI translation", format("%.3f %%", kitti.t_percent));
+        rows.emplace_back("KITTI rotation", format("%.3f deg/100 m", kitti.r_deg_per_100m));
+    }
+    const double length_m = found.row.length_m, end_m = found.end_error_m;
+    const std::string share = length_m > 0 ? format(", %.2f %%", 100 * end_m / length_m) : "";
+    rows.emplace_back("end error", format("%.3f m%s of %.1f m", end_m, share.c_str(), length_m));
+    rows.emplace_back("APE (aligned)", format("%.3f m", found.row.ape_m));
+    const auto& translation = found.perScan.translation_m;
+    const auto& rotation = found.perScan.rotation_deg;
+    rows.emplace_back("translation per scan",
+                      format("%.4f m median, %.4f m 95 %%", translation.median, translation.p95));
+    rows.emplace_back("rotation per scan",
+                      format("%.4f deg median, %.4f deg 95 %%", rotation.median, rotation.p95));
+    return rows;
+}
+}  // namespace
+
+void printTable(const run::RunRecord& record, const std::string& folder, std::ostream& out) {
+    const auto row = [&](const char* name, const std::string& value) {
+        out << format("%-26s %s\n", name, value.c_str());
+    };
+    row("scans", std::to_string(record.rows.size()));
+    row("predicted", std::to_string(record.predicted()));
+    row("path", format("%.1f m", record.path_m()));
+    row("time per scan", format("%.1f ms", record.msPerScan()));
+    row("peak memory", format("%.0f MB", run::peakMemory_mb()));
+    if (record.metrics && record.metricsBefore) {
+        const Rows after = rowsOf(*record.metrics), before = rowsOf(*record.metricsBefore);
+        out << format("%-26s %-34s %s\n", "", "optimised", "unoptimised");
+        for (std::size_t i = 0; i < after.size(); ++i)
+            out << format("%-26s %-34s %s\n", after[i].first.c_str(), after[i].second.c_str(),
+                          before[i].second.c_str());
+    } else if (record.metrics) {
+        for (const auto& [name, value] : rowsOf(*record.metrics)) row(name.c_str(), value);
+    }
+    row("results", folder);
+}
+
+std::string describe(const run::RunRow& row) {
+    const Step& step = row.report.step;
+    const auto& pose = step.increment.pose;
+    return format("scan %zu: moved %.3f m, turned %.3f deg, %.0f ms%s%s", row.scan,
+                  pose.translation().norm(), mrpt::RAD2DEG(evaluation::rotationAngle_rad(pose)),
+                  row.total_ms(), step.predicted ? ", predicted: " : "", step.reason.c_str());
+}
+}  // namespace delio

@@ -1,0 +1,50 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "delio/core/increment.h"
+
+namespace delio {
+/** What a method found of the rotation of scan `to` against a reference `from` (a scan or a map):
+ *  rotation and translation are two problems of three unknowns each, and so are their estimates. */
+struct RotationEstimate {
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  //!< n_from = rotation * n_to
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();    //!< rad^2, right tangent (frame `to`)
+    /** Eigenvalues, rising, of the mean of w (I - n n'): how well the pattern fixes its three axes,
+     *  0 to 1. Ground alone gives (0, 1, 1). */
+    Eigen::Vector3d observability = Eigen::Vector3d::Zero();
+    Eigen::Matrix3Xd unobservedAxes;  //!< unit vectors in frame `to` where the prediction was kept
+    std::size_t matches = 0;
+    double residual_rad = 0;  //!< weighted root mean square angle of the pairs
+    unsigned iterations = 0;
+    /** False: too few normals, or a rotation too far from the prediction; it is the prediction. */
+    bool valid = false;
+    bool tooFar = false;
+};
+
+/** The same of the translation of the unrotated scan. */
+struct TranslationEstimate {
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();  //!< p_from = p_to(unrotated) + t
+    /** m^2, in the axes of scan `from`; of the lines' own noise, the rotation taken as true. */
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    /** How the translation follows an error of the rotation that the scan was unrotated by:
+     *  d translation / d w, w a small rotation (rad) about the axes of scan `from`. */
+    Eigen::Matrix3d lever = Eigen::Matrix3d::Zero();
+    /** Eigenvalues, rising, of the mean projection of the pairs: how well the lines fix the three
+     *  directions, 0 to 1. */
+    Eigen::Vector3d observability = Eigen::Vector3d::Zero();
+    Eigen::Matrix3Xd unobservedAxes;  //!< unit vectors along which the prediction was kept
+    std::size_t matches = 0;
+    /** Share of the lines of `to` that have one of `from` next to them (midpoints no farther apart
+     *  than `overlap_distance`): how much both scans see of the same surfaces, 0 to 1. */
+    double overlap = 0;
+    double residual_m = 0;  //!< root mean square distance of the matched lines
+    unsigned iterations = 0;
+    bool valid = false;  //!< false: too few lines or matches; translation is the prediction
+};
+
+/** Both estimates as one relative pose. Its covariance is in the right tangent, which is the later
+ *  frame's: the translation has its own noise, and through the lever also that of the rotation it
+ *  was unrotated by. */
+Increment incrementOf(const RotationEstimate& rotation, const TranslationEstimate& translation);
+}  // namespace delio

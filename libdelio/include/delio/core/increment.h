@@ -1,0 +1,22 @@
+#pragma once
+#include "delio/core/geometry.h"
+
+namespace delio {
+/** A relative pose with its uncertainty. `pose` maps the coordinates of the later frame to those
+ *  of the earlier one (p_earlier = pose * p_later; chained: T_later = T_earlier * pose). */
+struct Increment {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+
+    /** Order [x y z wx wy wz], metres and radians, of the error e in
+     *  pose_true = pose * (exp(w), t): the right tangent, expressed in the later frame. */
+    Matrix6 covariance = Matrix6::Identity();
+};
+
+/** Two increments one after the other; their errors are taken to be independent. */
+Increment chained(const Increment& first, const Increment& second);
+
+/** An increment of a sensor as one of the vehicle that carries it: S_from D S_to^-1, with the poses
+ *  (sensor to vehicle) that the sensor had at both ends. */
+Increment ofVehicle(const Increment& ofSensor, const Eigen::Isometry3d& sensorFrom,
+                    const Eigen::Isometry3d& sensorTo);
+}  // namespace delio

@@ -1,0 +1,75 @@
+#pragma once
+#include <Eigen/Geometry>
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "delio/core/stage_options.h"
+#include "delio/movers/segments.h"
+#include "delio/scan/range_image.h"
+
+namespace delio::movers {
+struct DynamicObjectsOptions : public StageOptions {
+    bool enabled = true;
+    double cell_deg = 0.5;
+    double margin = 0.4;
+    double interval_s = 0.1;
+    double memory_s = 0.8;
+    double min_share = 0.5;
+    double min_known = 0.3;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Finds dynamic objects by free space: what moves. A segment of a scan is one where
+ *  - earlier scans saw through most of the place that it takes (it came from elsewhere), or
+ *  - it is the third of a row of segments of one size at equal distances in equal times, through
+ *    the first two of which this scan sees (it drives ahead, where it hides its way), or goes on
+ *    from such a row as it did. */
+class DynamicObjects {
+ public:
+    DynamicObjects(const DynamicObjectsOptions& options, const SegmentOptions& segments)
+        : options_(options), segmentOptions_(segments) {}
+
+    /** Which of `points` belong to dynamic objects: 1 or 0 each. `all`: the whole scan, of which
+     * `points` is a thinned view (metres, sensor's frame); `pose`: sensor to map, good to a part of
+     * the margin. */
+    std::vector<std::uint8_t> detect(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xf& all,
+                                     const Eigen::Isometry3d& pose, double stamp_s);
+
+    /** Keeps the scan that detect() was asked of last, at its final pose, to judge later ones by.
+     */
+    void remember(const Eigen::Isometry3d& pose);
+
+    /** Forgets all earlier scans. */
+    void clear() { views_.clear(); }
+
+ private:
+    /** What is kept of a scan: all in its sensor's frame. */
+    struct Object {
+        Eigen::Matrix3Xf points;
+        Eigen::Vector3f centre, size;
+        std::optional<Eigen::Vector3f> velocity;  //!< m/s, in the map's frame
+    };
+    struct View {
+        double stamp_s = 0;
+        Eigen::Isometry3f toMap = Eigen::Isometry3f::Identity();
+        scan::RangeImage image;
+        std::vector<Object> objects;
+    };
+    bool came(const Object& object) const;
+    std::optional<Eigen::Vector3f> velocityOf(const Object& object) const;
+    /** True where scan `by` saw through the place that `object` took in scan `seen`. `minKnown`:
+     *  the share of its points whose places it has to know of. */
+    bool isFree(const Object& object, const View& seen, const View& by, double minKnown) const;
+
+    DynamicObjectsOptions options_;
+    SegmentOptions segmentOptions_;
+    View latest_;
+    std::deque<View> views_;  //!< earlier scans, latest first
+};
+}  // namespace delio::movers

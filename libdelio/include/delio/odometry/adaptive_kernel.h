@@ -1,0 +1,21 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <deque>
+
+#include "delio/planes/plane_registration.h"
+
+namespace delio {
+/** The width of the registration's first kernel, from what the motion model was off lately (Vizzo
+ *  et al., KISS-ICP: adaptive threshold). */
+class AdaptiveKernel {
+ public:
+    /** What the pose turned out to be beside its prediction. */
+    void observe(const Eigen::Isometry3d& found, const Eigen::Isometry3d& predicted);
+
+    /** Three standard deviations (metres), within the options. */
+    double width(const planes::PlaneRegistrationOptions& options) const;
+
+ private:
+    std::deque<double> errors_m_;  //!< of the latest predictions
+};
+}  // namespace delio

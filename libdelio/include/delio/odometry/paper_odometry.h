@@ -1,0 +1,80 @@
+#pragma once
+#include <memory>
+
+#include "delio/core/timeline.h"
+#include "delio/odometry/odometry.h"
+#include "delio/odometry/prediction.h"
+#include "delio/paper/line_cloud.h"
+#include "delio/paper/line_registration.h"
+#include "delio/paper/mean_shift.h"
+#include "delio/paper/outlier_removal.h"
+#include "delio/paper/pattern_registration.h"
+#include "delio/scan/preprocess.h"
+#include "delio/surfaces/bilateral_filter.h"
+#include "delio/surfaces/normals.h"
+
+namespace delio {
+/** The options of each stage of PaperOdometry. */
+struct PaperOdometryOptions {
+    scan::PreprocessOptions scan;
+    surfaces::NormalsOptions normals;
+    surfaces::BilateralFilterOptions bilateral;
+    paper::OutlierRemovalOptions outliers;
+    paper::MeanShiftOptions meanShift;
+    paper::PatternRegistrationOptions pattern;
+    paper::LineCloudOptions lines;
+    paper::LineRegistrationOptions lineRegistration;
+    PredictionOptions prediction;
+};
+
+/** Scan `to` against scan `from`. */
+struct PaperRegistration {
+    Increment increment;  //!< maps the sensor's frame at `to` to that at `from`
+    RotationEstimate rotation;
+    TranslationEstimate translation;
+    /** Why rotation, translation or both are the prediction; empty where both were registered. */
+    std::string predictedReason;
+    double rotation_ms = 0, translation_ms = 0;
+};
+
+/** Pattern of the normals and line cloud of a scan, in the sensor's frame. */
+struct PaperFeatures : public ScanFeatures {
+    paper::Pattern pattern;
+    paper::LineCloud lines;
+    std::shared_ptr<const PaperOdometryOptions> options;  //!< that they were made with
+
+    std::optional<Link> linkTo(const ScanFeatures& earlier,
+                               const Eigen::Isometry3d& guess) const override;
+};
+
+/** Rotation from the patterns of the normals (III-D), then translation from the line clouds of the
+ *  unrotated scan (IV-B). `guess` maps frame `to` to frame `from`. With `search_m` > 0,
+ *  translations up to so many metres off the guess are tried. */
+PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeatures& to,
+                                   const Eigen::Isometry3d& guess, double search_m,
+                                   const PaperOdometryOptions& options);
+
+/** DeLiO as in the paper: rotation from the pattern of surface normals, the scan unrotated, then
+ *  translation from line clouds, both from the linear prediction on, against the last usable
+ *  scan. */
+class PaperOdometry : public Odometry {
+ public:
+    explicit PaperOdometry(const PaperOdometryOptions& options);
+
+    Step process(const Scan& scan) override;
+
+ private:
+    std::shared_ptr<const PaperFeatures> extract(const scan::PointCloud& cloud, Step& step) const;
+    void takeIncrement(const PaperRegistration& registration, double duration_s, Step& step);
+
+    std::shared_ptr<const PaperOdometryOptions> options_;
+    Timeline timeline_;
+    LinearPrediction prediction_;
+    unsigned scans_ = 0;                              //!< processed
+    std::shared_ptr<const PaperFeatures> reference_;  //!< the last usable scan
+    /** Maps the latest frame to that of reference_. */
+    Eigen::Isometry3d sinceReference_ = Eigen::Isometry3d::Identity();
+    double sinceReference_s_ = 0;
+    bool lost_ = true;  //!< where the next scan will be is not known to better than metres
+};
+}  // namespace delio

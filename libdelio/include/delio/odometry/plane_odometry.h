@@ -1,0 +1,93 @@
+#pragma once
+#include <optional>
+
+#include "delio/core/timeline.h"
+#include "delio/movers/dynamic_objects.h"
+#include "delio/odometry/adaptive_kernel.h"
+#include "delio/odometry/odometry.h"
+#include "delio/odometry/prediction.h"
+#include "delio/odometry/scan_view.h"
+#include "delio/paper/pattern_registration.h"
+#include "delio/planes/plane_map.h"
+#include "delio/planes/plane_registration.h"
+#include "delio/surfaces/bilateral_filter.h"
+#include "delio/surfaces/normals.h"
+
+namespace delio {
+struct PlaneTrackerOptions : public StageOptions {
+    double map_spacing = 0.25;
+    double scan_spacing = 0.5;
+    double lost_share = 0.93;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** The options of each stage of PlaneOdometry. */
+struct PlaneOdometryOptions {
+    scan::PreprocessOptions scan;
+    PredictionOptions prediction;
+    PlaneTrackerOptions tracker;
+    planes::PlaneMapOptions map;
+    planes::PlaneRegistrationOptions registration;
+    movers::DynamicObjectsOptions dynamics;
+    movers::SegmentOptions segments;
+    /** Of the surfaces by which a scan is relocalised. */
+    surfaces::NormalsOptions normals;
+    surfaces::BilateralFilterOptions bilateral;
+    paper::PatternRegistrationOptions pattern;
+};
+
+/** Scan against map: rotation from translation-free plane residuals, then translation alone,
+ * against a map of planes of the scans before, without dynamic objects. Where three scans in a row
+ * that are not empty cannot be registered (the recording was interrupted), a new map is begun at
+ * the prediction. Scans whose points have times are undistorted twice: by the predicted motion, and
+ * by the one that was found. */
+class PlaneOdometry : public Odometry {
+ public:
+    explicit PlaneOdometry(const PlaneOdometryOptions& options);
+
+    Step process(const Scan& scan) override;
+
+ private:
+    /** The latest scan that was registered. */
+    struct Reference {
+        Eigen::Matrix3Xf points;                                 //!< sensor's frame
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
+        double time_s = 0;
+    };
+
+    void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
+    void processNext(const scan::PointCloud& cloud, double duration_s, Step& step);
+    void detectDynamicObjects(ScanView& view, const Eigen::Isometry3d& predicted, Step& step);
+    planes::PlaneEstimate place(const ScanView& view, const Eigen::Isometry3d& predicted,
+                                double since_s, Step& step) const;
+    void refine(const scan::PointCloud& cloud, double since_s, ScanView& view,
+                planes::PlaneEstimate& estimate);
+    void learn(const planes::PlaneEstimate& estimate, const Eigen::Isometry3d& predicted,
+               double since_s);
+    void insert(const ScanView& view, const Eigen::Isometry3d& pose);
+    ScanView beginMap(const scan::PointCloud& cloud);
+    void giveUp(const scan::PointCloud& cloud);
+    void report(const planes::PlaneEstimate& estimate, const Eigen::Isometry3d& before,
+                ScanView& view, Step& step) const;
+    surfaces::SurfaceNormals surfacesOf(const Eigen::Matrix3Xf& points) const;
+    void thinned(ScanView& view) const;
+
+    PlaneOdometryOptions options_;
+    Timeline timeline_;
+    LinearPrediction prediction_;
+    planes::PlaneMap map_;
+    movers::DynamicObjects dynamics_;
+    AdaptiveKernel kernel_;
+    Reference reference_;
+    Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
+    bool first_ = true;                                       //!< no scan was seen yet
+    bool started_ = false;                                    //!< the map has planes
+    bool lost_ = true;       //!< where the next scan will be is not known to better than metres
+    double usualShare_ = 0;  //!< of points on planes
+    unsigned misses_ = 0;    //!< scans in a row that were not found in the map
+    /** The scan that the map began with, while the motion during it is not known. */
+    std::optional<scan::PointCloud> skewed_;
+};
+}  // namespace delio

@@ -1,0 +1,40 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <deque>
+
+#include "delio/core/stage_options.h"
+
+namespace delio {
+struct PredictionOptions : public StageOptions {
+    unsigned frames = 3;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Section V, equation (linear prediction): T_p = 2/(N(N+1)) sum_{j=1..N} (N-j+1) T_{i-j}, the mean
+ *  taken of logarithms in SE(3). While fewer than N increments are known, N is their
+ *  number; with none the prediction is "no motion". */
+class LinearPrediction {
+ public:
+    explicit LinearPrediction(const PredictionOptions& options) : frames_(options.frames) {}
+
+    /** The increment expected over the next `duration_s`: maps the coming frame to the present one.
+     *  With equal durations it is the paper's equation; otherwise speeds are averaged. */
+    Eigen::Isometry3d predict(double duration_s = 1) const;
+
+    /** False until an increment was observed: the prediction is a mere guess then. */
+    bool hasMotion() const { return !latestFirst_.empty(); }
+
+    /** Tells what the increment turned out to be, and how long (more than 0) it took. */
+    void observe(const Eigen::Isometry3d& increment, double duration_s = 1);
+
+ private:
+    std::size_t frames_;
+    struct Observed {
+        Eigen::Isometry3d increment;
+        double duration_s;
+    };
+    std::deque<Observed> latestFirst_;
+};
+}  // namespace delio

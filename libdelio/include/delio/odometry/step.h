@@ -1,0 +1,75 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "delio/core/estimates.h"
+#include "delio/core/increment.h"
+
+namespace delio {
+/** How well a scan was registered. */
+struct Quality {
+    std::size_t matches = 0;  //!< correspondences that the result stands on
+    double residual_m = 0;    //!< root mean square of their distances
+    /** How well they fix the three axes, 0 to 1, rising; 0 where the scan was predicted. */
+    Eigen::Vector3d rotationObservability = Eigen::Vector3d::Zero();
+    Eigen::Vector3d translationObservability = Eigen::Vector3d::Zero();
+    /** Unit vectors in the sensor's frame at this scan about which, and along which, the prediction
+     *  was kept; all three axes where the scan was predicted. */
+    Eigen::Matrix3Xd unobservedRotation, unobservedTranslation;
+};
+
+/** The quality of a scan `to` of which both estimates are. */
+Quality qualityOf(const RotationEstimate& rotation, const TranslationEstimate& translation);
+
+/** The points of a scan that were used, as the sensor would have seen them all at once at the
+ *  stamp: metres, its frame, vertical angles corrected. */
+struct UsedPoints {
+    Eigen::Matrix3Xf points;
+    std::vector<std::uint32_t> indices;  //!< of each in the scan as it came
+    /** 1 for each that belongs to a dynamic object; empty where these are not looked for. */
+    std::vector<std::uint8_t> dynamic;
+};
+
+/** One scan measured against another, beside the chain of steps. */
+struct Link {
+    Increment increment;  //!< maps the later sensor frame to the earlier one
+    double overlap = 0;   //!< share of the later scan that the earlier one saw too, 0 to 1
+};
+
+/** What a method keeps of a scan to register it with others than the last one. */
+class ScanFeatures {
+ public:
+    virtual ~ScanFeatures() = default;
+    /** Against a scan before it by the same odometry; `guess` maps this sensor frame to the earlier
+     *  one. Nothing where the two cannot be registered. */
+    virtual std::optional<Link> linkTo(const ScanFeatures& earlier,
+                                       const Eigen::Isometry3d& guess) const = 0;
+};
+
+/** A figure under its name, which is a literal of the method. */
+using Named = std::pair<const char*, double>;
+
+/** What an odometry says of one scan; it means the same whatever the method. */
+struct Step {
+    /** Maps the sensor's frame at this scan to that at the scan before; identity for the first.
+     *  The covariance of a predicted one is the motion model's. */
+    Increment increment;
+    bool predicted = false;  //!< the scan could not be registered: `increment` is the prediction
+    std::string reason;      //!< why; empty where it was registered
+    bool searched = false;   //!< not only from the prediction: all about it
+    Quality quality;
+    UsedPoints used;
+    std::size_t notFinite = 0;  //!< points dropped: a coordinate was NaN or infinite
+    bool deskewed = false;      //!< its points had times
+    /** Of each stage in its order: every scan of an odometry has the same ones. */
+    std::vector<Named> times_ms;
+    std::vector<Named> details;                    //!< the method's own figures, likewise
+    std::shared_ptr<const ScanFeatures> features;  //!< none where the method keeps none
+};
+}  // namespace delio

@@ -1,0 +1,28 @@
+#pragma once
+#include <mrpt/opengl/COpenGLScene.h>
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "delio/paper/line_cloud.h"
+#include "delio/picture/view.h"
+
+namespace delio::picture {
+/** Patterns of normals (unit vectors), each on a unit sphere of its own, side by side from left to
+ *  right, coloured by their place on the sphere so that a pattern can be followed from one to the
+ *  next; a caption each. In the axes of the sensor: x away from the viewer of sphereView(). */
+mrpt::opengl::COpenGLScene::Ptr sphereScene(const std::vector<Eigen::Matrix3Xf>& patterns,
+                                            const std::vector<std::string>& captions);
+
+/** The spheres of sphereScene() as a reader of the paper looks at them: from behind and above. */
+SnapshotOptions sphereView(std::size_t spheres);
+
+/** The lines of a scan, coloured by height. Metres, sensor's frame. */
+mrpt::opengl::COpenGLScene::Ptr lineScene(const paper::LineCloud& lines);
+
+/** The lines of two scans, those of `from` in blue, those of `to` moved by `t` in red, and in
+ *  green, 0.3 m above, what joins the midpoints of a pair. */
+mrpt::opengl::COpenGLScene::Ptr matchScene(const paper::LineCloud& from, const paper::LineCloud& to,
+                                           const Eigen::Vector3d& t);
+}  // namespace delio::picture

@@ -1,0 +1,56 @@
+#pragma once
+#include <mrpt/img/TColor.h>
+#include <mrpt/maps/CPointsMap.h>
+#include <mrpt/opengl/COpenGLScene.h>
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "delio/map/colormap.h"
+
+namespace delio::picture {
+/** What the colours of a map's points say. Intensity: as the sensor gives it. */
+enum class ColourBy { Height, Intensity };
+
+struct SceneOptions {
+    map::Colormap colormap = map::Colormap::Turbo;
+    ColourBy colourBy = ColourBy::Height;
+    float pointSize_px = 2;
+    mrpt::img::TColor background{16, 18, 22};
+};
+
+/** The ways through a map, as poses in the frame of its points; each may be empty. */
+struct MapWays {
+    std::vector<Eigen::Isometry3d> trajectory;
+    std::vector<Eigen::Isometry3d> groundTruth;
+    std::vector<Eigen::Isometry3d> keyframes;
+};
+
+/** A map and the ways through it, in the world's frame (metres, z up): points coloured by their
+ *  height above the ground around them or by intensity; the trajectory in white (on a light
+ *  background: black) with a green mark at its start and a yellow one at its end; the ground truth
+ *  in red, drawn wider and 0.2 to 1.2 m lower so that neither hides the other; axes at the
+ *  keyframes (x red, y green, z blue); a grid; and a legend in the lower left corner. Throws Error
+ *  if there are no points. */
+mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
+                                         const SceneOptions& options = {});
+
+/** Gives a scene's coloured clouds, each by height above its ground, and the legend of mapScene()
+ *  the colours of another colour map. Throws Error if the scene has no such cloud. */
+void recolour(mrpt::opengl::COpenGLScene& scene, map::Colormap colormap);
+
+/** Trajectories alone, on white: the estimate in blue, under the name given, and, if it is given,
+ *  the ground truth in red, with a grid. Both in the same frame. Made to be seen from above: the
+ *  ground truth is drawn wider and is moved down until all of it is below the estimate, so that
+ *  neither hides the other. Throws Error if there are no poses. */
+mrpt::opengl::COpenGLScene::Ptr trajectoryScene(
+    const std::vector<Eigen::Isometry3d>& estimate,
+    const std::vector<Eigen::Isometry3d>& groundTruth = {}, const std::string& name = "estimate");
+
+/** Writes a .3Dscene for SceneViewer3D. Throws Error if that fails. */
+void saveScene(const mrpt::opengl::COpenGLScene& scene, const std::string& path);
+
+/** Throws Error for a file that is missing, no scene, or cut off. */
+mrpt::opengl::COpenGLScene::Ptr loadScene(const std::string& path);
+}  // namespace delio::picture

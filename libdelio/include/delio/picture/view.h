@@ -1,0 +1,31 @@
+#pragma once
+#include <mrpt/img/TColor.h>
+
+#include <optional>
+
+namespace delio::picture {
+/** From where a scene is looked at, and how. What is not set is chosen so that the whole content
+ *  (without stray points) fills the picture. */
+struct SnapshotOptions {
+    unsigned width_px = 1920;  //!< 1 to kMaxPictureSize_px
+    unsigned height_px = 1080;
+
+    /** Where the camera stands, seen from the content: 0 on the side of +x, 90 of +y. Unset: such
+     *  that the longer side of the content lies across the picture (looking straight down: turned
+     *  by right angles only, +x to the right or up). */
+    std::optional<double> azimuth_deg;
+    double elevation_deg = 55;     //!< above the horizon; 90 looks straight down
+    std::optional<double> zoom_m;  //!< metres across the picture, through the content's middle
+    bool ortho = false;            //!< parallel projection instead of perspective
+    bool scaleBar = false;         //!< in the lower right corner; with `ortho` only
+    /** Of all point clouds; unset: the scene's, which are meant for pictures of 1080 lines that
+     *  show everything, and larger in larger pictures and from nearer. */
+    std::optional<float> pointSize_px;
+    std::optional<mrpt::img::TColor> background;  //!< unset: the scene's
+};
+
+constexpr unsigned kMaxPictureSize_px = 16384;
+
+/** Straight from above in parallel projection, with a scale bar. */
+SnapshotOptions topView();
+}  // namespace delio::picture

@@ -1,0 +1,72 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "delio/core/stage_options.h"
+
+namespace delio::planes {
+struct PlaneMapOptions : public StageOptions {
+    double voxel_size = 1.0;
+    unsigned min_points = 8;
+    double max_thickness = 0.1;
+    double max_flatness = 0.05;
+    unsigned max_points = 300;
+    double radius = 120;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** The surface in one voxel. Metres, the map's frame. */
+struct Plane {
+    Eigen::Vector3d mean;
+    Eigen::Vector3d variances;  //!< of the points, along the axes, rising
+    Eigen::Matrix3d axes;       //!< columns; the first is the normal, of either sign
+    double count;               //!< of points
+
+    Eigen::Vector3d normal() const { return axes.col(0); }
+    /** Variance of the distance between the plane and a point of its surface: the surface's own
+     *  thickness, and how well mean and normal are known there. */
+    double varianceAt(const Eigen::Vector3d& point) const;
+};
+
+/** What the last scans saw, as one plane a voxel, with running mean and scatter. Memory is bounded
+ *  by `radius`. */
+class PlaneMap {
+ public:
+    explicit PlaneMap(const PlaneMapOptions& options) : options_(options) {}
+
+    /** Takes points (metres, the map's frame) in. A voxel that has `max_points` stays as it is: it
+     *  is what drift is held against. */
+    void add(const Eigen::Matrix3Xd& points);
+
+    /** Drops what lies farther than `radius` from `centre`. */
+    void forgetFarFrom(const Eigen::Vector3d& centre);
+
+    /** The plane of the voxel that `point` lies in, or none. Valid until the map changes. */
+    const Plane* at(const Eigen::Vector3d& point) const;
+
+    /** Drops everything. */
+    void clear() { cells_.clear(); }
+
+    std::size_t voxels() const { return cells_.size(); }
+    std::size_t planes() const;
+
+ private:
+    struct Cell {
+        Eigen::Vector3d origin;  //!< the first point: sums are taken from there
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+        unsigned count = 0;
+        bool isPlane = false, touched = false;
+        Plane plane;
+    };
+    void fit(Cell& cell) const;
+
+    PlaneMapOptions options_;
+    std::unordered_map<std::uint64_t, Cell> cells_;
+};
+}  // namespace delio::planes

@@ -1,0 +1,56 @@
+#pragma once
+#include <Eigen/Geometry>
+
+#include "delio/core/estimates.h"
+#include "delio/core/stage_options.h"
+#include "delio/planes/plane_map.h"
+
+namespace delio::planes {
+struct PlaneRegistrationOptions : public StageOptions {
+    double first_kernel = 1.0;
+    double last_kernel = 0.1;
+    double point_sigma = 0.01;
+    unsigned max_iterations = 60;
+    double converged_rad = 2e-5;
+    double converged_m = 5e-4;
+    unsigned min_matches = 100;
+    double min_rotation_share = 1e-3;
+    double min_translation_share = 2e-3;
+    double independent_share = 0.16;
+    double prior_sigma = 0.5;
+    double prior_sigma_deg = 1.0;
+    double search_speed = 40;
+    double search_radius = 30;
+    double search_step = 1;
+
+    void check(const std::string& section) const override;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** A scan registered to the map. Of both estimates the frame `from` is the map's and `to` the
+ *  sensor's. */
+struct PlaneEstimate {
+    RotationEstimate rotation;
+    TranslationEstimate translation;
+    /** Inlier ratio: of the points in voxels with a plane those that lie on it, 0 to 1. */
+    double share = 0;
+    bool valid = false;
+
+    /** Sensor to map. */
+    Eigen::Isometry3d pose() const { return isometry(rotation.rotation, translation.translation); }
+};
+
+/** The prediction (sensor to map), where there is nothing to register: not valid, with the motion
+ *  model's variances. */
+PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose,
+                                const PlaneRegistrationOptions& options);
+
+/** Rotation from translation-free residuals, then translation alone, with new correspondences each
+ *  time, while the kernel narrows from `kernel` (metres) to last_kernel: from the prediction
+ * (sensor to map) to convergence. An axis that the planes do not see keeps the prediction. */
+PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
+                               const Eigen::Isometry3d& predicted, double kernel,
+                               const PlaneRegistrationOptions& options);
+}  // namespace delio::planes

@@ -1,0 +1,17 @@
+#pragma once
+#include "delio/planes/correspondence.h"
+
+namespace delio::planes {
+/** What plane residuals say of the translation, the rotation known. */
+struct PlaneTranslation {
+    Eigen::Vector3d step = Eigen::Vector3d::Zero();         //!< m, the map's frame
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  //!< 1/m^2, the map's frame: H_tt
+    Eigen::Matrix3d mixed = Eigen::Matrix3d::Zero();        //!< H_tr, 1/(m rad): t against w
+    double weight = 0;                                      //!< sum of the matches' weights
+};
+
+/** The closed form: the least-squares translation of the unrotated scan. Along axes that the
+ *  normals see with less than `min_share` of their weight there is no step. */
+PlaneTranslation translationFromPlanes(const Correspondences& matches,
+                                       const Eigen::Isometry3d& pose, double min_share);
+}  // namespace delio::planes

@@ -1,0 +1,72 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "delio/run/run_record.h"
+#include "delio/slam/graph_builder.h"
+#include "delio/slam/map_listener.h"
+
+namespace delio::run {
+struct RunSettings {
+    std::string profile = "accurate";  //!< that the options were made of, for the summary
+    std::vector<std::string> command;  //!< for the summary
+    std::string sensorLabel = "lidar";
+    /** Where key frames are put aside while the drive goes on; empty: the system's folder for
+     *  temporary files. */
+    std::string folder;
+    bool graph = true;  //!< false: the chain of increments alone, not optimised
+    bool map = true;    //!< false: memory grows by the poses alone
+    /** Told of every warning as it comes. */
+    std::function<void(const std::string&)> onWarning;
+};
+
+/** One drive from its first scan to its results: odometry, pose graph and map, and what is noted on
+ *  the way. RunFolder writes it. */
+class Run {
+ public:
+    Run(const Options& options, const RunSettings& settings);
+
+    /** Calibration and true poses. `truth`: a pose file; empty: that beside `recording`, if any.
+     *  `truthIsCam0`: they are KITTI's, otherwise the vehicle's. Throws Error if the truth cannot
+     * be read, or is of cam0 and there is no Tr. */
+    void readSideFiles(const std::string& recording, const std::string& truth = "",
+                       bool truthIsCam0 = true);
+
+    /** One more listener: see Slam. */
+    void attach(std::shared_ptr<SlamListener> listener) { slam_.attach(std::move(listener)); }
+
+    /** Processes the next scan, which took `read_ms` to read. */
+    const RunRow& process(const Scan& scan, double read_ms = 0);
+
+    void warn(const std::string& text);
+    /** What ended the run, or is missing in it; of several the first is kept. */
+    void fail(const std::string& fault);
+
+    /** Optimises, and scores where the truth is known. `complete`: every scan was processed. */
+    void finish(bool complete);
+
+    const RunRecord& record() const { return record_; }
+    /** The map; null where none is made. */
+    const map::MapBuilder* map() const { return map_ ? &map_->builder() : nullptr; }
+
+ private:
+    void optimise();
+    void score();
+    evaluation::Comparison compared(const io::Trajectory& vehicle) const;
+
+    RunSettings settings_;
+    RunRecord record_;
+    Slam slam_;
+    std::shared_ptr<GraphBuilder> graph_;
+    std::shared_ptr<MapListener> map_;
+    std::optional<io::Trajectory> truth_;
+    bool truthIsCam0_ = true, truthWasAskedFor_ = false;
+};
+
+/** A run without scans: a pose graph is optimised once more. */
+RunRecord optimiseAgain(graph::PoseGraph graph, const Options& options,
+                        const RunSettings& settings);
+}  // namespace delio::run

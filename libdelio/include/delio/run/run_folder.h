@@ -1,0 +1,70 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include "delio/io/scan_table.h"
+#include "delio/map/map_builder.h"
+#include "delio/run/run_record.h"
+#include "delio/run/summary.h"
+
+namespace delio::run {
+class RunFolder;
+
+/** Draws what a run found into its folder: RunFolder::kScene, kMapPicture (where there are points)
+ *  and kTrajectoryPicture. delio::picture has one; without, there are no pictures. */
+using Illustrate =
+    std::function<void(const RunRecord& record, const mrpt::maps::CPointsMapXYZI& points,
+                       const std::vector<Eigen::Isometry3d>& keyframes, const RunFolder& folder)>;
+
+/** The folder that a run leaves. Every result file has its name, its writer and its reader here;
+ *  summary.yaml is removed first and written last: a folder that has one is whole. */
+class RunFolder {
+ public:
+    static constexpr const char* kTrajectory = "trajectory_kitti.txt";
+    static constexpr const char* kOdometry = "trajectory_odometry_kitti.txt";
+    static constexpr const char* kCam0 = "trajectory_kitti_cam0.txt";
+    static constexpr const char* kTum = "trajectory_tum.txt";
+    static constexpr const char* kGraph = "posegraph.g2o";
+    static constexpr const char* kMrptGraph = "posegraph.graph";
+    static constexpr const char* kScans = "scans.csv";
+    static constexpr const char* kConfig = "config.ini";
+    static constexpr const char* kSimplemap = "map.simplemap";
+    static constexpr const char* kPly = "map.ply";
+    static constexpr const char* kScene = "map.3Dscene";
+    static constexpr const char* kMapPicture = "map.png";
+    static constexpr const char* kTrajectoryPicture = "trajectory.png";
+    static constexpr const char* kSummary = "summary.yaml";
+
+    explicit RunFolder(std::string folder) : folder_(std::move(folder)) {}
+
+    /** Of one of the names above. */
+    std::string path(const char* name) const;
+    bool has(const char* name) const;
+
+    /** Writes all that the record has; files of an earlier run that this one does not have are
+     *  removed. `map`: null for none. Returns what is missing: the record's fault, or why map or
+     *  pictures could not be made; empty if nothing. Where anything else cannot be written, Error,
+     *  and there is no summary. */
+    std::string write(RunRecord record, const map::MapBuilder* map = nullptr,
+                      const Illustrate& illustrate = {}) const;
+
+    /** What is in the folder. Each throws Error where the file is missing or malformed. */
+    io::Trajectory trajectory() const { return io::readTrajectory(path(kTrajectory)); }
+    io::Trajectory odometry() const { return io::readTrajectory(path(kOdometry)); }
+    io::Trajectory cam0() const { return io::readTrajectory(path(kCam0)); }
+    io::Trajectory tum() const { return io::readTrajectory(path(kTum)); }
+    graph::PoseGraph graph() const;
+    io::ScanTable scans() const { return io::readScanTable(path(kScans)); }
+    /** The options that were in effect. */
+    Options options() const;
+    Summary summary() const { return readSummary(path(kSummary)); }
+
+ private:
+    void remove(const char* name) const;
+    void writeTrajectories(const RunRecord& record) const;
+    void writeMap(const RunRecord& record, const map::MapBuilder* map,
+                  const Illustrate& illustrate) const;
+
+    std::string folder_;
+};
+}  // namespace delio::run

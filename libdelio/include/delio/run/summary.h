@@ -1,0 +1,43 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "delio/run/run_record.h"
+
+namespace delio::run {
+/** A run in numbers: summary.yaml. */
+struct Summary {
+    using Figures = std::vector<std::pair<std::string, double>>;
+
+    std::string version, command, profile;
+    bool complete = false;
+    std::string fault;  //!< empty: none
+    std::size_t scans = 0, predicted = 0, searched = 0, deskewed = 0;
+    double path_m = 0;
+    double vertical_correction_deg = 0;
+    double ms_per_scan = 0;         //!< reading, odometry and the graph's window
+    Figures ms_per_scan_of_stages;  //!< of which these are the parts
+    double map_ms_per_scan = 0;
+    double optimisation_ms = 0;
+    unsigned optimisation_iterations = 0;
+    double optimisation_cost_before = 0, optimisation_cost_after = 0;
+    double map_and_pictures_ms = 0;
+    double peak_rss_mb = 0;
+    std::vector<std::string> warnings;
+    Figures metrics;  //!< beside true poses; empty where they are not known
+    Figures metrics_before_optimisation;
+};
+
+/** `pictures_ms`: what map and pictures took to write. */
+Summary summaryOf(const RunRecord& record, double pictures_ms);
+
+/** Largest memory of this process so far, MB. */
+double peakMemory_mb();
+
+void writeSummary(const Summary& summary, const std::string& path);
+
+/** Throws Error for a file that is missing or is no summary. */
+Summary readSummary(const std::string& path);
+}  // namespace delio::run

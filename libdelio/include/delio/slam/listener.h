@@ -1,0 +1,34 @@
+#pragma once
+#include <cstddef>
+
+#include "delio/odometry/step.h"
+#include "delio/scan/scan.h"
+
+namespace delio {
+/** One scan as Slam tells its listeners of it; what it refers to lives as long as the call. */
+struct SlamScan {
+    std::size_t node;  //!< number of its pose, from 0
+    const Scan& scan;
+    const Step& step;
+    /** Of the vehicle, since the scan before; identity for the first. */
+    Increment increment;
+    /** Of the vehicle, by the odometry alone: maps its coordinates to those it had at the first
+     *  scan. */
+    Eigen::Isometry3d pose;
+};
+
+/** What is done with an odometry's steps: a pose graph, a map, a window. */
+class SlamListener {
+ public:
+    virtual ~SlamListener() = default;
+
+    /** Under which its time is told. */
+    virtual const char* name() const = 0;
+
+    /** Takes the next scan. May throw; then it is as it was before. */
+    virtual void add(const SlamScan& scan) = 0;
+
+    /** Takes back the scan that was added last: another listener failed on it. */
+    virtual void undo() noexcept = 0;
+};
+}  // namespace delio

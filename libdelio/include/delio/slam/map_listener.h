@@ -1,0 +1,22 @@
+#pragma once
+#include "delio/map/map_builder.h"
+#include "delio/slam/listener.h"
+
+namespace delio {
+/** Puts the points of a drive into a map, without those of dynamic objects. A scan that could not
+ *  be registered is left out: where it was taken is a guess. */
+class MapListener : public SlamListener {
+ public:
+    explicit MapListener(map::MapBuilder builder) : builder_(std::move(builder)) {}
+
+    const char* name() const override { return "map"; }
+    void add(const SlamScan& scan) override;
+    void undo() noexcept override;
+
+    const map::MapBuilder& builder() const { return builder_; }
+
+ private:
+    map::MapBuilder builder_;
+    bool added_ = false;  //!< the last scan is in the map
+};
+}  // namespace delio

@@ -1,0 +1,57 @@
+#pragma once
+#include <iosfwd>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "delio/graph/pose_graph.h"
+#include "delio/io/drive_meta.h"
+#include "delio/map/map_builder.h"
+#include "delio/odometry/make_odometry.h"
+
+namespace delio {
+/** The options of every stage, as one .ini file has them: a section a stage. The defaults are those
+ *  of the profile `accurate`; the other profiles say what differs. */
+struct Options : public OdometryOptions {
+    graph::PoseGraphOptions graph;
+    map::MapOptions map;
+
+    /** share/config/NAME.ini, which travels inside the library. Error for an unknown name. */
+    static Options ofProfile(const std::string& name);
+    static std::vector<std::string> profileNames();
+
+    /** The same, and what a drive says of its own sensor: what delio-slam uses. */
+    static Options forDrive(const std::string& profile, const std::optional<io::DriveMeta>& meta);
+
+    /** What a drive says of its own sensor: the vertical correction, and whether its scans are to
+     * be de-skewed (KITTI's raw ones, which come without times, by azimuth). */
+    void adaptTo(const io::DriveMeta& meta);
+
+    /** Takes over the keys that are in `iniText`; throws Error that names an unknown section or
+     *  key, a malformed value, or a line that is none of section, key = value and comment. */
+    void load(const std::string& iniText);
+
+    /** Takes over one `section.key=value`. Error as above. */
+    void set(const std::string& assignment);
+
+    /** Throws Error that names them where options contradict each other, or where one was loaded
+     *  or set that has no effect with the odometry that is chosen. To be asked when all are set. */
+    void check() const;
+
+    /** Writes all that has an effect; loading the text gives the same options. */
+    void write(std::ostream& out) const;
+
+    /** True if `iniText` sets `section.key`. */
+    static bool sets(const std::string& iniText, const std::string& section,
+                     const std::string& key);
+
+ private:
+    /** Every stage of both odometries; sections that both have are there twice. */
+    StageList allStages();
+    /** Those in use, in the order in which they are written. */
+    ConstStageList stages() const;
+
+    std::set<std::string> given_;  //!< sections that were loaded or set
+};
+}  // namespace delio

@@ -1,0 +1,87 @@
+#include "delio/core/geometry.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace delio {
+namespace {
+/** The mean of rotationExp(s w) over s from 0 to 1, which turns a velocity into a way: SO(3)'s left
+ *  Jacobian. */
+Eigen::Matrix3d meanRotation(const Eigen::Vector3d& w) {
+    const double angle = w.norm();
+    const bool small = angle < 1e-4;
+    const double a = small ? 0.5 : (1 - std::cos(angle)) / (angle * angle);
+    const double b = small ? 1.0 / 6 : (angle - std::sin(angle)) / (angle * angle * angle);
+    const Eigen::Matrix3d W = hat(w);
+    return Eigen::Matrix3d::Identity() + a * W + b * W * W;
+}
+}  // namespace
+
+Eigen::Matrix3d hat(const Eigen::Vector3d& v) {
+    Eigen::Matrix3d m;
+    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+    return m;
+}
+
+Eigen::Matrix3d rotationExp(const Eigen::Vector3d& w) {
+    const double angle = w.norm();
+    if (angle == 0) return Eigen::Matrix3d::Identity();
+    return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+}
+
+Eigen::Vector3d rotationLog(const Eigen::Matrix3d& R) {
+    const Eigen::AngleAxisd turn(R);
+    return turn.angle() * turn.axis();
+}
+
+double angleOf(const Eigen::Matrix3d& R) { return Eigen::AngleAxisd(R).angle(); }
+
+Eigen::Matrix3d inverseRightJacobian(const Eigen::Vector3d& w) {
+    const double half = w.norm() / 2;
+    const double c = half < 1e-4 ? 1.0 / 12 : (1 - half / std::tan(half)) / (4 * half * half);
+    const Eigen::Matrix3d W = hat(w);
+    return Eigen::Matrix3d::Identity() + W / 2 + c * W * W;
+}
+
+Eigen::Isometry3d poseExp(const Vector6& twist) {
+    const Eigen::Vector3d w = twist.tail<3>();
+    return isometry(rotationExp(w), meanRotation(w) * twist.head<3>());
+}
+
+Vector6 poseLog(const Eigen::Isometry3d& pose) {
+    const Eigen::Vector3d w = rotationLog(pose.linear());
+    Vector6 twist;
+    twist << meanRotation(w).inverse() * pose.translation(), w;
+    return twist;
+}
+
+Matrix6 adjointOf(const Eigen::Isometry3d& pose) {
+    const Eigen::Matrix3d R = pose.linear();
+    Matrix6 adjoint;
+    adjoint << R, hat(pose.translation()) * R, Eigen::Matrix3d::Zero(), R;
+    return adjoint;
+}
+
+Eigen::Isometry3d isometry(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = R;
+    pose.translation() = t;
+    return pose;
+}
+
+Eigen::Matrix3d normalised(const Eigen::Matrix3d& R) {
+    return Eigen::Quaterniond(R).normalized().toRotationMatrix();
+}
+
+Eigen::Isometry3d normalised(const Eigen::Isometry3d& pose) {
+    return isometry(normalised(Eigen::Matrix3d(pose.linear())), pose.translation());
+}
+
+Eigen::Isometry3d fromMrpt(const mrpt::poses::CPose3D& pose) {
+    return isometry(pose.getRotationMatrix().asEigen(), {pose.x(), pose.y(), pose.z()});
+}
+
+mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& pose) {
+    return {Eigen::Matrix3d(pose.linear()), Eigen::Vector3d(pose.translation())};
+}
+}  // namespace delio

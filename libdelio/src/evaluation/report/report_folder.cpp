@@ -1,0 +1,127 @@
+#include "delio/evaluation/report/report_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <ostream>
+#include <set>
+
+#include "delio/core/error.h"
+#include "delio/evaluation/report/report.h"
+#include "delio/io/output_file.h"
+#include "html_report.h"
+#include "report_charts.h"
+
+namespace delio::evaluation {
+namespace fs = std::filesystem;
+
+namespace {
+// All that a report consists of.
+const char* const kNames[] = {"metrics.tsv", "lengths.tsv", "plots", "report.html"};
+
+/** Removes what is left in it at the end. */
+struct PartialFolder {
+    fs::path path;
+    ~PartialFolder() {
+        std::error_code ignored;
+        fs::remove_all(path, ignored);
+    }
+};
+
+void makeFolder(const fs::path& folder) {
+    std::error_code fault;
+    fs::create_directories(folder, fault);
+    if (fault) throw Error("cannot make folder '" + folder.string() + "': " + fault.message());
+}
+
+void putInPlace(const fs::path& partial, const fs::path& target) {
+    std::error_code fault;
+    for (const char* name : kNames) {
+        if (!fault) fs::remove_all(target / name, fault);
+        if (!fault) fs::rename(partial / name, target / name, fault);
+    }
+    if (fault) throw Error("cannot write into '" + target.string() + "': " + fault.message());
+}
+
+Group& groupCalled(const std::string& name, std::vector<Group>& groups) {
+    const auto found = std::find_if(groups.begin(), groups.end(),
+                                    [&](const Group& group) { return group.name == name; });
+    if (found != groups.end()) return *found;
+    groups.push_back({name, {}, {}});
+    return groups.back();
+}
+
+/** Beginning of the names of a sequence's files: the sequence's own name where that is safe. */
+std::string prefixOf(const std::string& sequence, std::set<std::string>& taken) {
+    std::string prefix;
+    for (const char c : sequence.substr(0, 60))
+        prefix += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
+    std::string unique = prefix;
+    for (int i = 2; !taken.insert(unique).second; ++i) unique = prefix + "-" + std::to_string(i);
+    return unique + "_";
+}
+
+void dropEmpty(std::vector<Chart>& charts) {
+    charts.erase(std::remove_if(charts.begin(), charts.end(),
+                                [](const Chart& chart) { return chart.empty(); }),
+                 charts.end());
+}
+}  // namespace
+
+void writeReportFolder(const std::vector<Comparison>& comparisons,
+                       const std::vector<ReportRow>& rows, const ReportNotes& notes,
+                       const std::string& folder) {
+    std::vector<Group> byEstimate, bySequence;
+    for (const auto& comparison : comparisons) {
+        auto& estimate = groupCalled(comparison.row.name, byEstimate);
+        estimate.members.push_back(&comparison);
+        const auto index = static_cast<std::size_t>(&estimate - byEstimate.data());
+        estimate.estimates.push_back(index);
+        auto& sequence = groupCalled(comparison.row.sequence, bySequence);
+        sequence.members.push_back(&comparison);
+        sequence.estimates.push_back(index);
+    }
+    std::sort(bySequence.begin(), bySequence.end(),
+              [](const Group& a, const Group& b) { return a.name < b.name; });
+
+    std::set<std::string> taken = {"all"};
+    std::vector<Section> sections;
+    std::vector<Chart> overview, all;
+    for (const auto& sequence : bySequence) {
+        sections.push_back({sequence, sequenceCharts(sequence, prefixOf(sequence.name, taken))});
+        auto& charts = sections.back().charts;
+        dropEmpty(charts);
+        all.insert(all.end(), charts.begin(), charts.end());
+    }
+    if (sections.size() > 1) overview = overviewCharts(byEstimate);
+    dropEmpty(overview);
+    all.insert(all.end(), overview.begin(), overview.end());
+
+    std::vector<ReportRow> averages;
+    std::copy_if(rows.begin(), rows.end(), std::back_inserter(averages),
+                 [](const ReportRow& row) { return row.sequence == "avg"; });
+
+    const fs::path target(folder);
+    const bool madeHere = !fs::exists(target);
+    makeFolder(target);
+    const PartialFolder partial{target / ".partial-report"};
+    try {
+        fs::remove_all(partial.path);
+        makeFolder(partial.path / "plots");
+        const auto path = [&](const char* name) { return (partial.path / name).string(); };
+        drawCharts(all, path("plots"));
+        io::replaceTextFile(path("metrics.tsv"),
+                            [&](std::ostream& out) { writeMetricsTsv(rows, out); });
+        io::replaceTextFile(path("lengths.tsv"),
+                            [&](std::ostream& out) { writeLengthsTsv(rows, out); });
+        io::replaceTextFile(path("report.html"), [&](std::ostream& out) {
+            writeHtml(byEstimate, sections, overview, averages, notes, path("plots"), out);
+        });
+        putInPlace(partial.path, target);
+    } catch (...) {
+        std::error_code ignored;
+        fs::remove_all(partial.path, ignored);
+        if (madeHere) fs::remove(target, ignored);  // only if it is empty
+        throw;
+    }
+}
+}  // namespace delio::evaluation

@@ -1,0 +1,37 @@
+#include "gz_object.h"
+
+#include <mrpt/serialization/CArchive.h>
+
+#include <filesystem>
+
+#include "delio/core/error.h"
+#include "delio/io/output_file.h"
+#include "gz_input.h"
+#include "gz_output.h"
+
+namespace delio::io {
+void loadWhole(const std::string& path, const std::string& what,
+               mrpt::serialization::CSerializable& object) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+        throw Error("cannot read '" + path + "': there is no such file");
+    GzInput in(path);
+    bool whole = false;
+    try {
+        mrpt::serialization::archiveFrom(in).ReadObject(&object);
+        char left = 0;
+        whole = in.Read(&left, 1) == 0;  // here a checksum that is wrong or missing shows
+    } catch (const std::exception&) {
+        // MRPT's message is a stack of nested exceptions; what matters is said below.
+    }
+    if (!whole) throw Error("'" + path + "' is not " + what + ", or it is cut off; write it again");
+}
+
+void saveWhole(const mrpt::serialization::CSerializable& object, const std::string& path) {
+    replaceFile(path, [&](const std::string& temporary) {
+        GzOutput out(temporary);
+        mrpt::serialization::archiveFrom(out) << object;
+        return out.close();
+    });
+}
+}  // namespace delio::io

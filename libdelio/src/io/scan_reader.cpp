@@ -1,0 +1,10 @@
+#include "delio/io/scan_reader.h"
+
+#include "delio/io/rawlog_reader.h"
+
+namespace delio::io {
+std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label,
+                                      const std::string& imagesFolder) {
+    return std::make_unique<RawlogReader>(path, label, imagesFolder);
+}
+}  // namespace delio::io

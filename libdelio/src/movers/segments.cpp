@@ -1,0 +1,110 @@
+#include "delio/movers/segments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace delio::movers {
+namespace {
+/** Square cells on the ground plane about the origin. */
+class Grid {
+ public:
+    Grid(double cell, double radius)
+        : cell_(static_cast<float>(cell)),
+          half_(static_cast<int>(std::ceil(radius / cell))),
+          width_(2 * half_ + 1) {}
+
+    std::size_t size() const { return static_cast<std::size_t>(width_ * width_); }
+    /** The cell's number, or size() outside. */
+    std::size_t at(float x, float y) const {
+        const int i = static_cast<int>(std::lround(x / cell_)) + half_;
+        const int j = static_cast<int>(std::lround(y / cell_)) + half_;
+        return inside(i, j) ? number(i, j) : size();
+    }
+    template <typename Visit>
+    void forNeighbours(std::size_t cell, const Visit& visit) const {
+        const int i = static_cast<int>(cell) / width_, j = static_cast<int>(cell) % width_;
+        for (int a = i - 1; a <= i + 1; ++a)
+            for (int b = j - 1; b <= j + 1; ++b)
+                if (inside(a, b)) visit(number(a, b));
+    }
+
+ private:
+    bool inside(int i, int j) const { return i >= 0 && j >= 0 && i < width_ && j < width_; }
+    std::size_t number(int i, int j) const { return static_cast<std::size_t>(i * width_ + j); }
+
+    float cell_;
+    int half_, width_;
+};
+
+/** Height of each point above the lowest ones in its cell of a metre and those about it. */
+std::vector<float> heights(const Eigen::Matrix3Xf& points, double radius) {
+    constexpr float kNone = std::numeric_limits<float>::max();
+    const Grid grid(1, radius);
+    std::vector<float> lowest(grid.size() + 1, kNone), about = lowest;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        float& low = lowest[grid.at(points(0, i), points(1, i))];
+        low = std::min(low, points(2, i));
+    }
+    for (std::size_t cell = 0; cell < grid.size(); ++cell)
+        if (lowest[cell] != kNone)
+            grid.forNeighbours(cell, [&](std::size_t neighbour) {
+                about[cell] = std::min(about[cell], lowest[neighbour]);
+            });
+    std::vector<float> result(static_cast<std::size_t>(points.cols()));
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        result[static_cast<std::size_t>(i)] =
+            points(2, i) - about[grid.at(points(0, i), points(1, i))];
+    return result;
+}
+}  // namespace
+
+std::vector<OptionField> SegmentOptions::fields() const {
+    return {
+        {"cell", &SegmentOptions::cell, "m; points of cells that touch belong together", 0.1, 10},
+        {"radius", &SegmentOptions::radius, "m; farther from the sensor nothing is looked for", 1,
+         100},
+        {"above_ground", &SegmentOptions::above_ground, "m; what is lower is ground", 0, 10},
+        {"height", &SegmentOptions::height, "m; what is higher is no road user", 0.1, 20},
+        {"max_length", &SegmentOptions::max_length, "m; what is longer is no road user", 0.1, 100},
+        {"min_points", &SegmentOptions::min_points, "points that a road user has at least", 1,
+         1e6}};
+}
+
+std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentOptions& options) {
+    const auto above = heights(points, options.radius);
+    const Grid grid(options.cell, options.radius);
+    std::vector<std::vector<Eigen::Index>> cells(grid.size());
+    std::vector<std::size_t> filled;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const auto height = double{above[static_cast<std::size_t>(i)]};
+        const std::size_t cell = grid.at(points(0, i), points(1, i));
+        if (height < options.above_ground || height > options.height || cell == grid.size())
+            continue;
+        if (cells[cell].empty()) filled.push_back(cell);
+        cells[cell].push_back(i);
+    }
+    std::vector<Segment> segments;
+    for (const std::size_t start : filled) {
+        if (cells[start].empty()) continue;  // taken by a segment already
+        Segment segment;
+        std::vector<std::size_t> open = {start};
+        while (!open.empty()) {
+            const std::size_t cell = open.back();
+            open.pop_back();
+            for (const Eigen::Index i : cells[cell]) {
+                segment.points.push_back(i);
+                segment.box.extend(points.col(i));
+            }
+            cells[cell].clear();
+            grid.forNeighbours(cell, [&](std::size_t neighbour) {
+                if (!cells[neighbour].empty()) open.push_back(neighbour);
+            });
+        }
+        const auto length = double{segment.box.sizes().head<2>().maxCoeff()};
+        if (segment.points.size() >= options.min_points && length <= options.max_length)
+            segments.push_back(std::move(segment));
+    }
+    return segments;
+}
+}  // namespace delio::movers

@@ -1,0 +1,26 @@
+#include "delio/odometry/adaptive_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace delio {
+void AdaptiveKernel::observe(const Eigen::Isometry3d& found, const Eigen::Isometry3d& predicted) {
+    // An error of the rotation moves points at this distance by as much.
+    constexpr double kTypicalRange_m = 20;
+    constexpr std::size_t kMemory = 20;
+    const Eigen::Isometry3d off = predicted.inverse() * found;
+    const double angle = angleOf(off.linear());
+    errors_m_.push_back(off.translation().norm() +
+                        2 * kTypicalRange_m * std::sin(std::abs(angle) / 2));
+    if (errors_m_.size() > kMemory) errors_m_.pop_front();
+}
+
+double AdaptiveKernel::width(const planes::PlaneRegistrationOptions& options) const {
+    constexpr std::size_t kEnough = 3;
+    if (errors_m_.size() < kEnough) return options.first_kernel;
+    double squares = 0;
+    for (const double error : errors_m_) squares += error * error;
+    const double sigma = std::sqrt(squares / static_cast<double>(errors_m_.size()));
+    return std::clamp(3 * sigma, 2 * options.last_kernel, options.first_kernel);
+}
+}  // namespace delio

@@ -1,0 +1,147 @@
+#include "delio/odometry/paper_odometry.h"
+
+#include <algorithm>
+
+#include "delio/core/motion.h"
+#include "delio/core/stopwatch.h"
+#include "delio/scan/deskew.h"
+
+namespace delio {
+namespace {
+/** Runs a stage and notes its time. */
+template <typename Work>
+auto stage(const char* name, Step& step, const Work& work) {
+    step.times_ms.emplace_back(name, 0);
+    return timed(step.times_ms.back().second, work);
+}
+}  // namespace
+
+std::optional<Link> PaperFeatures::linkTo(const ScanFeatures& earlier,
+                                          const Eigen::Isometry3d& guess) const {
+    const auto& from = dynamic_cast<const PaperFeatures&>(earlier);
+    const auto found = registerFeatures(from, *this, guess, 0, *options);
+    if (!found.predictedReason.empty()) return {};
+    return Link{found.increment, found.translation.overlap};
+}
+
+PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeatures& to,
+                                   const Eigen::Isometry3d& guess, double search_m,
+                                   const PaperOdometryOptions& options) {
+    PaperRegistration result;
+    result.rotation = timed(result.rotation_ms, [&] {
+        return paper::registerPatterns(from.pattern, to.pattern, guess.linear(), options.pattern);
+    });
+    result.translation = timed(result.translation_ms, [&] {
+        const auto unrotated = paper::rotated(to.lines, result.rotation.rotation);
+        const Eigen::Vector3d t = guess.translation();
+        return search_m > 0
+                   ? paper::searchTranslation(from.lines, unrotated, t, search_m,
+                                              options.lineRegistration)
+                   : paper::registerLines(from.lines, unrotated, t, options.lineRegistration);
+    });
+    // From another place other parts of the surfaces are seen, whose normals differ a little.
+    const double growth = 1 + result.translation.translation.norm() / options.pattern.view_distance;
+    result.rotation.covariance *= growth * growth;
+    result.increment = incrementOf(result.rotation, result.translation);
+    if (!result.rotation.valid)
+        result.predictedReason = result.rotation.tooFar ? "no rotation found" : "too few normals";
+    if (!result.translation.valid)
+        result.predictedReason += result.rotation.valid ? "too few lines" : " and too few lines";
+    return result;
+}
+
+PaperOdometry::PaperOdometry(const PaperOdometryOptions& options)
+    : options_(std::make_shared<PaperOdometryOptions>(options)), prediction_(options.prediction) {}
+
+/** Section III and IV-A: the pattern of the normals, and the lines. */
+std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const scan::PointCloud& cloud,
+                                                            Step& step) const {
+    auto features = std::make_shared<PaperFeatures>();
+    features->options = options_;
+    const auto raw = stage("normals", step, [&] {
+        return surfaces::estimateNormals(cloud.points, options_->normals);
+    });
+    const auto normals = stage(
+        "bilateral", step, [&] { return surfaces::filterBilaterally(raw, options_->bilateral); });
+    features->pattern =
+        stage("outliers", step, [&] { return paper::removeOutliers(normals, options_->outliers); });
+    std::size_t modes = 0;  // 0 where they are not needed
+    features->pattern = stage("mean_shift", step, [&] {
+        if (!paper::needsModes(features->pattern, options_->meanShift)) return features->pattern;
+        const auto found = paper::seekModes(normals.directions, options_->meanShift);
+        modes = found.size();
+        return paper::patternOfModes(normals, found, options_->meanShift, options_->outliers);
+    });
+    // Another draw for every scan: of two scans made from nearly one place, the same draw gives
+    // nearly the same lines, each of which then pairs with itself and holds the vehicle at rest.
+    auto lineOptions = options_->lines;
+    lineOptions.seed += scans_;
+    features->lines = stage("lines", step, [&] {
+        return paper::drawLines(cloud.points, scan::neighbouringRings(cloud), lineOptions);
+    });
+    step.details = {{"normals", static_cast<double>(normals.directions.cols())},
+                    {"pattern", static_cast<double>(features->pattern.directions.cols())},
+                    {"modes", static_cast<double>(modes)},
+                    {"lines", static_cast<double>(features->lines.midpoints.cols())}};
+    return features;
+}
+
+/** The increment since the last scan, of a registration against the last usable one. */
+void PaperOdometry::takeIncrement(const PaperRegistration& registration, double duration_s,
+                                  Step& step) {
+    const Eigen::Isometry3d sinceReference = registration.increment.pose;
+    step.increment = registration.increment;
+    step.increment.pose = normalised(sinceReference_.inverse() * sinceReference);
+    step.quality = qualityOf(registration.rotation, registration.translation);
+    if (registration.predictedReason.empty())
+        prediction_.observe(sinceReference, sinceReference_s_);
+    else if (prediction_.hasMotion())
+        prediction_.observe(step.increment.pose, duration_s);
+    sinceReference_ = sinceReference_ * step.increment.pose;
+    lost_ = step.predicted;
+}
+
+Step PaperOdometry::process(const Scan& scan) {
+    Step step;
+    const double duration_s = timeline_.advance(scan.stamp_s);
+    sinceReference_s_ += duration_s;
+    const Eigen::Isometry3d predicted = prediction_.predict(duration_s);
+    auto cloud = stage("preprocess", step, [&] {
+        auto made = scan::preprocess(scan, options_->scan);
+        step.deskewed = !made.times_s.empty();
+        if (step.deskewed)
+            made.points =
+                scan::deskew(made.points, made.times_s, Motion::of(predicted, duration_s));
+        return made;
+    });
+    const auto features = extract(cloud, step);
+    ++scans_;
+    const bool usable =
+        features->pattern.directions.cols() > 0 && features->lines.midpoints.cols() > 0;
+    PaperRegistration registration;
+    if (reference_) {
+        const auto& lines = options_->lineRegistration;
+        const double search_m =
+            lost_ ? std::min(lines.search_speed * sinceReference_s_, lines.search_radius) : 0;
+        step.searched = search_m > 0;
+        registration = registerFeatures(*reference_, *features, sinceReference_ * predicted,
+                                        search_m, *options_);
+        step.reason = registration.predictedReason;
+    } else if (scans_ > 1)
+        step.reason = "no usable scan before it";  // what was driven since then is not known
+    if (!usable) step.reason = cloud.points.cols() == 0 ? "no points" : "no surfaces";
+    step.predicted = !step.reason.empty();
+    step.times_ms.emplace_back("rotation", registration.rotation_ms);
+    step.times_ms.emplace_back("translation", registration.translation_ms);
+    if (reference_) takeIncrement(registration, duration_s, step);
+    if (usable) {
+        reference_ = features;
+        sinceReference_ = Eigen::Isometry3d::Identity();
+        sinceReference_s_ = 0;
+    }
+    step.features = features;
+    step.notFinite = cloud.notFinite;
+    step.used = {std::move(cloud.points), std::move(cloud.indices), {}};
+    return step;
+}
+}  // namespace delio

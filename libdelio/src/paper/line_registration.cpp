@@ -1,0 +1,245 @@
+#include "delio/paper/line_registration.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "line_matches.h"
+
+namespace delio::paper {
+namespace {
+/** Lines are never taken to lie nearer to each other than this: the same scan twice leaves no
+ *  residual at all, but a covariance has to be one. */
+constexpr double kLeastResidual_m = 1e-3;
+
+/** Which directions are seen is judged where the iteration ends; on the way there, where pairs are
+ *  still wrong, so many times less will do. */
+constexpr double kPatience = 16;
+
+/** Of all pairs' closest points: d = X_from - X_to, and the projection onto what the pair sees. */
+struct Sums {
+    Eigen::Vector3d d = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d seen = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d lever = Eigen::Matrix3d::Zero();  //!< sum of seen * [midpoint]x
+    double squared = 0;
+    std::size_t pairs = 0;
+};
+
+Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d& t,
+              const std::vector<Match>& matches, const LineRegistrationOptions& options) {
+    const double mean = meanDistance(matches);
+    Sums sums;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        if (matches[i].distance < 0 || static_cast<double>(matches[i].distance) > mean) continue;
+        const auto s = static_cast<Eigen::Index>(i), f = static_cast<Eigen::Index>(matches[i].from);
+        const Eigen::Vector3d us = to.directions.col(s).cast<double>();
+        const Eigen::Vector3d ut = from.directions.col(f).cast<double>();
+        const auto closest =
+            closestPoints(to.midpoints.col(s).cast<double>() + t, us,
+                          from.midpoints.col(f).cast<double>(), ut, options.min_angle_deg);
+        if (closest.parallel && !options.centroids) continue;
+        const Eigen::Vector3d d = closest.onTarget - closest.onSource;
+        const Eigen::Vector3d normal = us.cross(ut);
+        // Skew lines see the direction of their common normal: that of the surface which both lie
+        // on. (Nearly) parallel ones see everything but their own direction; they are only used
+        // with centroids.
+        const Eigen::Matrix3d seen =
+            closest.parallel ? Eigen::Matrix3d(Eigen::Matrix3d::Identity() - ut * ut.transpose())
+                             : Eigen::Matrix3d(normal * normal.transpose() / normal.squaredNorm());
+        sums.seen += seen;
+        sums.lever += seen * hat(to.midpoints.col(s).cast<double>());
+        sums.d += d;
+        sums.squared += d.squaredNorm();
+        ++sums.pairs;
+    }
+    return sums;
+}
+
+/** (sum seen)^-1 d without the directions that are not seen. */
+Eigen::Vector3d solveSeen(const Sums& sums, double min_observability) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(sums.seen /
+                                                              static_cast<double>(sums.pairs));
+    Eigen::Vector3d step = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3d axis = axes.eigenvectors().col(k);
+        if (axes.eigenvalues()[k] >= min_observability)
+            step +=
+                axis * axis.dot(sums.d) / (axes.eigenvalues()[k] * static_cast<double>(sums.pairs));
+    }
+    return step;
+}
+
+/** Where each direction stands: seen ones get noise over geometry, the others the prediction and
+ *  the motion model's variance. */
+void settle(const Sums& sums, const Eigen::Vector3d& predicted,
+            const LineRegistrationOptions& options, TranslationEstimate& estimate) {
+    const auto pairs = static_cast<double>(sums.pairs);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(sums.seen / pairs);
+    estimate.observability = axes.eigenvalues();
+    estimate.residual_m = std::sqrt(sums.squared / pairs);
+    const double residual = std::max(estimate.residual_m, kLeastResidual_m);
+    const double noise = residual * residual / (options.independent_share * pairs);
+    for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3d axis = axes.eigenvectors().col(k);
+        const bool observed = axes.eigenvalues()[k] >= options.min_observability;
+        if (!observed) {
+            estimate.translation -= axis * axis.dot(estimate.translation - predicted);
+            estimate.unobservedAxes.conservativeResize(3, estimate.unobservedAxes.cols() + 1);
+            estimate.unobservedAxes.rightCols<1>() = axis;
+        }
+        // A point p moves by w x p where the rotation is off by w; the translation undoes that.
+        if (observed)
+            estimate.lever +=
+                axis * axis.transpose() * sums.lever / (axes.eigenvalues()[k] * pairs);
+        estimate.covariance +=
+            (observed ? noise / axes.eigenvalues()[k] : options.prior_sigma * options.prior_sigma) *
+            axis * axis.transpose();
+    }
+}
+
+double overlapOf(const std::vector<Match>& matches, double distance) {
+    const auto near = std::count_if(matches.begin(), matches.end(), [&](const Match& match) {
+        return match.distance >= 0 && static_cast<double>(match.distance) <= distance;
+    });
+    return static_cast<double>(near) / static_cast<double>(matches.size());
+}
+
+/** Mean distance between each line and the one with the nearest midpoint, metres; a line without
+ *  one near it counts as `kFar`. All lines count: registration itself looks only at the better
+ *  half, which wherever it ends consists of lines that fit. */
+double meanLineDistance(const LineCloud& from, const KdTree& tree, const LineCloud& to,
+                        const Eigen::Vector3d& t, const LineRegistrationOptions& options) {
+    constexpr double kFar = 0.3;
+    const auto matches = nearestMidpoints(tree, to, t, options.max_distance);
+    double sum = 0;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        const auto s = static_cast<Eigen::Index>(i), f = static_cast<Eigen::Index>(matches[i].from);
+        const auto closest =
+            closestPoints(to.midpoints.col(s).cast<double>() + t,
+                          to.directions.col(s).cast<double>(), from.midpoints.col(f).cast<double>(),
+                          from.directions.col(f).cast<double>(), options.min_angle_deg);
+        const double distance = (closest.onTarget - closest.onSource).norm();
+        sum += matches[i].distance < 0 ? kFar : std::min(distance, kFar);
+    }
+    return sum / static_cast<double>(std::max<std::size_t>(matches.size(), 1));
+}
+
+/** The search looks at every fourth line: enough to tell where the basin is. */
+constexpr unsigned kCoarseStep = 4;
+
+LineCloud everyNth(const LineCloud& lines, Eigen::Index n) {
+    const auto columns = Eigen::seqN(0, (lines.midpoints.cols() + n - 1) / n, n);
+    LineCloud some;
+    some.midpoints = lines.midpoints(Eigen::all, columns);
+    some.directions = lines.directions(Eigen::all, columns);
+    some.lengths = lines.lengths(columns);
+    return some;
+}
+}  // namespace
+
+std::vector<OptionField> LineRegistrationOptions::fields() const {
+    return {
+        {"centroids", &LineRegistrationOptions::centroids,
+         "true: each step is the difference of the closest points' centroids; false: where "
+         "those steps end"},
+        {"min_angle_deg", &LineRegistrationOptions::min_angle_deg,
+         "deg; lines at a smaller angle count as parallel", 0.01, 90},
+        {"max_distance", &LineRegistrationOptions::max_distance,
+         "m; midpoints farther apart are never a pair", 0.01, 1000},
+        {"max_iterations", &LineRegistrationOptions::max_iterations, "pairings at most", 1, 10000},
+        {"converged", &LineRegistrationOptions::converged, "m; a smaller step ends the iteration",
+         0, 10},
+        {"min_matches", &LineRegistrationOptions::min_matches,
+         "pairs that are needed; fewer: predicted", 3, 1e6},
+        {"min_observability", &LineRegistrationOptions::min_observability,
+         "0 to 1; a direction that the lines fix less keeps the prediction", 0, 1},
+        {"independent_share", &LineRegistrationOptions::independent_share,
+         "share of the pairs that count as independent in the covariance: lines share surfaces",
+         1e-6, 1},
+        {"overlap_distance", &LineRegistrationOptions::overlap_distance,
+         "m; lines whose midpoints are nearer to each other lie on a surface that both scans see",
+         0, 100},
+        {"prior_sigma", &LineRegistrationOptions::prior_sigma,
+         "m; the motion model's error along such a direction", 1e-6, 100},
+        {"search_speed", &LineRegistrationOptions::search_speed,
+         "m/s; where the motion is not known, what can be driven at this speed is searched", 0,
+         1000},
+        {"search_radius", &LineRegistrationOptions::search_radius, "m; but no farther than this", 0,
+         50},
+        {"search_step", &LineRegistrationOptions::search_step, "m; distance between those starts",
+         0.1, 50}};
+}
+
+ClosestPoints closestPoints(const Eigen::Vector3d& Ps, const Eigen::Vector3d& us,
+                            const Eigen::Vector3d& Pt, const Eigen::Vector3d& ut,
+                            double min_angle_deg) {
+    const Eigen::Vector3d w = Ps - Pt;
+    const double a = us.dot(us), b = us.dot(ut), c = ut.dot(ut), d = us.dot(w), e = ut.dot(w);
+    const double sine = std::sin(min_angle_deg * M_PI / 180);
+    const double denominator = a * c - b * b;  // a c sin^2 of the angle
+    if (denominator <= a * c * sine * sine) return {Ps, Pt + e / c * ut, true};
+    return {Ps + (b * e - c * d) / denominator * us, Pt + (a * e - b * d) / denominator * ut,
+            false};
+}
+
+TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
+                                  const Eigen::Vector3d& predicted,
+                                  const LineRegistrationOptions& options) {
+    TranslationEstimate estimate;
+    estimate.translation = predicted;
+    const KdTree tree(from.midpoints);
+    Sums sums;
+    std::vector<Match> matches;
+    while (estimate.iterations < options.max_iterations) {
+        matches = nearestMidpoints(tree, to, estimate.translation, options.max_distance);
+        sums = sumPairs(from, to, estimate.translation, matches, options);
+        if (sums.pairs < options.min_matches) break;
+        ++estimate.iterations;
+        const Eigen::Vector3d step = options.centroids
+                                         ? Eigen::Vector3d(sums.d / static_cast<double>(sums.pairs))
+                                         : solveSeen(sums, options.min_observability / kPatience);
+        estimate.translation += step;
+        if (step.norm() < options.converged) break;
+    }
+    estimate.matches = sums.pairs;
+    if (sums.pairs < options.min_matches) {
+        estimate.translation = predicted;
+        estimate.covariance =
+            options.prior_sigma * options.prior_sigma * Eigen::Matrix3d::Identity();
+        estimate.unobservedAxes = Eigen::Matrix3d::Identity();
+        return estimate;
+    }
+    estimate.valid = true;
+    estimate.overlap = overlapOf(matches, options.overlap_distance);
+    settle(sums, predicted, options, estimate);
+    return estimate;
+}
+
+TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to,
+                                      const Eigen::Vector3d& centre, double radius,
+                                      const LineRegistrationOptions& options) {
+    const int steps = static_cast<int>(radius / options.search_step);
+    if (steps == 0) return registerLines(from, to, centre, options);
+    LineRegistrationOptions coarse = options;
+    coarse.max_iterations = std::min(options.max_iterations, 10U);
+    coarse.min_matches = (options.min_matches + kCoarseStep - 1) / kCoarseStep;
+    const LineCloud some = everyNth(to, kCoarseStep);
+    const KdTree tree(from.midpoints);
+    Eigen::Vector3d best = centre;
+    double bestDistance = std::numeric_limits<double>::infinity();
+    for (int x = -steps; x <= steps; ++x)
+        for (int y = -steps; y <= steps; ++y) {
+            const Eigen::Vector3d offset(x * options.search_step, y * options.search_step, 0);
+            if (offset.norm() > radius) continue;
+            const auto estimate = registerLines(from, some, centre + offset, coarse);
+            if (!estimate.valid) continue;
+            const double distance =
+                meanLineDistance(from, tree, some, estimate.translation, options);
+            if (distance >= bestDistance) continue;
+            best = estimate.translation;
+            bestDistance = distance;
+        }
+    return registerLines(from, to, best, options);
+}
+}  // namespace delio::paper

@@ -1,0 +1,155 @@
+#include "delio/paper/mean_shift.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../surfaces/kd_tree.h"
+#include "delio/paper/sphere.h"
+#include "delio/scan/voxel_grid.h"
+
+namespace delio::paper {
+namespace {
+constexpr double kDeg = M_PI / 180;
+
+/** Square of the chord that an angle spans on the unit sphere. */
+float squaredChord(double angle) {
+    const double chord = 2 * std::sin(std::min(angle, M_PI) / 2);
+    return static_cast<float>(chord * chord);
+}
+
+/** One step, the equation of section III-C: the kernel-weighted mean of the tangent plane's
+ *  coordinates of all normals in the window. The k-d tree's ball is the cone
+ *  |n x f| < sin(theta/2) without its antipodal half. */
+Eigen::Vector3d meanShift(const Eigen::Matrix3Xf& directions, const KdTree& tree,
+                          const Eigen::Vector3d& centre, double window, std::size_t& support) {
+    std::vector<std::pair<std::uint32_t, float>> inside;
+    tree.within(centre.cast<float>(), squaredChord(window / 2), inside);
+    // c: the kernel has fallen to 1 % at the window's edge.
+    const double c = -std::log(0.01) / (window * window / 4);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double weights = 0;
+    for (const auto& [index, squared] : inside) {
+        const Eigen::Vector3d m = sphereLog(centre, directions.col(index).cast<double>());
+        const double weight = std::exp(-c * m.squaredNorm());
+        sum += weight * m;
+        weights += weight;
+    }
+    support = inside.size();
+    return weights > 0 ? Eigen::Vector3d(sum / weights) : Eigen::Vector3d::Zero();
+}
+
+Mode climb(const Eigen::Matrix3Xf& directions, const KdTree& tree, const Eigen::Vector3d& seed,
+           const MeanShiftOptions& options) {
+    Mode mode{seed, 0};
+    for (unsigned i = 0; i < options.max_iterations; ++i) {
+        const Eigen::Vector3d step =
+            meanShift(directions, tree, mode.direction, options.window_deg * kDeg, mode.support);
+        mode.direction = sphereExp(mode.direction, step);
+        if (step.norm() < options.converged_deg * kDeg) break;
+    }
+    return mode;
+}
+
+surfaces::SurfaceNormals subset(const surfaces::SurfaceNormals& normals,
+                                const std::vector<Eigen::Index>& of) {
+    surfaces::SurfaceNormals result;
+    result.directions = normals.directions(Eigen::all, of);
+    result.planarity = normals.planarity(of);
+    return result;
+}
+
+/** One direction a cell: the centroid, whose weight is the mean of the weights. */
+void thin(Pattern& pattern, double cell) {
+    const auto cells = scan::numberVoxels(pattern.directions, cell);
+    Eigen::Matrix3Xf sums = Eigen::Matrix3Xf::Zero(3, cells.voxels);
+    Eigen::VectorXf weights = Eigen::VectorXf::Zero(cells.voxels);
+    Eigen::VectorXf counts = Eigen::VectorXf::Zero(cells.voxels);
+    for (Eigen::Index i = 0; i < pattern.directions.cols(); ++i) {
+        const Eigen::Index cell_i = cells.ofPoint[static_cast<std::size_t>(i)];
+        sums.col(cell_i) += pattern.directions.col(i);
+        weights[cell_i] += pattern.weights[i];
+        counts[cell_i] += 1;
+    }
+    pattern.directions = sums.colwise().normalized();
+    pattern.weights = weights.cwiseQuotient(counts);
+}
+}  // namespace
+
+std::vector<OptionField> MeanShiftOptions::fields() const {
+    return {{"min_pattern", &MeanShiftOptions::min_pattern,
+             "normals that outlier removal has to leave; fewer: modes are sought", 0, 1e6},
+            {"min_observability", &MeanShiftOptions::min_observability,
+             "0 to 1; modes are also sought where what is left fixes an axis less than this", 0, 1},
+            {"seed_spacing_deg", &MeanShiftOptions::seed_spacing_deg,
+             "deg; distance of the seeds on the sphere", 1, 90},
+            {"window_deg", &MeanShiftOptions::window_deg, "deg; apex angle of the conical window",
+             1, 180},
+            {"max_iterations", &MeanShiftOptions::max_iterations, "steps from a seed at most", 1,
+             10000},
+            {"converged_deg", &MeanShiftOptions::converged_deg,
+             "deg; a smaller step ends the iteration", 0, 10},
+            {"merge_deg", &MeanShiftOptions::merge_deg, "deg; modes nearer to each other are one",
+             0, 90},
+            {"min_support", &MeanShiftOptions::min_support,
+             "normals that a mode's window has to hold", 1, 1e6},
+            {"ball_deg", &MeanShiftOptions::ball_deg, "deg; normals this near to a mode are taken",
+             0.1, 90},
+            {"cell_deg", &MeanShiftOptions::cell_deg,
+             "deg; of which one direction a cell of the sphere is kept", 0.01, 30}};
+}
+
+std::vector<Mode> seekModes(const Eigen::Matrix3Xf& directions, const MeanShiftOptions& options) {
+    const KdTree tree(directions);
+    const Eigen::Matrix3Xd seeds = sphereGrid(options.seed_spacing_deg);
+    std::vector<Mode> climbed(static_cast<std::size_t>(seeds.cols()));
+    tbb::parallel_for(std::size_t{0}, climbed.size(), [&](std::size_t i) {
+        climbed[i] = climb(directions, tree, seeds.col(static_cast<Eigen::Index>(i)), options);
+    });
+    std::stable_sort(climbed.begin(), climbed.end(),
+                     [](const Mode& a, const Mode& b) { return a.support > b.support; });
+    std::vector<Mode> modes;
+    for (const Mode& mode : climbed) {
+        if (mode.support < options.min_support) break;
+        const auto isEqual = [&](const Mode& other) {
+            return sphereLog(mode.direction, other.direction).norm() < options.merge_deg * kDeg;
+        };
+        if (std::none_of(modes.begin(), modes.end(), isEqual)) modes.push_back(mode);
+    }
+    return modes;
+}
+
+bool needsModes(const Pattern& pattern, const MeanShiftOptions& options) {
+    return pattern.normals < options.min_pattern ||
+           axesOf(pattern).eigenvalues()[0] < options.min_observability;
+}
+
+Pattern patternOfModes(const surfaces::SurfaceNormals& normals, const std::vector<Mode>& modes,
+                       const MeanShiftOptions& options, const OutlierRemovalOptions& outliers) {
+    const KdTree tree(normals.directions);
+    Pattern all;
+    all.directions.resize(3, 0);
+    std::vector<bool> taken(static_cast<std::size_t>(normals.directions.cols()), false);
+    for (const Mode& mode : modes) {
+        std::vector<std::pair<std::uint32_t, float>> ball;
+        tree.within(mode.direction.cast<float>(), squaredChord(options.ball_deg * kDeg), ball);
+        std::vector<Eigen::Index> fresh;
+        for (const auto& [index, squared] : ball) {
+            if (taken[index]) continue;
+            taken[index] = true;
+            fresh.push_back(index);
+        }
+        const Pattern cleaned = removeOutliers(subset(normals, fresh), outliers);
+        all.normals += cleaned.normals;
+        const Eigen::Index before = all.directions.cols(), more = cleaned.directions.cols();
+        all.directions.conservativeResize(3, before + more);
+        all.directions.rightCols(more) = cleaned.directions;
+        all.weights.conservativeResize(before + more);
+        all.weights.tail(more) = cleaned.weights;
+    }
+    all.removed = static_cast<std::size_t>(normals.directions.cols()) - all.normals;
+    thin(all, options.cell_deg * kDeg);
+    return all;
+}
+}  // namespace delio::paper

@@ -1,0 +1,246 @@
+#include "delio/paper/pattern_registration.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../surfaces/kd_tree.h"
+#include "delio/scan/voxel_grid.h"
+
+namespace delio::paper {
+namespace {
+constexpr double kDeg = M_PI / 180;
+
+/** Pairs are never taken to fit better than this: the same scan twice leaves no residual at all,
+ * but a covariance has to be one. */
+constexpr double kLeastResidual_rad = 0.01 * kDeg;
+
+/** What pairing gives: the sum of w n_from n_to' that SVD wants, and what the residual wants. */
+struct Pairing {
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+    double weight = 0;
+    double squaredAngles = 0;
+    std::size_t matches = 0;
+    double matched = 0;  //!< weight of `to` that has a partner
+};
+
+/** Sums over the normals of `to`. They are made per block of fixed size and added in order: the
+ *  same bytes for any number of threads. */
+template <typename PairOne>
+Pairing pairAll(Eigen::Index count, const PairOne& pairOne) {
+    constexpr Eigen::Index kBlock = 128;
+    std::vector<Pairing> blocks(static_cast<std::size_t>((count + kBlock - 1) / kBlock));
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+        const Eigen::Index begin = static_cast<Eigen::Index>(b) * kBlock;
+        for (Eigen::Index i = begin; i < std::min(count, begin + kBlock); ++i)
+            pairOne(i, blocks[b]);
+    });
+    Pairing total;
+    for (const auto& block : blocks) {
+        total.moment += block.moment;
+        total.weight += block.weight;
+        total.squaredAngles += block.squaredAngles;
+        total.matches += block.matches;
+        total.matched += block.matched;
+    }
+    return total;
+}
+
+Pairing pairNearest(const Pattern& from, const KdTree& tree, const Pattern& to,
+                    const Eigen::Matrix3d& R) {
+    return pairAll(to.directions.cols(), [&](Eigen::Index i, Pairing& sum) {
+        const Eigen::Vector3f turned = R.cast<float>() * to.directions.col(i);
+        std::uint32_t index = 0;
+        float squared = 0;
+        if (tree.nearest(turned, 1, &index, &squared) == 0) return;
+        const Eigen::Vector3d partner = from.directions.col(index).cast<double>();
+        sum.moment += partner * to.directions.col(i).cast<double>().transpose();
+        sum.weight += 1;
+        sum.squaredAngles += static_cast<double>(squared);
+        ++sum.matches;
+        sum.matched += static_cast<double>(to.weights[i]);
+    });
+}
+
+/** Pairs each normal with all of the other pattern within 2.5 sigma. The sum of the pairs' weights
+ *  is the correlation of the two densities; its maximum is where pairing and SVD stand still. */
+Pairing pairDensities(const Pattern& from, const KdTree& tree, const Pattern& to,
+                      const Eigen::Matrix3d& R, double sigma_rad) {
+    const auto reach = static_cast<float>(2.5 * 2.5 * sigma_rad * sigma_rad);
+    const auto scale = static_cast<float>(-0.5 / (sigma_rad * sigma_rad));
+    return pairAll(to.directions.cols(), [&](Eigen::Index i, Pairing& sum) {
+        const Eigen::Vector3f turned = R.cast<float>() * to.directions.col(i);
+        std::vector<std::pair<std::uint32_t, float>> partners;
+        tree.within(turned, reach, partners);
+        if (partners.empty()) return;
+        Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+        float weight = 0;
+        for (const auto& [index, squared] : partners) {
+            const float w = from.weights[index] * std::exp(scale * squared);
+            mean += w * from.directions.col(index);
+            weight += w;
+        }
+        const double own = to.weights[i];
+        sum.moment += own * mean.cast<double>() * to.directions.col(i).cast<double>().transpose();
+        sum.weight += own * static_cast<double>(weight);
+        sum.squaredAngles +=
+            own * static_cast<double>(weight * (mean / weight - turned).squaredNorm());
+        ++sum.matches;
+        sum.matched += own;
+    });
+}
+
+/** argmin over rotations of sum w |n_from - R n_to|^2 (Arun, Kabsch). */
+Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& moment) {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d sign(1, 1, 1);
+    sign[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+    return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+}
+
+/** Fewer directions that stand for the pattern: the weighted centroid of each cell. Cells a quarter
+ *  as wide as the kernel change the correlation by about 1 %. */
+Pattern condensed(const Pattern& pattern, double kernel_deg,
+                  const PatternRegistrationOptions& options) {
+    const double cell_deg = std::max(options.cell_deg, kernel_deg / 4);
+    const auto cells = scan::numberVoxels(pattern.directions, cell_deg * kDeg);
+    Pattern result;
+    result.normals = pattern.normals;
+    result.directions = Eigen::Matrix3Xf::Zero(3, cells.voxels);
+    result.weights = Eigen::VectorXf::Zero(cells.voxels);
+    for (Eigen::Index i = 0; i < pattern.directions.cols(); ++i) {
+        const Eigen::Index cell = cells.ofPoint[static_cast<std::size_t>(i)];
+        result.directions.col(cell) += pattern.weights[i] * pattern.directions.col(i);
+        result.weights[cell] += pattern.weights[i];
+    }
+    result.directions.colwise().normalize();
+    return result;
+}
+
+/** Pairs and turns until the rotation stands still. Not valid where too few normals of `to` find a
+ *  partner. */
+void iterate(const Pattern& from, const Pattern& to, double kernel_deg,
+             const PatternRegistrationOptions& options, RotationEstimate& estimate) {
+    const KdTree tree(from.directions);
+    // The weight that stands for min_normals, less what rounding takes.
+    const double enough = (1 - 1e-6) * options.min_normals * static_cast<double>(to.weights.sum()) /
+                          static_cast<double>(to.normals);
+    double step = M_PI;
+    while (estimate.iterations < options.max_iterations && step > options.converged_deg * kDeg) {
+        const Pairing pairs =
+            kernel_deg > 0 ? pairDensities(from, tree, to, estimate.rotation, kernel_deg * kDeg)
+                           : pairNearest(from, tree, to, estimate.rotation);
+        estimate.valid = pairs.matched >= enough;
+        if (!estimate.valid) return;
+        ++estimate.iterations;
+        estimate.matches = pairs.matches;
+        estimate.residual_rad = std::sqrt(pairs.squaredAngles / pairs.weight);
+        const Eigen::Matrix3d next = rotationOf(pairs.moment);
+        step = Eigen::AngleAxisd(estimate.rotation.transpose() * next).angle();
+        estimate.rotation = next;
+    }
+}
+
+/** Moves the estimate back to the prediction about the axes that the pattern does not fix, or about
+ *  all where it is not valid, and gives the covariance: noise over geometry on the others, the
+ *  motion model's on those. */
+void settle(const Pattern& to, const Eigen::Matrix3d& predicted,
+            const PatternRegistrationOptions& options, RotationEstimate& estimate) {
+    const double prior = options.prior_sigma_deg * kDeg * options.prior_sigma_deg * kDeg;
+    if (!estimate.valid) {
+        estimate.rotation = predicted;
+        estimate.covariance = prior * Eigen::Matrix3d::Identity();
+        estimate.unobservedAxes = Eigen::Matrix3d::Identity();
+        return;
+    }
+    const auto axes = axesOf(to);
+    estimate.observability = axes.eigenvalues();
+    const double residual = std::max(estimate.residual_rad, kLeastResidual_rad);
+    const double noise =
+        residual * residual / (options.independent_share * static_cast<double>(to.normals));
+
+    const Eigen::AngleAxisd found(predicted.transpose() * estimate.rotation);
+    Eigen::Vector3d correction = found.angle() * found.axis();
+    for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3d axis = axes.eigenvectors().col(k);
+        const bool observed = axes.eigenvalues()[k] >= options.min_observability;
+        if (!observed) {
+            correction -= axis.dot(correction) * axis;
+            estimate.unobservedAxes.conservativeResize(3, estimate.unobservedAxes.cols() + 1);
+            estimate.unobservedAxes.rightCols<1>() = axis;
+        }
+        estimate.covariance +=
+            (observed ? noise / axes.eigenvalues()[k] : prior) * axis * axis.transpose();
+    }
+    if (estimate.unobservedAxes.cols() == 0) return;
+    const double angle = correction.norm();
+    estimate.rotation = predicted;
+    if (angle > 0) estimate.rotation *= Eigen::AngleAxisd(angle, correction / angle).matrix();
+}
+}  // namespace
+
+std::vector<OptionField> PatternRegistrationOptions::fields() const {
+    return {
+        {"kernel_deg", &PatternRegistrationOptions::kernel_deg,
+         "deg; first width of the kernel that correlates the densities; 0: nearest neighbours", 0,
+         90},
+        {"last_kernel_deg", &PatternRegistrationOptions::last_kernel_deg,
+         "deg; width to which the kernel is halved", 0.01, 90},
+        {"cell_deg", &PatternRegistrationOptions::cell_deg,
+         "deg; normals in one cell of the sphere are merged (kernel only)", 0.01, 30},
+        {"max_iterations", &PatternRegistrationOptions::max_iterations, "pairings at most", 1,
+         10000},
+        {"converged_deg", &PatternRegistrationOptions::converged_deg,
+         "deg; a smaller step ends the iteration", 0, 10},
+        {"min_normals", &PatternRegistrationOptions::min_normals,
+         "normals that each pattern needs; fewer: predicted", 3, 1e6},
+        {"min_observability", &PatternRegistrationOptions::min_observability,
+         "0 to 1; an axis that the pattern fixes less keeps the prediction", 0, 1},
+        {"max_correction_deg", &PatternRegistrationOptions::max_correction_deg,
+         "deg; a rotation farther than this from the prediction is not believed", 0.1, 180},
+        {"independent_share", &PatternRegistrationOptions::independent_share,
+         "share of the normals that count as independent in the covariance: neighbours share "
+         "points",
+         1e-6, 1},
+        {"view_distance", &PatternRegistrationOptions::view_distance,
+         "m; this far from each other two scans see so different parts of the surfaces that the "
+         "standard deviation has doubled",
+         0.01, 1e9},
+        {"prior_sigma_deg", &PatternRegistrationOptions::prior_sigma_deg,
+         "deg; the motion model's error on such an axis", 1e-6, 180}};
+}
+
+void PatternRegistrationOptions::check(const std::string& section) const {
+    if (kernel_deg > 0)  // 0: nearest neighbours
+        requireOrder(section + ".last_kernel_deg", last_kernel_deg, section + ".kernel_deg",
+                     kernel_deg);
+}
+
+RotationEstimate registerPatterns(const Pattern& from, const Pattern& to,
+                                  const Eigen::Matrix3d& predicted,
+                                  const PatternRegistrationOptions& options) {
+    RotationEstimate estimate;
+    estimate.rotation = predicted;
+    const bool enough = std::min(from.normals, to.normals) >= options.min_normals;
+    if (enough && options.kernel_deg > 0) {
+        estimate.valid = true;
+        for (double kernel_deg = options.kernel_deg; estimate.valid; kernel_deg /= 2) {
+            kernel_deg = std::max(kernel_deg, options.last_kernel_deg);
+            iterate(condensed(from, kernel_deg, options), condensed(to, kernel_deg, options),
+                    kernel_deg, options, estimate);
+            if (kernel_deg <= options.last_kernel_deg) break;
+        }
+    } else if (enough)
+        iterate(from, to, 0, options, estimate);
+    const double correction = Eigen::AngleAxisd(predicted.transpose() * estimate.rotation).angle();
+    if (correction > options.max_correction_deg * kDeg) {
+        estimate.tooFar = true;
+        estimate.valid = false;
+    }
+    settle(to, predicted, options, estimate);
+    return estimate;
+}
+}  // namespace delio::paper

@@ -1,0 +1,162 @@
+#include "delio/picture/figures.h"
+
+#include <mrpt/opengl/CPointCloudColoured.h>
+#include <mrpt/opengl/CSetOfLines.h>
+#include <mrpt/opengl/CText3D.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../paper/line_matches.h"
+#include "delio/map/colormap.h"
+#include "legend.h"
+#include "wide_line.h"
+
+namespace delio::picture {
+using mrpt::img::TColor;
+using mrpt::img::TColorf;
+using mrpt::opengl::COpenGLScene;
+
+namespace {
+constexpr double kSpacing = 2.4;  // of the spheres, whose radius is 1
+constexpr double kPiece_m = 0.04;
+constexpr float kWidth_px = 2;
+const TColor kWhite(255, 255, 255), kInk(40, 40, 40), kGridGray(190, 190, 195);
+const TColor kBlue(31, 119, 180), kRed(214, 39, 40), kGreen(44, 160, 44);
+
+COpenGLScene::Ptr emptyScene() {
+    auto scene = COpenGLScene::Create();
+    scene->getViewport()->setCustomBackgroundColor(TColorf(kWhite));
+    return scene;
+}
+
+mrpt::opengl::CSetOfLines::Ptr linesOf(const paper::LineCloud& lines, const Eigen::Vector3d& t,
+                                       const TColor& colour) {
+    auto set = wideLines(colour, kWidth_px);
+    for (Eigen::Index i = 0; i < lines.midpoints.cols(); ++i) {
+        const Eigen::Vector3d half =
+            (lines.lengths[i] / 2 * lines.directions.col(i)).cast<double>();
+        const Eigen::Vector3d middle = lines.midpoints.col(i).cast<double>() + t;
+        appendWide(*set, middle - half, middle + half, kPiece_m);
+    }
+    return set;
+}
+
+/** Circles of latitude and longitude, every 30 deg, on the unit sphere. */
+mrpt::opengl::CSetOfLines::Ptr globeLines() {
+    auto lines = mrpt::opengl::CSetOfLines::Create();
+    const auto at = [](int latitude, int longitude) {
+        const double v = latitude * M_PI / 180, u = longitude * M_PI / 180;
+        return mrpt::math::TPoint3D(std::cos(v) * std::cos(u), std::cos(v) * std::sin(u),
+                                    std::sin(v));
+    };
+    constexpr int kStep = 5, kBetween = 30;
+    for (int a = -90; a < 90; a += kStep)
+        for (int b = 0; b < 360; b += kStep) {
+            if (b % kBetween == 0) lines->appendLine(at(a, b), at(a + kStep, b));
+            if (a % kBetween == 0) lines->appendLine(at(a, b), at(a, b + kStep));
+        }
+    lines->setColor_u8(kGridGray);
+    return lines;
+}
+
+mrpt::opengl::CPointCloudColoured::Ptr dotsOf(const Eigen::Matrix3Xf& pattern) {
+    auto dots = mrpt::opengl::CPointCloudColoured::Create();
+    const auto byte = [](float v) { return static_cast<std::uint8_t>(110 + 100 * v); };
+    for (Eigen::Index i = 0; i < pattern.cols(); ++i) {
+        const Eigen::Vector3f n = pattern.col(i);
+        dots->insertPoint({n.x(), n.y(), n.z(), byte(n.x()), byte(n.y()), byte(n.z())});
+    }
+    dots->setPointSize(3);
+    dots->enableVariablePointSize(false);
+    return dots;
+}
+}  // namespace
+
+COpenGLScene::Ptr sphereScene(const std::vector<Eigen::Matrix3Xf>& patterns,
+                              const std::vector<std::string>& captions) {
+    auto scene = emptyScene();
+    for (std::size_t i = 0; i < patterns.size(); ++i) {
+        const double place = -kSpacing * static_cast<double>(i);  // y is to the left
+
+        auto grid = globeLines();
+        grid->setLocation(0, place, 0);
+        scene->insert(grid);
+        auto dots = dotsOf(patterns[i]);
+        dots->setLocation(0, place, 0);
+        dots->setName("pattern_" + std::to_string(i));
+        scene->insert(dots);
+        if (i >= captions.size()) continue;
+        auto text = mrpt::opengl::CText3D::Create(captions[i], "sans", 0.16);
+        text->setColor_u8(kInk);
+        // Upright, to be read by who looks along +x.
+        constexpr double kHalfLetter = 0.065;
+        const double begin = place + kHalfLetter * static_cast<double>(captions[i].size());
+        text->setPose(mrpt::poses::CPose3D(-1.0, begin, -1.3, -M_PI / 2, 0, M_PI / 2));
+        scene->insert(text);
+    }
+    return scene;
+}
+
+SnapshotOptions sphereView(std::size_t spheres) {
+    SnapshotOptions options;
+    options.width_px = static_cast<unsigned>(500 * std::max<std::size_t>(spheres, 1));
+    options.height_px = 600;
+    options.azimuth_deg = 180;
+    options.elevation_deg = 25;
+    options.ortho = true;
+    return options;
+}
+
+COpenGLScene::Ptr lineScene(const paper::LineCloud& lines) {
+    auto scene = emptyScene();
+    const Eigen::Index count = lines.midpoints.cols();
+    std::vector<float> heights(static_cast<std::size_t>(count));
+    for (Eigen::Index i = 0; i < count; ++i)
+        heights[static_cast<std::size_t>(i)] = lines.midpoints(2, i);
+    const auto range = map::robustRange(heights);
+    // A set of lines has one colour: one set for each band of height.
+    constexpr int kBands = 16;
+    for (int band = 0; band < kBands; ++band) {
+        std::vector<Eigen::Index> inside;
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const double fraction = range.fractionAt(static_cast<double>(lines.midpoints(2, i)));
+            if (std::min(kBands - 1, static_cast<int>(fraction * kBands)) == band)
+                inside.push_back(i);
+        }
+        paper::LineCloud some;
+        some.midpoints = lines.midpoints(Eigen::all, inside);
+        some.directions = lines.directions(Eigen::all, inside);
+        some.lengths = lines.lengths(inside);
+        const TColor colour = map::colourAt(map::Colormap::Turbo, (band + 0.5) / kBands);
+        scene->insert(linesOf(some, Eigen::Vector3d::Zero(), colour));
+    }
+    addColourBar(*scene, 0, map::Colormap::Turbo, range, " m", "height from the sensor", kInk);
+    return scene;
+}
+
+COpenGLScene::Ptr matchScene(const paper::LineCloud& from, const paper::LineCloud& to,
+                             const Eigen::Vector3d& t) {
+    auto scene = emptyScene();
+    scene->insert(linesOf(from, Eigen::Vector3d::Zero(), kBlue));
+    scene->insert(linesOf(to, t, kRed));
+    const KdTree tree(from.midpoints);
+    const auto matches = paper::nearestMidpoints(tree, to, t, 5);
+    const double mean = paper::meanDistance(matches);
+    auto joins = wideLines(kGreen, kWidth_px);
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        if (matches[i].distance < 0 || static_cast<double>(matches[i].distance) > mean) continue;
+        const Eigen::Vector3d moved =
+            to.midpoints.col(static_cast<Eigen::Index>(i)).cast<double>() + t;
+        const Eigen::Vector3d paired = from.midpoints.col(matches[i].from).cast<double>();
+        // Above the lines that it joins, to be seen from there.
+        const Eigen::Vector3d above(0, 0, 0.3);
+        appendWide(*joins, moved + above, paired + above, kPiece_m);
+    }
+    scene->insert(joins);
+    addLegendText(*scene, 2, "lines of the first scan", kBlue);
+    addLegendText(*scene, 1, "lines of the second scan", kRed);
+    addLegendText(*scene, 0, "midpoints of a pair", kGreen);
+    return scene;
+}
+}  // namespace delio::picture

@@ -1,0 +1,37 @@
+#include "delio/picture/illustrate.h"
+
+#include "delio/picture/png.h"
+#include "delio/picture/render.h"
+#include "delio/picture/scene.h"
+
+namespace delio::picture {
+namespace {
+void drawTrajectory(const run::RunRecord& record, const std::string& path) {
+    const auto view = topView();
+    const auto pictureOf = [&](const io::Trajectory& trajectory, const char* name) {
+        return picture(*trajectoryScene(trajectory.poses, record.truth, name), view);
+    };
+    mrpt::img::CImage sheet;
+    if (record.optimised()) {
+        const auto width = static_cast<int>(view.width_px),
+                   height = static_cast<int>(view.height_px);
+        sheet.resize(2 * width, height, mrpt::img::CH_RGB);
+        sheet.drawImage(0, 0, pictureOf(record.odometry, "unoptimised"));
+        sheet.drawImage(width, 0, pictureOf(record.final, "optimised"));
+    } else
+        sheet = pictureOf(record.final, "estimate");
+    savePng(sheet, path);
+}
+}  // namespace
+
+void illustrate(const run::RunRecord& record, const mrpt::maps::CPointsMapXYZI& points,
+                const std::vector<Eigen::Isometry3d>& keyframes, const run::RunFolder& folder) {
+    using run::RunFolder;
+    if (!points.empty()) {
+        const auto scene = mapScene(points, {record.final.poses, record.truth, keyframes});
+        saveScene(*scene, folder.path(RunFolder::kScene));
+        savePicture(*scene, SnapshotOptions(), folder.path(RunFolder::kMapPicture));
+    }
+    drawTrajectory(record, folder.path(RunFolder::kTrajectoryPicture));
+}
+}  // namespace delio::picture

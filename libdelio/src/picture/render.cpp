@@ -1,0 +1,135 @@
+#include "delio/picture/render.h"
+
+#include <mrpt/opengl/CCamera.h>
+#include <mrpt/opengl/CFBORender.h>
+#include <mrpt/poses/CPose3D.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "delio/core/error.h"
+#include "delio/core/geometry.h"
+#include "delio/picture/png.h"
+#include "framing.h"
+#include "marks.h"
+#include "prepared_scene.h"
+#include "scale_bar.h"
+
+namespace delio::picture {
+using mrpt::img::CImage;
+using mrpt::opengl::CFBORender;
+using mrpt::opengl::COpenGLScene;
+
+namespace {
+/** Pixels of the picture that MRPT renders: twice the size, then averaged, for smooth edges. MRPT
+ *  reads pixels into rows without padding while OpenGL pads them to four bytes, so the width has to
+ *  be a multiple of four; the extra columns are cut off again. */
+struct Raster {
+    explicit Raster(const SnapshotOptions& options) {
+        const unsigned longer = std::max(options.width_px, options.height_px);
+        scale = longer <= kMaxPictureSize_px / 4 ? 2 : 1;
+        width = options.width_px * scale;
+        height = options.height_px * scale;
+        padded = (width + 3) / 4 * 4;
+    }
+    unsigned scale, width, height, padded;
+};
+
+void checkSize(const SnapshotOptions& options) {
+    const auto isGood = [](unsigned px) { return px >= 1 && px <= kMaxPictureSize_px; };
+    if (!isGood(options.width_px) || !isGood(options.height_px))
+        throw Error("a picture has 1 to " + std::to_string(kMaxPictureSize_px) +
+                    " pixels on each side, not " + std::to_string(options.width_px) + "x" +
+                    std::to_string(options.height_px));
+}
+
+mrpt::opengl::CCamera cameraOf(const View& view, const Raster& raster, bool ortho) {
+    mrpt::opengl::CCamera camera;
+    Eigen::Matrix3d axes;
+    // MRPT's camera looks along +z, its y points down.
+    axes << view.right, -view.up, -view.back;
+    camera.set6DOFMode(true);
+    camera.setPose(toMrpt(isometry(axes, view.middle + view.back * view.distance)));
+    camera.setOrthogonal(ortho);
+    camera.setProjectiveFOVdeg(static_cast<float>(kVerticalView_deg));
+    // MRPT shows half of this "distance" across the shorter side of a parallel projection.
+    const double metresAcross = view.metresAcross * raster.padded / raster.width;
+    const double aspect = double(raster.padded) / raster.height;
+    camera.setZoomDistance(static_cast<float>(2 * metresAcross / std::max(aspect, 1.0)));
+    return camera;
+}
+
+/** The first EGL device that can be used: where there is a GPU that this user may not open, a later
+ *  one is the software renderer. */
+std::unique_ptr<CFBORender> openRenderer(const Raster& raster) {
+    constexpr int kDevicesTried = 8;
+    for (int device = 0; device < kDevicesTried; ++device) {
+        CFBORender::Parameters parameters(raster.padded, raster.height);
+        parameters.deviceIndexToUse = device;
+        try {
+            return std::make_unique<CFBORender>(parameters);
+        } catch (const std::exception&) {
+            // Try the next one.
+        }
+    }
+    throw Error(
+        "cannot render: no EGL device can be used; install libegl1 and libgl1-mesa-dri (no display "
+        "is needed)");
+}
+
+/** Cuts off the extra columns and brings the picture to the size that is wanted. */
+CImage trimmed(const CImage& rendered, const Raster& raster, const SnapshotOptions& options) {
+    CImage result = rendered;
+    if (raster.padded != raster.width)
+        rendered.extract_patch(result, (raster.padded - raster.width) / 2, 0, raster.width,
+                               raster.height);
+    if (raster.scale != 1) {
+        const CImage cut = result;
+        cut.scaleImage(result, options.width_px, options.height_px, mrpt::img::IMG_INTERP_AREA);
+    }
+    return result;
+}
+}  // namespace
+
+void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned pictures,
+           const std::function<void(unsigned, const CImage&)>& use) {
+    checkSize(options);
+    const Content content = contentOf(scene);
+    if (content.empty()) throw Error("the scene is empty, so there is nothing to show");
+
+    const Raster raster(options);
+    const auto renderer = openRenderer(raster);
+    const auto views = viewsOf(content, options, pictures);
+    PreparedScene prepared(scene, options, static_cast<float>(raster.scale),
+                           views[0].magnification);
+    for (unsigned i = 0; i < pictures; ++i) {
+        const View& view = views[i];
+        std::optional<ScaleBar> bar;
+        if (options.ortho && options.scaleBar && hasLegend(options)) bar.emplace(view, options);
+        CImage rendered;
+        try {
+            prepared.lookFrom(view);
+            prepared.showTexts(bar);
+            renderer->setCamera(scene, cameraOf(view, raster, options.ortho));
+            renderer->render_RGB(scene, rendered);
+        } catch (const std::exception& e) {
+            throw Error("cannot render the scene: " + plainMessage(e));
+        }
+        CImage result = trimmed(rendered, raster, options);
+        if (bar) bar->drawInto(result, prepared.ink());
+        use(i, result);
+    }
+}
+
+CImage picture(COpenGLScene& scene, const SnapshotOptions& options) {
+    CImage result;
+    orbit(scene, options, 1, [&](unsigned, const CImage& image) { result = image; });
+    return result;
+}
+
+void savePicture(COpenGLScene& scene, const SnapshotOptions& options, const std::string& pngPath) {
+    checkPngName(pngPath);
+    savePng(picture(scene, options), pngPath);
+}
+}  // namespace delio::picture

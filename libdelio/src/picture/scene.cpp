@@ -1,0 +1,248 @@
+#include "delio/picture/scene.h"
+
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/opengl/CGridPlaneXY.h>
+#include <mrpt/opengl/CPointCloudColoured.h>
+#include <mrpt/opengl/CSetOfLines.h>
+#include <mrpt/opengl/stock_objects.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../io/gz_object.h"
+#include "delio/core/error.h"
+#include "delio/core/geometry.h"
+#include "ground_height.h"
+#include "legend.h"
+#include "round_length.h"
+#include "wide_line.h"
+
+namespace delio::picture {
+using Eigen::Isometry3d;
+using map::Colormap;
+using map::colourAt;
+using map::robustRange;
+using map::ValueRange;
+using mrpt::img::TColor;
+using mrpt::img::TColorf;
+using mrpt::opengl::COpenGLScene;
+
+namespace {
+const TColor kWhite(255, 255, 255), kRed(214, 39, 40), kBlue(31, 119, 180);
+const TColor kGreen(60, 200, 80), kYellow(255, 210, 0), kGridGray(150, 150, 150);
+
+/** Extent over the ground, and a height for the grid. */
+struct Extent {
+    double xMin = 0, xMax = 0, yMin = 0, yMax = 0, z = 0;
+    double longer() const { return std::max(xMax - xMin, yMax - yMin); }
+};
+
+Extent extentOf(const std::vector<Isometry3d>& poses) {
+    Eigen::Vector3d low = poses[0].translation(), high = low;
+    for (const auto& pose : poses) {
+        low = low.cwiseMin(pose.translation());
+        high = high.cwiseMax(pose.translation());
+    }
+    return {low.x(), high.x(), low.y(), high.y(), low.z()};
+}
+
+Extent extentOf(const mrpt::maps::CPointsMap& points) {
+    const auto range = [](const auto& values) {
+        return robustRange({values.begin(), values.end()});
+    };
+    const auto x = range(points.getPointsBufferRef_x());
+    const auto y = range(points.getPointsBufferRef_y());
+    return {x.low, x.high, y.low, y.high, range(points.getPointsBufferRef_z()).low};
+}
+
+void addGrid(COpenGLScene& scene, const Extent& extent, double beyond_m, const TColor& textColour) {
+    const double step = roundLength(std::max(extent.longer(), 1.0) / 8);
+    const auto down = [&](double v) { return static_cast<float>(std::floor(v / step) * step); };
+    const auto up = [&](double v) { return static_cast<float>(std::ceil(v / step) * step); };
+    auto grid = mrpt::opengl::CGridPlaneXY::Create(
+        down(extent.xMin - beyond_m), up(extent.xMax + beyond_m), down(extent.yMin - beyond_m),
+        up(extent.yMax + beyond_m), static_cast<float>(extent.z), static_cast<float>(step));
+    grid->setColor_u8(kGridGray);
+    grid->setName("grid");
+    scene.insert(grid);
+    addLegendText(scene, 0, "grid " + metresText(step), textColour);
+}
+
+mrpt::math::TPoint3D pointOf(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+void addWay(COpenGLScene& scene, const std::vector<Isometry3d>& poses, double extent_m,
+            const TColor& colour, float width_px, const std::string& name) {
+    const double piece_m = std::max(extent_m, 1.0) / 1500;
+    auto way = wideLines(colour, width_px);
+    for (std::size_t i = 1; i < poses.size(); ++i)
+        appendWide(*way, poses[i - 1].translation(), poses[i].translation(), piece_m);
+    way->setName(name);
+    if (!way->empty()) scene.insert(way);
+}
+
+void addMark(COpenGLScene& scene, const Isometry3d& pose, const TColor& colour, double extent_m,
+             const std::string& name) {
+    auto dot = mrpt::opengl::CPointCloudColoured::Create();
+    const Eigen::Vector3f at = pose.translation().cast<float>();
+    dot->insertPoint({at.x(), at.y(), at.z(), colour.R, colour.G, colour.B});
+    dot->setPointSize(14);
+    dot->enableVariablePointSize(false);
+    dot->setName(name);
+    scene.insert(dot);
+    // Not CornerXYZ, which throws in a render when it is larger than 4 m.
+    auto axes = mrpt::opengl::stock_objects::CornerXYZSimple(static_cast<float>(extent_m / 40));
+    axes->setPose(toMrpt(pose));
+    axes->setName(name + "_axes");
+    scene.insert(axes);
+}
+
+/** Axes at each keyframe; all x in one object, all y in another, all z in a third. */
+void addKeyframes(COpenGLScene& scene, const std::vector<Isometry3d>& poses, double length_m) {
+    const TColor colours[] = {TColor(255, 80, 80), TColor(80, 220, 80), TColor(90, 140, 255)};
+    for (const int axis : {0, 1, 2}) {
+        auto lines = mrpt::opengl::CSetOfLines::Create();
+        const Eigen::Vector3d tip = length_m * Eigen::Vector3d::Unit(axis);
+        for (const auto& pose : poses)
+            lines->appendLine(pointOf(pose.translation()), pointOf(pose * tip));
+        lines->setColor_u8(colours[axis]);
+        lines->setName(std::string("keyframes_") + "xyz"[axis]);
+        scene.insert(lines);
+    }
+}
+
+/** Heights of points above the ground around them. */
+template <typename Floats>
+std::vector<float> heightsOf(const Floats& x, const Floats& y, const Floats& z) {
+    const GroundHeight ground(x, y, z);
+    std::vector<float> heights(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+        heights[i] = static_cast<float>(
+            z[i] - ground.at(static_cast<double>(x[i]), static_cast<double>(y[i])));
+    return heights;
+}
+
+std::vector<float> intensitiesOf(const mrpt::maps::CPointsMap& points) {
+    const auto* cloud = dynamic_cast<const mrpt::maps::CPointsMapXYZI*>(&points);
+    if (!cloud) throw Error("the map's points have no intensity to be coloured by");
+    const auto& values = cloud->getPointsBufferRef_intensity();
+    return {values.begin(), values.end()};
+}
+}  // namespace
+
+COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
+                           const SceneOptions& options) {
+    if (points.empty()) throw Error("the map has no points, so there is nothing to show");
+    const bool byHeight = options.colourBy == ColourBy::Height;
+    const auto& x = points.getPointsBufferRef_x();
+    const auto& y = points.getPointsBufferRef_y();
+    const auto& z = points.getPointsBufferRef_z();
+    const auto values = byHeight ? heightsOf(x, y, z) : intensitiesOf(points);
+    const ValueRange range = robustRange(values);
+
+    auto cloud = mrpt::opengl::CPointCloudColoured::Create();
+    cloud->reserve(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const TColor c = colourAt(options.colormap, range.fractionAt(double{values[i]}));
+        cloud->insertPoint({x[i], y[i], z[i], c.R, c.G, c.B});
+    }
+    cloud->setPointSize(options.pointSize_px);
+    cloud->enableVariablePointSize(false);
+    cloud->setName("map");
+
+    auto scene = COpenGLScene::Create();
+    scene->getViewport()->setCustomBackgroundColor(TColorf(options.background));
+    const Extent extent = extentOf(points);
+    const TColor& b = options.background;
+    const TColor ink = b.R + b.G + b.B > 3 * 128 ? TColor(0, 0, 0) : kWhite;
+    unsigned row = 0;
+    addGrid(*scene, extent, extent.longer() / 20, ink);
+    scene->insert(cloud);
+    if (!ways.keyframes.empty()) {
+        addKeyframes(*scene, ways.keyframes, std::clamp(extent.longer() / 100, 0.5, 3.0));
+        addLegendText(*scene, ++row, "axes: keyframes", ink);
+    }
+    if (!ways.groundTruth.empty()) {
+        auto below = ways.groundTruth;
+        const double lower_m = std::clamp(extent.longer() / 600, 0.2, 1.2);
+        for (auto& pose : below) pose.translation().z() -= lower_m;
+        addWay(*scene, below, extent.longer(), kRed, 6, "ground_truth");
+        addLegendText(*scene, ++row, "ground truth", TColor(255, 90, 90));
+    }
+    if (!ways.trajectory.empty()) {
+        addWay(*scene, ways.trajectory, extent.longer(), ink, 4, "trajectory");
+        addMark(*scene, ways.trajectory.front(), kGreen, extent.longer(), "start");
+        addMark(*scene, ways.trajectory.back(), kYellow, extent.longer(), "end");
+        addLegendText(*scene, ++row, "trajectory, from green to yellow", ink);
+    }
+    addColourBar(*scene, row + 1, options.colormap, range, byHeight ? " m" : "",
+                 byHeight ? "height above ground" : "intensity", ink);
+    return scene;
+}
+
+void recolour(COpenGLScene& scene, Colormap colormap) {
+    std::vector<mrpt::opengl::CPointCloudColoured::Ptr> clouds;
+    scene.visitAllObjects([&](const mrpt::opengl::CRenderizable::Ptr& object) {
+        const auto cloud = std::dynamic_pointer_cast<mrpt::opengl::CPointCloudColoured>(object);
+        if (cloud && cloud->size() > 1) clouds.push_back(cloud);
+    });
+    if (clouds.empty()) throw Error("the scene has no coloured cloud that could be recoloured");
+    for (const auto& cloud : clouds) {
+        std::vector<float> x, y, z;
+        for (std::size_t i = 0; i < cloud->size(); ++i) {
+            const auto& p = cloud->getPoint3Df(i);
+            x.push_back(p.x);
+            y.push_back(p.y);
+            z.push_back(p.z);
+        }
+        const auto heights = heightsOf(x, y, z);
+        const ValueRange range = robustRange(heights);
+        for (std::size_t i = 0; i < cloud->size(); ++i) {
+            const TColor c = colourAt(colormap, range.fractionAt(double{heights[i]}));
+            cloud->setPointColor_u8_fast(i, c.R, c.G, c.B);
+        }
+        cloud->notifyChange();
+    }
+    recolourBar(scene, colormap);
+}
+
+COpenGLScene::Ptr trajectoryScene(const std::vector<Isometry3d>& estimate,
+                                  const std::vector<Isometry3d>& groundTruth,
+                                  const std::string& name) {
+    if (estimate.empty()) throw Error("the trajectory has no poses, so there is nothing to show");
+    auto all = estimate;
+    all.insert(all.end(), groundTruth.begin(), groundTruth.end());
+    const Extent extent = extentOf(all);
+    const double size_m = std::max(extent.longer(), 1.0);
+
+    auto scene = COpenGLScene::Create();
+    scene->getViewport()->setCustomBackgroundColor(TColorf(kWhite));
+    addGrid(*scene, extent, size_m, TColor(60, 60, 60));
+    if (!groundTruth.empty()) {
+        const auto byHeight = [](const Isometry3d& a, const Isometry3d& b) {
+            return a.translation().z() < b.translation().z();
+        };
+        const double top =
+            std::max_element(groundTruth.begin(), groundTruth.end(), byHeight)->translation().z();
+        const double bottom =
+            std::min_element(estimate.begin(), estimate.end(), byHeight)->translation().z();
+        auto below = groundTruth;
+        for (auto& pose : below)
+            pose.translation().z() += std::min(0.0, bottom - top - size_m / 100);
+        addWay(*scene, below, size_m, kRed, 7, "ground_truth");
+        addLegendText(*scene, 2, "ground truth", kRed);
+    }
+    addWay(*scene, estimate, size_m, kBlue, 3, "trajectory");
+    addLegendText(*scene, 1, name, kBlue);
+    addMark(*scene, estimate.front(), kGreen, size_m, "start");
+    addMark(*scene, estimate.back(), kYellow, size_m, "end");
+    return scene;
+}
+
+void saveScene(const COpenGLScene& scene, const std::string& path) { io::saveWhole(scene, path); }
+
+COpenGLScene::Ptr loadScene(const std::string& path) {
+    auto scene = COpenGLScene::Create();
+    io::loadWhole(path, "a .3Dscene", *scene);
+    return scene;
+}
+}  // namespace delio::picture

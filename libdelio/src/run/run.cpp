@@ -1,0 +1,165 @@
+#include "delio/run/run.h"
+
+#include <mrpt/core/format.h>
+
+#include <filesystem>
+
+#include "delio/core/error.h"
+#include "delio/core/stopwatch.h"
+#include "delio/io/drive_meta.h"
+
+namespace delio::run {
+namespace fs = std::filesystem;
+
+namespace {
+graph::PoseGraphOptions graphOptions(const Options& options, const RunSettings& settings) {
+    auto graph = options.graph;
+    if (!settings.graph) graph.skip_edges = graph.window = 0;
+    return graph;
+}
+}  // namespace
+
+Run::Run(const Options& options, const RunSettings& settings)
+    : settings_(settings),
+      slam_(makeOdometry(options)),
+      graph_(std::make_shared<GraphBuilder>(graphOptions(options, settings))) {
+    options.check();
+    record_.profile = settings.profile;
+    record_.command = settings.command;
+    record_.options = options;
+    attach(graph_);
+    if (!settings.map) return;
+    map_ = std::make_shared<MapListener>(
+        map::MapBuilder(options.map, settings.sensorLabel, settings.folder));
+    attach(map_);
+}
+
+void Run::warn(const std::string& text) {
+    record_.warnings.push_back(text);
+    if (settings_.onWarning) settings_.onWarning(text);
+}
+
+void Run::fail(const std::string& fault) {
+    if (record_.fault.empty()) record_.fault = fault;
+}
+
+void Run::readSideFiles(const std::string& recording, const std::string& truth, bool truthIsCam0) {
+    const std::string calib = io::sidecarPath(recording, ".calib.txt");
+    if (fs::exists(calib)) {
+        record_.calibration = io::readCalibration(calib);
+        if (!record_.calibration.hasTr)
+            warn("'" + calib + "' has no Tr: trajectory_kitti_cam0.txt is left out");
+    }
+    const std::string beside = io::sidecarPath(recording, ".poses.txt");
+    if (truth.empty() && !fs::exists(beside)) return;
+    truthIsCam0_ = truth.empty() || truthIsCam0;
+    if (truthIsCam0_ && !record_.calibration.hasTr) {
+        const std::string why = "true poses of cam0 need Tr, and '" + calib + "' has none";
+        if (!truth.empty()) throw Error(why + "; give poses of the vehicle instead");
+        warn(why + ": no evaluation");
+        return;
+    }
+    truth_ = io::readTrajectory(truth.empty() ? beside : truth);
+    truthWasAskedFor_ = !truth.empty();
+}
+
+const RunRow& Run::process(const Scan& scan, double read_ms) {
+    RunRow row;
+    row.scan = scan.index;
+    row.stamp_s = scan.stamp_s;
+    row.sensorPose = scan.sensorPose;
+    row.read_ms = read_ms;
+    row.report = slam_.process(scan);
+    row.points = row.report.step.used.indices.size();
+    row.report.step.used = {};
+    row.report.step.features.reset();  // the graph keeps what it needs
+    auto& rows = record_.rows;
+    if (record_.stampsRise && !rows.empty() && scan.stamp_s <= rows.back().stamp_s) {
+        record_.stampsRise = false;
+        warn(
+            mrpt::format("scan %zu is not later than the one before: trajectory_tum.txt is left "
+                         "out",
+                         scan.index));
+    }
+    rows.push_back(std::move(row));
+    return rows.back();
+}
+
+void Run::optimise() {
+    Stopwatch watch;
+    try {
+        if (settings_.graph) record_.optimisation = graph_->optimise();
+    } catch (const std::exception& e) {
+        // What the odometry found is worth keeping.
+        fail("the pose graph was not optimised: " + plainMessage(e));
+    }
+    record_.optimise_ms = watch.lap_ms();
+    record_.graph = graph_->graph();
+    record_.odometry = slam_.trajectory();
+    record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
+    if (!record_.stampsRise) record_.final.stamps_s.clear();
+}
+
+evaluation::Comparison Run::compared(const io::Trajectory& vehicle) const {
+    io::ScanTable used;
+    for (const auto& row : record_.rows) {
+        used.scans.push_back(row.scan);
+        used.stamps_s.push_back(row.stamp_s);
+        used.predicted.push_back(row.report.step.predicted);
+    }
+    const auto estimate =
+        truthIsCam0_ ? io::lidarToCam0(ofSensor(vehicle, record_.rows), record_.calibration.Tr)
+                     : vehicle;
+    try {
+        auto found = evaluation::compare(*truth_, estimate, {}, &used);
+        if (found.reference.size() < 2) throw Error("fewer than two scans have a true pose");
+        return found;
+    } catch (const evaluation::WrongFrames&) {
+        throw Error(std::string("the true poses do not look like poses of ") +
+                    (truthIsCam0_ ? "cam0" : "the vehicle") +
+                    ": their axes are swapped; see --ground-truth-frame");
+    }
+}
+
+void Run::score() {
+    try {
+        record_.metrics = compared(record_.final);
+        if (record_.optimised()) record_.metricsBefore = compared(record_.odometry);
+    } catch (const Error& e) {
+        // The drive's results are good all the same.
+        if (truthWasAskedFor_)
+            fail(e.what());
+        else
+            warn(std::string(e.what()) + "; no evaluation");
+        return;
+    }
+    const auto& Tr = record_.calibration.Tr;
+    const auto& reference = record_.metrics->reference;
+    for (const auto& pose : reference) {
+        const Eigen::Isometry3d moved = reference.front().inverse() * pose;
+        record_.truth.push_back(truthIsCam0_ ? Tr.inverse() * moved * Tr : moved);
+    }
+}
+
+void Run::finish(bool complete) {
+    record_.complete = complete;
+    optimise();
+    if (truth_) score();
+}
+
+RunRecord optimiseAgain(graph::PoseGraph graph, const Options& options,
+                        const RunSettings& settings) {
+    RunRecord record;
+    record.profile = settings.profile;
+    record.command = settings.command;
+    record.options = options;
+    record.complete = true;
+    record.odometry.poses = graph.poses();
+    Stopwatch watch;
+    record.optimisation = graph.optimise(options.graph);
+    record.optimise_ms = watch.lap_ms();
+    record.final.poses = graph.poses();
+    record.graph = std::move(graph);
+    return record;
+}
+}  // namespace delio::run

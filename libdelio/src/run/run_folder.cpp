@@ -1,0 +1,134 @@
+#include "delio/run/run_folder.h"
+
+#include <mrpt/core/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <sstream>
+
+#include "delio/core/error.h"
+#include "delio/core/stopwatch.h"
+#include "delio/io/g2o.h"
+#include "delio/io/output_file.h"
+#include "delio/map/ply.h"
+#include "delio/map/simplemap.h"
+
+namespace delio::run {
+namespace fs = std::filesystem;
+using mrpt::format;
+
+namespace {
+/** Axes that were not observed, each as "x y z". */
+std::string axesText(const Eigen::Matrix3Xd& axes) {
+    std::string text;
+    for (Eigen::Index i = 0; i < axes.cols(); ++i)
+        text += format("%s%.3f %.3f %.3f", i > 0 ? "; " : "", axes(0, i), axes(1, i), axes(2, i));
+    return text;
+}
+
+io::ScanRow rowOf(const RunRow& row) {
+    const Step& step = row.report.step;
+    io::ScanRow cells{row.scan, row.stamp_s, {}, step.predicted, step.reason};
+    const auto put = [&](const std::string& name, const std::string& value) {
+        cells.values.emplace_back(name, value);
+    };
+    put("points", std::to_string(row.points));
+    put("not_finite", std::to_string(step.notFinite));
+    put("read_ms", format("%.3f", row.read_ms));
+    for (const auto& [stage, ms] : step.times_ms)
+        put(std::string(stage) + "_ms", format("%.3f", ms));
+    for (const auto& [listener, ms] : row.report.listeners_ms)
+        put(std::string(listener) + "_ms", format("%.3f", ms));
+    for (const auto& [name, value] : step.details) put(name, format("%.9g", value));
+    const Quality& quality = step.quality;
+    put("matches", std::to_string(quality.matches));
+    put("residual_m", format("%.9g", quality.residual_m));
+    for (int k = 0; k < 3; ++k)
+        put(format("rotation_observability_%d", k + 1),
+            format("%.9g", quality.rotationObservability[k]));
+    for (int k = 0; k < 3; ++k)
+        put(format("translation_observability_%d", k + 1),
+            format("%.9g", quality.translationObservability[k]));
+    put("rotation_unobserved", axesText(quality.unobservedRotation));
+    put("translation_unobserved", axesText(quality.unobservedTranslation));
+    put("searched", step.searched ? "1" : "0");
+    return cells;
+}
+
+void writeScans(const std::vector<RunRow>& rows, const std::string& path) {
+    std::vector<io::ScanRow> table;
+    table.reserve(rows.size());
+    for (const auto& row : rows) table.push_back(rowOf(row));
+    io::writeScanTable(table, path);
+}
+}  // namespace
+
+std::string RunFolder::path(const char* name) const { return (fs::path(folder_) / name).string(); }
+
+bool RunFolder::has(const char* name) const { return fs::exists(path(name)); }
+
+/** A file of an earlier run that this one does not write again. */
+void RunFolder::remove(const char* name) const {
+    std::error_code ignored;
+    fs::remove(path(name), ignored);
+}
+
+graph::PoseGraph RunFolder::graph() const { return io::loadG2o(path(kGraph)); }
+
+Options RunFolder::options() const {
+    std::ifstream in(path(kConfig), std::ios::binary);
+    if (!in) throw Error("cannot read '" + path(kConfig) + "': no such file, or not readable");
+    std::ostringstream text;
+    text << in.rdbuf();
+    Options options;
+    options.load(text.str());
+    return options;
+}
+
+void RunFolder::writeTrajectories(const RunRecord& record) const {
+    io::writeKitti(record.final, path(kTrajectory));
+    io::writeKitti(record.odometry, path(kOdometry));
+    remove(kTum);
+    if (!record.final.stamps_s.empty()) io::writeTum(record.final, path(kTum));
+    remove(kCam0);
+    if (record.calibration.hasTr && !record.rows.empty())
+        io::writeKitti(io::lidarToCam0(ofSensor(record.final, record.rows), record.calibration.Tr),
+                       path(kCam0));
+}
+
+void RunFolder::writeMap(const RunRecord& record, const map::MapBuilder* map,
+                         const Illustrate& illustrate) const {
+    mrpt::maps::CPointsMapXYZI points;
+    std::vector<Eigen::Isometry3d> keyframes;
+    if (map) {
+        map::saveSimplemap(map->simplemap(record.final.poses), path(kSimplemap));
+        points = map->points(record.final.poses);
+        keyframes = map->keyPoses(record.final.poses);
+        map::savePly(points, path(kPly));
+    }
+    if (illustrate) illustrate(record, points, keyframes, *this);
+}
+
+std::string RunFolder::write(RunRecord record, const map::MapBuilder* map,
+                             const Illustrate& illustrate) const {
+    remove(kSummary);
+    writeTrajectories(record);
+    io::saveG2o(record.graph, path(kGraph));
+    io::saveMrptText(record.graph, path(kMrptGraph));
+    remove(kScans);
+    if (!record.rows.empty()) writeScans(record.rows, path(kScans));
+    io::replaceTextFile(path(kConfig), [&](std::ostream& out) { record.options.write(out); });
+    Stopwatch watch;
+    for (const char* name : {kSimplemap, kPly, kScene, kMapPicture, kTrajectoryPicture})
+        remove(name);
+    try {
+        writeMap(record, map, illustrate);
+    } catch (const Error& e) {
+        // A full disk or a missing renderer: the rest of the results is good all the same.
+        if (record.fault.empty()) record.fault = e.what();
+    }
+    writeSummary(summaryOf(record, watch.lap_ms()), path(kSummary));
+    return record.fault;
+}
+}  // namespace delio::run

@@ -1,0 +1,202 @@
+#include "delio/run/summary.h"
+
+#include <mrpt/core/format.h>
+#include <sys/resource.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <string_view>
+
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
+#include "delio/io/output_file.h"
+#include "delio/version.h"
+
+namespace delio::run {
+namespace {
+Summary::Figures figuresOf(const evaluation::Comparison& comparison) {
+    Summary::Figures figures;
+    const auto put = [&](const char* name, double value) {
+        if (std::isfinite(value)) figures.emplace_back(name, value);  // a short drive has not all
+    };
+    const auto& row = comparison.row;
+    put("length_m", row.length_m);
+    put("segments", static_cast<double>(row.kitti.segments));
+    put("t_percent", row.kitti.t_percent);
+    put("r_deg_per_100m", row.kitti.r_deg_per_100m);
+    put("ape_m", row.ape_m);
+    put("end_error_m", comparison.end_error_m);
+    put("end_error_percent", 100 * comparison.end_error_m / row.length_m);
+    put("scan_translation_median_m", comparison.perScan.translation_m.median);
+    put("scan_translation_p95_m", comparison.perScan.translation_m.p95);
+    put("scan_rotation_median_deg", comparison.perScan.rotation_deg.median);
+    put("scan_rotation_p95_deg", comparison.perScan.rotation_deg.p95);
+    return figures;
+}
+
+/** Sums of the times of all rows, each under its name, in the order of the first row. */
+void add(const std::vector<Named>& times, Summary::Figures& sums) {
+    for (const auto& [name, ms] : times) {
+        const auto sum = std::find_if(sums.begin(), sums.end(), [name = name](const auto& entry) {
+            return entry.first == name;
+        });
+        if (sum == sums.end())
+            sums.emplace_back(name, ms);
+        else
+            sum->second += ms;
+    }
+}
+
+Summary::Figures meanTimes(const RunRecord& record) {
+    Summary::Figures means{{"read", 0}};
+    for (const auto& row : record.rows) {
+        means.front().second += row.read_ms;
+        add(row.report.step.times_ms, means);
+        add(row.report.listeners_ms, means);
+    }
+    for (auto& [name, ms] : means)
+        ms /= static_cast<double>(std::max<std::size_t>(record.rows.size(), 1));
+    return means;
+}
+
+template <typename Flag>
+std::size_t countOf(const RunRecord& record, const Flag& flag) {
+    return static_cast<std::size_t>(
+        std::count_if(record.rows.begin(), record.rows.end(),
+                      [&](const RunRow& row) { return row.report.step.*flag; }));
+}
+
+std::string wordsOf(const std::vector<std::string>& words) {
+    std::string text;
+    for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
+void write(YAML::Emitter& yaml, const char* key, const std::string& text) {
+    yaml << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << text << YAML::Auto;
+}
+void write(YAML::Emitter& yaml, const std::string& key, double value) {
+    yaml << YAML::Key << key << YAML::Value << digitsOf(value);
+}
+void write(YAML::Emitter& yaml, const char* key, const Summary::Figures& figures) {
+    yaml << YAML::Key << key << YAML::Value << YAML::BeginMap;
+    for (const auto& [name, value] : figures) write(yaml, name, value);
+    yaml << YAML::EndMap;
+}
+
+Summary::Figures figuresIn(const YAML::Node& node) {
+    Summary::Figures figures;
+    for (const auto& entry : node)
+        figures.emplace_back(entry.first.as<std::string>(), entry.second.as<double>());
+    return figures;
+}
+}  // namespace
+
+double peakMemory_mb() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+Summary summaryOf(const RunRecord& record, double pictures_ms) {
+    Summary summary;
+    summary.version = kVersion;
+    summary.command = wordsOf(record.command);
+    summary.profile = record.profile;
+    summary.complete = record.complete;
+    summary.fault = record.fault;
+    summary.scans = record.rows.empty() ? record.final.poses.size() : record.rows.size();
+    summary.predicted = countOf(record, &Step::predicted);
+    summary.searched = countOf(record, &Step::searched);
+    summary.deskewed = countOf(record, &Step::deskewed);
+    summary.path_m = record.path_m();
+    summary.vertical_correction_deg = record.options.scan().vertical_correction_deg;
+    summary.ms_per_scan = record.msPerScan();
+    for (const auto& [name, ms] : meanTimes(record))
+        if (name == "map")
+            summary.map_ms_per_scan = ms;
+        else
+            summary.ms_per_scan_of_stages.emplace_back(name, ms);
+    summary.optimisation_ms = record.optimise_ms;
+    summary.optimisation_iterations = record.optimisation.iterations;
+    summary.optimisation_cost_before = record.optimisation.initial_cost;
+    summary.optimisation_cost_after = record.optimisation.final_cost;
+    summary.map_and_pictures_ms = pictures_ms;
+    summary.peak_rss_mb = peakMemory_mb();
+    summary.warnings = record.warnings;
+    if (record.metrics) summary.metrics = figuresOf(*record.metrics);
+    if (record.metricsBefore)
+        summary.metrics_before_optimisation = figuresOf(*record.metricsBefore);
+    return summary;
+}
+
+void writeSummary(const Summary& s, const std::string& path) {
+    YAML::Emitter yaml;
+    yaml << YAML::BeginMap;
+    write(yaml, "version", s.version);
+    write(yaml, "command", s.command);
+    write(yaml, "profile", s.profile);
+    yaml << YAML::Key << "complete" << YAML::Value << s.complete;
+    if (!s.fault.empty()) write(yaml, "fault", s.fault);
+    write(yaml, "scans", static_cast<double>(s.scans));
+    write(yaml, "predicted", static_cast<double>(s.predicted));
+    write(yaml, "searched", static_cast<double>(s.searched));
+    write(yaml, "path_m", s.path_m);
+    write(yaml, "vertical_correction_deg", s.vertical_correction_deg);
+    write(yaml, "deskewed", static_cast<double>(s.deskewed));
+    write(yaml, "ms_per_scan", s.ms_per_scan);
+    write(yaml, "ms_per_scan_of_stages", s.ms_per_scan_of_stages);
+    write(yaml, "map_ms_per_scan", s.map_ms_per_scan);
+    write(yaml, "optimisation_ms", s.optimisation_ms);
+    write(yaml, "optimisation_iterations", s.optimisation_iterations);
+    write(yaml, "optimisation_cost_before", s.optimisation_cost_before);
+    write(yaml, "optimisation_cost_after", s.optimisation_cost_after);
+    write(yaml, "map_and_pictures_ms", s.map_and_pictures_ms);
+    write(yaml, "peak_rss_mb", s.peak_rss_mb);
+    yaml << YAML::Key << "warnings" << YAML::Value;
+    if (s.warnings.empty()) yaml << YAML::Flow;
+    yaml << YAML::BeginSeq;
+    for (const auto& warning : s.warnings) yaml << YAML::DoubleQuoted << warning;
+    yaml << YAML::EndSeq;
+    if (!s.metrics.empty()) write(yaml, "metrics", s.metrics);
+    if (!s.metrics_before_optimisation.empty())
+        write(yaml, "metrics_before_optimisation", s.metrics_before_optimisation);
+    yaml << YAML::EndMap;
+    io::replaceTextFile(path, [&](std::ostream& out) { out << yaml.c_str() << "\n"; });
+}
+
+Summary readSummary(const std::string& path) {
+    try {
+        const YAML::Node node = YAML::LoadFile(path);
+        Summary s;
+        s.version = node["version"].as<std::string>();
+        s.command = node["command"].as<std::string>();
+        s.profile = node["profile"].as<std::string>();
+        s.complete = node["complete"].as<bool>();
+        s.fault = node["fault"].as<std::string>("");
+        s.scans = node["scans"].as<std::size_t>();
+        s.predicted = node["predicted"].as<std::size_t>();
+        s.searched = node["searched"].as<std::size_t>(0);
+        s.deskewed = node["deskewed"].as<std::size_t>();
+        s.path_m = node["path_m"].as<double>();
+        s.vertical_correction_deg = node["vertical_correction_deg"].as<double>();
+        s.ms_per_scan = node["ms_per_scan"].as<double>();
+        s.ms_per_scan_of_stages = figuresIn(node["ms_per_scan_of_stages"]);
+        s.map_ms_per_scan = node["map_ms_per_scan"].as<double>();
+        s.optimisation_ms = node["optimisation_ms"].as<double>();
+        s.optimisation_iterations = node["optimisation_iterations"].as<unsigned>();
+        s.optimisation_cost_before = node["optimisation_cost_before"].as<double>();
+        s.optimisation_cost_after = node["optimisation_cost_after"].as<double>();
+        s.map_and_pictures_ms = node["map_and_pictures_ms"].as<double>();
+        s.peak_rss_mb = node["peak_rss_mb"].as<double>();
+        s.warnings = node["warnings"].as<std::vector<std::string>>();
+        s.metrics = figuresIn(node["metrics"]);
+        s.metrics_before_optimisation = figuresIn(node["metrics_before_optimisation"]);
+        return s;
+    } catch (const std::exception& e) {
+        throw Error("cannot understand '" + path + "': " + plainMessage(e));
+    }
+}
+}  // namespace delio::run

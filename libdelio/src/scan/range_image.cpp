@@ -1,0 +1,53 @@
+#include "delio/scan/range_image.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+namespace delio::scan {
+RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
+    : perRadian_(static_cast<float>(180 / M_PI / cell_deg)),
+      rows_(static_cast<int>(std::lround(180 / cell_deg))),
+      columns_(static_cast<int>(std::lround(360 / cell_deg))),
+      nearest_(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_)) {
+    std::vector<std::size_t> cells(static_cast<std::size_t>(points.cols()));
+    tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
+        const Eigen::Vector3f point = points.col(i);
+        cells[static_cast<std::size_t>(i)] =
+            static_cast<std::size_t>(rowOf(point) * columns_ + columnOf(point));
+    });
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        float& nearest = nearest_[cells[static_cast<std::size_t>(i)]];
+        const float range = points.col(i).norm();
+        if (nearest == 0 || range < nearest) nearest = range;
+    }
+}
+
+int RangeImage::rowOf(const Eigen::Vector3f& point) const {
+    const float elevation = std::atan2(point.z(), point.head<2>().norm());
+    const int row = static_cast<int>((elevation + static_cast<float>(M_PI_2)) * perRadian_);
+    return std::clamp(row, 0, rows_ - 1);
+}
+
+int RangeImage::columnOf(const Eigen::Vector3f& point) const {
+    const float azimuth = std::atan2(point.y(), point.x()) + static_cast<float>(M_PI);
+    return static_cast<int>(azimuth * perRadian_) % columns_;
+}
+
+Place RangeImage::at(const Eigen::Vector3f& point, float margin) const {
+    const float range = point.norm();
+    const int row = rowOf(point), column = columnOf(point);
+    int seen = 0, passed = 0;
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r)
+        for (int c = column - 1; c <= column + 1; ++c) {
+            const float nearest =
+                nearest_[static_cast<std::size_t>(r * columns_ + (c + columns_) % columns_)];
+            if (nearest == 0) continue;
+            if (std::abs(nearest - range) <= margin) return Place::kTaken;
+            ++seen;
+            passed += nearest > range;
+        }
+    constexpr int kEnough = 3;
+    return seen >= kEnough && passed == seen ? Place::kFree : Place::kUnknown;
+}
+}  // namespace delio::scan

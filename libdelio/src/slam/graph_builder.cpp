@@ -1,0 +1,66 @@
+#include "delio/slam/graph_builder.h"
+
+#include <algorithm>
+
+namespace delio {
+GraphBuilder::State GraphBuilder::state() const {
+    const auto& poses = graph_.poses();
+    State state;
+    state.nodes = poses.size();
+    state.firstMoved = poses.size() - std::min<std::size_t>(poses.size(), options_.window);
+    state.moved.assign(poses.begin() + static_cast<std::ptrdiff_t>(state.firstMoved), poses.end());
+    state.recent = recent_;
+    return state;
+}
+
+void GraphBuilder::takeBack(State& state) noexcept {
+    while (graph_.poses().size() > state.nodes) graph_.removeLast();
+    graph_.restore(state.firstMoved, state.moved);
+    recent_.swap(state.recent);
+}
+
+void GraphBuilder::add(const SlamScan& scan) {
+    State before = state();
+    try {
+        append(scan);
+    } catch (...) {
+        takeBack(before);
+        throw;
+    }
+    before_ = std::move(before);
+}
+
+void GraphBuilder::append(const SlamScan& scan) {
+    const Recent latest{scan.node, scan.step.features, scan.scan.sensorPose};
+    if (recent_.empty())
+        graph_.addNode(scan.pose);
+    else {
+        graph_.addNode(graph_.poses().back() * scan.increment.pose);
+        graph_.addEdge({latest.node - 1, latest.node, scan.increment});
+    }
+    if (!scan.step.predicted && latest.features) {
+        const std::size_t before = graph_.edges().size();
+        addSkipEdges(latest);
+        // The chain alone is what the poses were made of: nothing to optimise.
+        if (options_.window > 0 && graph_.edges().size() > before)
+            graph_.optimiseLast(options_.window, options_);
+    }
+    recent_.push_front(latest);
+    if (recent_.size() > options_.skip_edges + 1) recent_.pop_back();
+}
+
+void GraphBuilder::addSkipEdges(const Recent& latest) {
+    const auto& poses = graph_.poses();
+    for (std::size_t i = 1; i < recent_.size(); ++i) {
+        const Recent& earlier = recent_[i];
+        const Eigen::Isometry3d guess = (poses[earlier.node] * earlier.sensorPose).inverse() *
+                                        (poses[latest.node] * latest.sensorPose);
+        const auto link = latest.features->linkTo(*earlier.features, guess);
+        // Where a scan did not register there is nothing to learn beyond the prediction.
+        if (!link) continue;
+        if (link->overlap < options_.min_overlap) break;
+        graph_.addEdge({earlier.node, latest.node,
+                        ofVehicle(link->increment, earlier.sensorPose, latest.sensorPose)});
+    }
+}
+}  // namespace delio

@@ -1,0 +1,37 @@
+#include "delio/slam/map_listener.h"
+
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+
+namespace delio {
+namespace {
+/** The points that were used, with the intensities that the scan came with. */
+mrpt::maps::CPointsMap::Ptr pointsForMap(const Scan& scan, const UsedPoints& used) {
+    using mrpt::maps::CPointsMapXYZI;
+    const auto* bright = dynamic_cast<const CPointsMapXYZI*>(scan.points.get());
+    mrpt::maps::CPointsMap::Ptr points = mrpt::maps::CSimplePointsMap::Create();
+    if (bright) points = CPointsMapXYZI::Create();
+    points->reserve(used.indices.size());
+    for (std::size_t i = 0; i < used.indices.size(); ++i) {
+        const Eigen::Vector3f p = used.points.col(static_cast<Eigen::Index>(i));
+        if (bright)
+            points->insertPointRGB(p.x(), p.y(), p.z(),
+                                   bright->getPointIntensity_fast(used.indices[i]), 0, 0);
+        else
+            points->insertPointFast(p.x(), p.y(), p.z());
+    }
+    return points;
+}
+}  // namespace
+
+void MapListener::add(const SlamScan& scan) {
+    added_ = !scan.step.predicted;
+    if (!added_) return;
+    builder_.add(scan.node, scan.pose, *pointsForMap(scan.scan, scan.step.used),
+                 scan.scan.sensorPose, scan.scan.time, scan.step.used.dynamic);
+}
+
+void MapListener::undo() noexcept {
+    if (added_) builder_.undo();
+}
+}  // namespace delio

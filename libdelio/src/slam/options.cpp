@@ -1,0 +1,131 @@
+#include "delio/slam/options.h"
+
+#include <mrpt/config/CConfigFileMemory.h>
+
+#include <algorithm>
+#include <ostream>
+#include <sstream>
+
+#include "delio/core/error.h"
+#include "profile_texts.h"
+
+namespace delio {
+using mrpt::config::CConfigFileMemory;
+
+namespace {
+/** MRPT's reader passes silently over what it does not understand. */
+void requireIniLines(const std::string& text) {
+    std::istringstream in(text);
+    bool inSection = false;
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+        const auto first = line.find_first_not_of(" \t\r");
+        if (first == line.npos || line[first] == '#' || line[first] == ';') continue;
+        const bool isSection = line[first] == '[' && line.find(']') != line.npos;
+        inSection = inSection || isSection;
+        const auto equals = line.find('=');
+        if (!isSection && (!inSection || equals == line.npos || equals == first))
+            throw Error("options, line " + std::to_string(number) + ": '" + line +
+                        "' is neither [section], 'key = value' inside one, nor a # comment");
+    }
+}
+}  // namespace
+
+Options Options::ofProfile(const std::string& name) {
+    const auto text = profileTexts().find(name);
+    if (text == profileTexts().end()) {
+        std::string known;
+        for (const auto& profile : profileNames()) known += (known.empty() ? "" : ", ") + profile;
+        throw Error("there is no profile '" + name + "'; the profiles are: " + known);
+    }
+    Options options;
+    options.load(text->second);
+    return options;
+}
+
+std::vector<std::string> Options::profileNames() {
+    std::vector<std::string> names;
+    for (const auto& [name, text] : profileTexts()) names.push_back(name);
+    return names;
+}
+
+Options Options::forDrive(const std::string& profile, const std::optional<io::DriveMeta>& meta) {
+    Options options = ofProfile(profile);
+    if (meta) options.adaptTo(*meta);
+    return options;
+}
+
+void Options::adaptTo(const io::DriveMeta& meta) {
+    constexpr double kKittiSweep_s = 0.1;
+    for (auto* scan : {&planes.scan, &paper.scan}) {
+        scan->vertical_correction_deg = meta.verticalCorrectionDeg;
+        scan->deskew = !meta.motionCompensated;
+        scan->sweep_s = meta.source == "kitti-raw" ? kKittiSweep_s : 0;
+    }
+}
+
+StageList Options::allStages() {
+    StageList all{{"odometry", &method}, {"graph", &graph}, {"map", &map}};
+    for (const auto& stage : stagesOf(planes)) all.push_back(stage);
+    for (const auto& stage : stagesOf(paper)) all.push_back(stage);
+    return all;
+}
+
+ConstStageList Options::stages() const {
+    auto used = stagesOf(*this);
+    used.emplace_back("graph", &graph);
+    used.emplace_back("map", &map);
+    return used;
+}
+
+void Options::load(const std::string& iniText) {
+    requireIniLines(iniText);
+    const CConfigFileMemory config(iniText);
+    std::vector<std::string> sections;
+    config.getAllSections(sections);
+    const auto known = allStages();
+    for (const auto& section : sections) {
+        bool exists = false;
+        for (const auto& [name, stage] : known) {
+            if (name != section) continue;
+            stage->loadFromConfigFile(config, section);
+            exists = true;
+        }
+        if (!exists) throw Error("options section [" + section + "] does not exist");
+        given_.insert(section);
+    }
+}
+
+void Options::set(const std::string& assignment) {
+    const auto dot = assignment.find('.');
+    const auto equals = assignment.find('=');
+    // A key that begins like a comment or a section would be one.
+    if (equals == assignment.npos || dot > equals || dot + 1 == equals ||
+        std::string("#;[").find(assignment[dot + 1]) != std::string::npos)
+        throw Error("'" + assignment + "' is not of the form section.key=value");
+    load("[" + assignment.substr(0, dot) + "]\n" + assignment.substr(dot + 1) + "\n");
+}
+
+void Options::check() const {
+    const auto used = stages();
+    for (const auto& [section, stage] : used) stage->check(section);
+    for (const auto& section : given_)
+        if (std::none_of(used.begin(), used.end(),
+                         [&](const auto& stage) { return stage.first == section; }))
+            throw Error("options section [" + section + "] has no effect: odometry.method is '" +
+                        method.method + "'");
+}
+
+void Options::write(std::ostream& out) const {
+    const char* separator = "";
+    for (const auto& [section, stage] : stages()) {
+        out << separator;
+        stage->write(out, section);
+        separator = "\n";
+    }
+}
+
+bool Options::sets(const std::string& iniText, const std::string& section, const std::string& key) {
+    return CConfigFileMemory(iniText).keyExists(section, key);
+}
+}  // namespace delio

@@ -1,0 +1,49 @@
+#include "delio/slam/slam.h"
+
+#include "delio/core/stopwatch.h"
+
+namespace delio {
+void Slam::attach(std::shared_ptr<SlamListener> listener) {
+    listeners_.push_back(std::move(listener));
+}
+
+/** All listeners are told, or none. */
+void Slam::tell(const SlamScan& scan, ScanReport& report) {
+    std::size_t told = 0;
+    try {
+        for (; told < listeners_.size(); ++told) {
+            report.listeners_ms.emplace_back(listeners_[told]->name(), 0);
+            timed(report.listeners_ms.back().second, [&] { listeners_[told]->add(scan); });
+        }
+    } catch (...) {
+        while (told > 0) listeners_[--told]->undo();
+        throw;
+    }
+}
+
+ScanReport Slam::process(const Scan& scan) {
+    ScanReport report{odometry_->process(scan), {}};
+    auto& [poses, stamps_s] = trajectory_;
+    const std::size_t node = poses.size();
+    Increment increment;  // since the last scan that was taken
+    SlamScan told{node, scan, report.step, {}, Eigen::Isometry3d::Identity()};
+    if (node > 0) {
+        increment = refused_ ? chained(*refused_, report.step.increment) : report.step.increment;
+        told.increment = ofVehicle(increment, sensorPose_, scan.sensorPose);
+        told.pose = poses.back() * told.increment.pose;
+    }
+    try {
+        poses.push_back(told.pose);
+        stamps_s.push_back(scan.stamp_s);
+        tell(told, report);
+    } catch (...) {
+        poses.resize(node);
+        stamps_s.resize(node);
+        if (node > 0) refused_ = increment;
+        throw;
+    }
+    sensorPose_ = scan.sensorPose;
+    refused_.reset();
+    return report;
+}
+}  // namespace delio

@@ -1,0 +1,104 @@
+#include "delio/surfaces/normals.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "../surfaces/kd_tree.h"
+#include "delio/scan/voxel_grid.h"
+
+namespace delio::surfaces {
+namespace {
+enum class Shape : unsigned char { kPlane, kLine, kRough };
+
+struct Neighbourhood {
+    Shape shape = Shape::kRough;
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    float planarity = 0;
+};
+
+Neighbourhood examine(const Eigen::Matrix3Xf& points, const Eigen::Vector3f& centre,
+                      const KdTree& tree, const NormalsOptions& options) {
+    std::vector<std::uint32_t> indices(options.neighbours);
+    std::vector<float> distances(options.neighbours);
+    const std::size_t found =
+        tree.nearest(centre, options.neighbours, indices.data(), distances.data());
+    const double reach = options.max_radius * options.max_radius;
+    // Relative to the query point: float keeps its digits there.
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+    float count = 0;
+    for (std::size_t i = 0; i < found && distances[i] <= static_cast<float>(reach); ++i) {
+        const Eigen::Vector3f p = points.col(indices[i]) - centre;
+        sum += p;
+        squares += p * p.transpose();
+        count += 1;
+    }
+    Neighbourhood result;
+    if (count < 5) return result;  // three points always lie in a plane
+    const Eigen::Vector3f mean = sum / count;
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> pca;
+    pca.computeDirect(squares / count - mean * mean.transpose());
+    // Ascending: thickness, breadth and length of the neighbourhood, squared.
+    const Eigen::Vector3f size = pca.eigenvalues().cwiseMax(0.0F).cwiseSqrt();
+    if (!(size[2] > 0) || size[1] < static_cast<float>(options.min_breadth) * size[2]) {
+        result.shape = Shape::kLine;
+        return result;
+    }
+    const float thickness = size[0] / size[1];
+    if (thickness > static_cast<float>(options.max_thickness)) return result;
+    result.shape = Shape::kPlane;
+    result.planarity = 1 - thickness;
+    result.normal = pca.eigenvectors().col(0).normalized();
+    if (result.normal.dot(centre) > 0) result.normal = -result.normal;
+    return result;
+}
+}  // namespace
+
+std::vector<OptionField> NormalsOptions::fields() const {
+    return {
+        {"voxel_size", &NormalsOptions::voxel_size,
+         "m; the cloud is thinned to one point a voxel first", 0.01, 10},
+        {"neighbours", &NormalsOptions::neighbours, "nearest neighbours that a normal is made of",
+         5, 1000},
+        {"max_radius", &NormalsOptions::max_radius, "m; neighbours farther than this are not used",
+         0.01, 100},
+        {"min_breadth", &NormalsOptions::min_breadth,
+         "smallest breadth/length of a neighbourhood; less is a line (one ring), no surface", 0, 1},
+        {"max_thickness", &NormalsOptions::max_thickness,
+         "largest thickness/breadth of a neighbourhood; more is no plane", 0, 1}};
+}
+
+SurfaceNormals estimateNormals(const Eigen::Matrix3Xf& points, const NormalsOptions& options) {
+    const Eigen::Matrix3Xf thinned = scan::voxelCentroids(points, options.voxel_size);
+    const KdTree tree(thinned);
+    std::vector<Neighbourhood> found(static_cast<std::size_t>(thinned.cols()));
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, found.size(), 256),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i != range.end(); ++i)
+                              found[i] = examine(thinned, thinned.col(static_cast<Eigen::Index>(i)),
+                                                 tree, options);
+                      });
+    SurfaceNormals result;
+    result.neighbourhoods = found.size();
+    result.directions.resize(3, thinned.cols());
+    result.points.resize(3, thinned.cols());
+    result.planarity.resize(thinned.cols());
+    Eigen::Index kept = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const auto& neighbourhood = found[i];
+        result.lines += neighbourhood.shape == Shape::kLine;
+        result.rough += neighbourhood.shape == Shape::kRough;
+        if (neighbourhood.shape != Shape::kPlane) continue;
+        result.directions.col(kept) = neighbourhood.normal;
+        result.planarity[kept] = neighbourhood.planarity;
+        result.points.col(kept) = thinned.col(static_cast<Eigen::Index>(i));
+        ++kept;
+    }
+    result.directions.conservativeResize(3, kept);
+    result.points.conservativeResize(3, kept);
+    result.planarity.conservativeResize(kept);
+    return result;
+}
+}  // namespace delio::surfaces

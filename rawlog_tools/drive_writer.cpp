@@ -1,0 +1,124 @@
+#include "drive_writer.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "cam0_pose.h"
+#include "cli.h"
+#include "delio/core/error.h"
+#include "delio/core/geometry.h"
+#include "delio/io/trajectory.h"
+#include "delio/version.h"
+
+namespace delio::synth {
+namespace {
+// KITTI's axes (x right, y down, z forward) and about its lever arm from LiDAR to cam0.
+const char* const kCalib = "Tr: 0 -1 0 0 0 0 -1 -0.08 1 0 0 -0.27\n";
+const char* const kLabel = "velodyne";
+const char* const kFaultsHeader =
+    "# Scans of the drive that did not arrive as they were. drive_scan counts the scans of the\n"
+    "# drive (ten a second), scan those in the rawlog and the rows of times and poses, from 0.\n"
+    "# dropped: nothing is in the rawlog, nor has it a row of times and poses (scan is -).\n"
+    "# repeated: the points of the scan before it in the rawlog once more, under its own stamp;\n"
+    "#   its pose is where the vehicle was at that stamp.\n"
+    "# empty: no points.\n"
+    "drive_scan\tscan\tkind\n";
+
+std::string timeRow(std::size_t scan) {
+    char row[32];
+    std::snprintf(row, sizeof(row), "%.6f\n", kScanPeriod_s * static_cast<double>(scan));
+    return row;
+}
+
+template <typename Value>
+void writeValues(const std::string& path, const std::vector<Value>& values) {
+    std::ofstream out(path, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(values.data()),
+              static_cast<std::streamsize>(values.size() * sizeof(Value)));
+    if (!out.flush()) throw Error("cannot write '" + path + "': is the disk full?");
+}
+}  // namespace
+
+Eigen::Isometry3d lidarToCam0() {
+    Eigen::Matrix3d R;
+    R << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+    return isometry(R, {0, -0.08, -0.27});
+}
+
+DriveWriter::DriveWriter(const DriveRequest& request, const Scene& scene, const Drive& drive)
+    : request_(request),
+      drive_(drive),
+      traffic_(scene.road(), drive, request.movers, request.scanner.seed),
+      trafficCaster_(traffic_),
+      window_(scene, caster_),
+      scanner_(caster_, &trafficCaster_, request.sensor, request.scanner),
+      writer_(request.output, kLabel, request.embed, request.force),
+      faults_(kFaultsHeader) {}
+
+int DriveWriter::write() {
+    if (traffic_.size() < request_.movers)
+        cli::warn("the road has room for " + std::to_string(traffic_.size()) + " movers, not for " +
+                  std::to_string(request_.movers));
+    {
+        cli::Progress progress("simulating", drive_.scans());
+        for (std::size_t scan = 0; scan < drive_.scans(); ++scan) {
+            if (cli::interrupted()) return cli::kExitInterrupted;
+            writeScan(scan);
+            progress.update(scan + 1);
+        }
+    }
+    finish();
+    return cli::kExitSuccess;
+}
+
+void DriveWriter::writeScan(std::size_t scan) {
+    const Fault fault = faultOf(request_.faults, scan, request_.scanner.seed);
+    if (fault != Fault::kNone) {
+        const std::string written =
+            fault == Fault::kDropped ? "-" : std::to_string(writer_.scans());
+        faults_ += std::to_string(scan) + "\t" + written + "\t" + nameOf(fault) + "\n";
+    }
+    if (fault == Fault::kDropped) return;
+    if (fault == Fault::kEmpty) last_ = {};
+    if (fault == Fault::kNone) last_ = simulate(scan);
+    add(scan, last_);
+}
+
+ScanPoints DriveWriter::simulate(std::size_t scan) {
+    window_.moveTo(drive_.station(scan));
+    return scanner_.scan(
+        sweepOf(drive_, scan, request_.sensor, request_.distort, request_.scanner.seed), scan);
+}
+
+void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
+    writeValues(writer_.extraFile(".ring"), points.ring);
+    if (request_.distort) writeValues(writer_.extraFile(".time"), points.time_s);
+    if (request_.labels) writeValues(writer_.extraFile(".label"), points.label);
+    writer_.add(kScanPeriod_s * static_cast<double>(scan), io::kDriveEpoch_s, points.xyzi);
+    times_ += timeRow(scan);
+    poses_ += poseRow(scan);
+}
+
+/** Where the LiDAR is at the scan's stamp, relative to the first scan, as cam0's: a row of KITTI's
+ *  poses.txt. */
+std::string DriveWriter::poseRow(std::size_t scan) const {
+    Eigen::Isometry3d relative = Eigen::Isometry3d::Identity();
+    if (scan > 0)  // the first is the identity to the last digit
+        relative = drive_.lidarPose(0).inverse() * drive_.lidarPose(scan);
+    return io::kittiRow(cam0PoseOf(relative, lidarToCam0()));
+}
+
+void DriveWriter::finish() {
+    io::DriveMeta meta;
+    meta.sensorModel = request_.sensor.name;
+    meta.source = "synthetic";
+    meta.motionCompensated = !request_.distort;
+    meta.epoch_s = io::kDriveEpoch_s;
+    meta.generator = std::string("synth2rawlog 2 (delio ") + kVersion + ")";
+    writer_.finish(meta, times_, kCalib, poses_, faults_);
+    cli::inform("wrote " + std::to_string(writer_.scans()) + " scans, " +
+                std::to_string(std::lround(drive_.station(drive_.scans() - 1))) + " m, to '" +
+                request_.output + "'");
+}
+}  // namespace delio::synth

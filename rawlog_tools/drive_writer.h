@@ -1,0 +1,58 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <string>
+
+#include "delio/io/rawlog_writer.h"
+#include "drive.h"
+#include "faults.h"
+#include "ray_caster.h"
+#include "scanner.h"
+#include "scene.h"
+#include "tile_window.h"
+#include "traffic.h"
+#include "traffic_caster.h"
+
+namespace delio::synth {
+struct DriveRequest {
+    std::string output;  //!< OUT.rawlog
+    SensorModel sensor;
+    ScannerOptions scanner;
+    std::size_t movers = 0;
+    FaultRates faults;
+    bool distort = false;  //!< every column is fired on the way: OUT_Images/NNNNNN.time says when
+    bool labels = false;   //!< OUT_Images/NNNNNN.label says which points move
+    bool embed = false, force = false;
+};
+
+/** KITTI's Tr for the synthetic vehicle: LiDAR coordinates to cam0's. */
+Eigen::Isometry3d lidarToCam0();
+
+/** Drives through a scene and writes what the sensor sees, with the truth: the rawlog and all of
+ *  its side files. Memory does not grow with the drive but for the text of the side files. */
+class DriveWriter {
+ public:
+    DriveWriter(const DriveRequest& request, const Scene& scene, const Drive& drive);
+
+    /** The tool's exit code. */
+    int write();
+
+ private:
+    void writeScan(std::size_t scan);
+    void add(std::size_t scan, const ScanPoints& points);
+    ScanPoints simulate(std::size_t scan);
+    std::string poseRow(std::size_t scan) const;
+    void finish();
+
+    const DriveRequest& request_;
+    const Drive& drive_;
+    Traffic traffic_;
+    TrafficCaster trafficCaster_;
+    RayCaster caster_;
+    TileWindow window_;
+    Scanner scanner_;
+    io::RawlogWriter writer_;
+    ScanPoints last_;  //!< what a repeated scan repeats
+    std::string times_, poses_, faults_;
+};
+}  // namespace delio::synth

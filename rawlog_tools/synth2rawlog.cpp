@@ -1,0 +1,164 @@
+// synth2rawlog: a drive through a made-up world, with ground truth, as an MRPT rawlog.
+#include <mrpt/3rdparty/tclap/CmdLine.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "cli.h"
+#include "delio/version.h"
+#include "drive.h"
+#include "drive_writer.h"
+#include "make_scene.h"
+
+namespace {
+using namespace delio;
+using namespace delio::synth;
+
+std::optional<SensorModel> findSensor(const std::string& option) {
+    for (auto& model : sensorModels())
+        if (model.option == option) return model;
+    return std::nullopt;
+}
+
+std::string sensorOptions() {
+    std::string names;
+    for (const auto& model : sensorModels()) names += (names.empty() ? "" : ", ") + model.option;
+    return names;
+}
+
+std::string sceneOptions() {
+    std::string names;
+    for (const auto& name : sceneNames()) names += (names.empty() ? "" : ", ") + name;
+    return names;
+}
+
+/** A distance that has to be 0 or more. */
+bool isMetres(double value) { return value >= 0 && std::isfinite(value); }
+
+bool isRate(double value) { return value >= 0 && value < 1; }
+
+/** The command line. */
+struct Arguments {
+    TCLAP::CmdLine cmd{"synth2rawlog: a drive through a made-up world, with ground truth", ' ',
+                       kVersion};
+    TCLAP::ValueArg<std::string> output{"o",          "output", "Rawlog to write", true, "",
+                                        "OUT.rawlog", cmd};
+    TCLAP::ValueArg<std::string> scene{"",     "scene", "Scene: " + sceneOptions(), true, "",
+                                       "NAME", cmd};
+    TCLAP::ValueArg<int> scans{"", "scans", "Number of scans, ten a second", true, 0, "N", cmd};
+    TCLAP::ValueArg<int> seed{"", "seed", "Another seed, another drive", false, 1, "S", cmd};
+    TCLAP::ValueArg<std::string> trajectory{
+        "",
+        "trajectory",
+        "KITTI poses (cam0, 12 numbers a line, ten a second) to drive along: at scan i the vehicle "
+        "is where pose i is, seen from above; heights, pitch and roll are those of the made-up "
+        "ground. The drive ends where the poses end. For urban, rural and highway",
+        false,
+        "",
+        "POSES.txt",
+        cmd};
+    TCLAP::ValueArg<std::string> sensor{
+        "", "sensor", "Sensor: " + sensorOptions(), false, "hdl64e", "NAME", cmd};
+    TCLAP::ValueArg<double> noise{
+        "", "noise", "Range noise, standard deviation in metres", false, 0.01, "M", cmd};
+    TCLAP::ValueArg<double> ringBias{
+        "",    "ring-bias", "Constant range error of each laser, standard deviation in metres",
+        false, 0,           "M",
+        cmd};
+    TCLAP::ValueArg<int> movers{
+        "", "movers", "Cars, cyclists and pedestrians near the vehicle", false, 0, "N", cmd};
+    TCLAP::SwitchArg distort{"", "distort",
+                             "Leave the vehicle's motion in the scans; OUT_Images/*.time: when "
+                             "each point was measured, float32 seconds from the scan's stamp",
+                             cmd};
+    TCLAP::SwitchArg labels{"", "labels", "OUT_Images/*.label: uint8 a point, 1 where it moves",
+                            cmd};
+    TCLAP::ValueArg<double> drop{"",  "drop-rate", "Share of scans that are lost", false, 0,
+                                 "R", cmd};
+    TCLAP::ValueArg<double> repeat{
+        "", "repeat-rate", "Share of scans that bring the points of the scan before", false, 0, "R",
+        cmd};
+    TCLAP::ValueArg<double> empty{"",  "empty-rate", "Share of scans without points", false, 0,
+                                  "R", cmd};
+    TCLAP::SwitchArg embed{"", "embed", "Keep the points in the rawlog, not in OUT_Images/", cmd};
+    TCLAP::ValueArg<int> threads{"", "threads", "Threads; 0: one per core", false, 0, "N", cmd};
+    TCLAP::SwitchArg force{"", "force", "Overwrite what exists", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "Say more", cmd};
+};
+
+/** Why a scene cannot be made as asked; empty: it can. */
+std::string faultInScene(Arguments& args) {
+    const std::string& scene = args.scene.getValue();
+    const auto names = sceneNames();
+    if (std::find(names.begin(), names.end(), scene) == names.end())
+        return "there is no scene '" + scene + "'; there are: " + sceneOptions();
+    if (!args.trajectory.isSet()) return "";
+    if (args.trajectory.getValue().empty()) return "--trajectory needs the name of a file";
+    if (!takesTrajectory(scene))
+        return "--trajectory does not go with --scene " + scene + ", which has a path of its own";
+    return "";
+}
+
+/** The same of sensor and drive. */
+std::string faultInDrive(Arguments& args) {
+    if (!findSensor(args.sensor.getValue()))
+        return "there is no sensor '" + args.sensor.getValue() + "'; there is: " + sensorOptions();
+    if (args.scans.getValue() < 1) return "--scans has to be 1 or more";
+    if (args.seed.getValue() < 0) return "--seed has to be 0 or more";
+    if (!isMetres(args.noise.getValue())) return "--noise has to be 0 or more metres";
+    if (!isMetres(args.ringBias.getValue())) return "--ring-bias has to be 0 or more metres";
+    if (args.movers.getValue() < 0) return "--movers has to be 0 or more";
+    for (auto* rate : {&args.drop, &args.repeat, &args.empty})
+        if (!isRate(rate->getValue()))
+            return "--" + rate->getName() + " has to be 0 or more and below 1";
+    if (args.threads.getValue() < 0) return "--threads has to be 0 or more";
+    return "";
+}
+
+DriveRequest requestOf(Arguments& args) {
+    DriveRequest request;
+    request.output = args.output.getValue();
+    request.sensor = *findSensor(args.sensor.getValue());
+    request.scanner.noise_m = args.noise.getValue();
+    request.scanner.ringBias_m = args.ringBias.getValue();
+    request.scanner.seed = static_cast<std::uint64_t>(args.seed.getValue());
+    request.scanner.threads = args.threads.getValue();
+    if (request.scanner.threads == 0)
+        request.scanner.threads =
+            static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    request.movers = static_cast<std::size_t>(args.movers.getValue());
+    request.faults = {args.drop.getValue(), args.repeat.getValue(), args.empty.getValue()};
+    request.distort = args.distort.getValue();
+    request.labels = args.labels.getValue();
+    request.embed = args.embed.getValue();
+    request.force = args.force.getValue();
+    return request;
+}
+
+int makeDrive(Arguments& args) {
+    std::string fault = faultInScene(args);
+    if (fault.empty()) fault = faultInDrive(args);
+    if (!fault.empty()) {
+        cli::inform(fault + "; see --help");
+        return cli::kExitBadCommandLine;
+    }
+    cli::catchInterrupts();
+    const DriveRequest request = requestOf(args);
+    const auto count = static_cast<std::size_t>(args.scans.getValue());
+    const auto world = makeScene({args.scene.getValue(), request.scanner.seed, count,
+                                  args.trajectory.getValue(), lidarToCam0()});
+    const Drive drive(world->road(), count, request.scanner.seed);
+    if (drive.scans() < count)
+        cli::warn("the trajectory ends after " + std::to_string(drive.scans()) + " of " +
+                  std::to_string(count) + " scans; so does the drive");
+    return DriveWriter(request, *world, drive).write();
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+    Arguments args;
+    return cli::run(args.cmd, argc, argv, args.verbose, [&] { return makeDrive(args); });
+}

@@ -1,0 +1,83 @@
+#include "make_scene.h"
+
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+
+#include "block_path.h"
+#include "country_paths.h"
+#include "delio/core/error.h"
+#include "drive.h"
+#include "highway_scene.h"
+#include "recording.h"
+#include "rural_scene.h"
+#include "tunnel_scene.h"
+#include "urban_scene.h"
+
+namespace delio::synth {
+namespace {
+struct Kind {
+    std::string name;
+    RoadProfile profile;
+    std::function<Path(std::uint64_t seed, double length_m)> path;
+    std::function<std::unique_ptr<Scene>(Road road, std::uint64_t seed)> build;
+    bool takesTrajectory;
+};
+
+template <typename Built>
+std::unique_ptr<Scene> build(Road road, std::uint64_t seed) {
+    return std::make_unique<Built>(std::move(road), seed);
+}
+
+std::vector<Kind> kinds() {
+    const auto straight = [](std::uint64_t, double length_m) { return straightPath(length_m); };
+    const auto block = [](std::uint64_t seed, double length_m) {
+        return blockPath(seed, length_m, blockProfile().lanes.front().side_m);
+    };
+    return {{"urban", urbanProfile(), urbanPath, build<UrbanScene>, true},
+            {"rural", ruralProfile(), ruralPath, build<RuralScene>, true},
+            {"highway", highwayProfile(), highwayPath, build<HighwayScene>, true},
+            {"loop", blockProfile(), block, build<UrbanScene>, false},
+            {"tunnel", tunnelProfile(), straight, build<TunnelScene>, false}};
+}
+
+Kind kindOf(const std::string& name) {
+    for (auto& kind : kinds())
+        if (kind.name == name) return kind;
+    throw std::invalid_argument("no scene '" + name + "'");
+}
+/** The middle of a wide road lies far to the left of the vehicle: in a sharp turn it would run
+ *  backwards. */
+void refuseSharpTurns(const Recording& recording, const Kind& kind, const std::string& file) {
+    const double toCentre_m = -kind.profile.lanes.front().side_m;
+    for (double s = 0; s < recording.path().end() - 2 * kPathMargin_m; s += 1)
+        if (recording.path().at(s).curvature * toCentre_m > 0.5)
+            throw Error("'" + file + "' turns too sharply for a " + kind.name + ", " +
+                        std::to_string(std::lround(s)) + " m from its start; use --scene urban");
+}
+}  // namespace
+
+std::vector<std::string> sceneNames() {
+    std::vector<std::string> names;
+    for (const auto& kind : kinds()) names.push_back(kind.name);
+    return names;
+}
+
+bool takesTrajectory(const std::string& sceneName) { return kindOf(sceneName).takesTrajectory; }
+
+std::unique_ptr<Scene> makeScene(const SceneRequest& request) {
+    const Kind kind = kindOf(request.name);
+    if (!request.trajectory.empty()) {
+        const auto recording =
+            std::make_shared<const Recording>(request.trajectory, request.lidarToCam0);
+        refuseSharpTurns(*recording, kind, request.trajectory);
+        return kind.build(Road(recording->path(), request.seed, kind.profile, recording),
+                          request.seed);
+    }
+    const double longest_m =
+        kind.profile.style.fastest_m_s * kScanPeriod_s * static_cast<double>(request.scans);
+    return kind.build(Road(kind.path(request.seed, longest_m), request.seed, kind.profile),
+                      request.seed);
+}
+}  // namespace delio::synth

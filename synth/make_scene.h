@@ -1,0 +1,26 @@
+#pragma once
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene.h"
+
+namespace delio::synth {
+struct SceneRequest {
+    std::string name;
+    std::uint64_t seed = 0;
+    std::size_t scans = 0;   //!< the world reaches beyond them
+    std::string trajectory;  //!< a file of KITTI poses of cam0 to drive along; empty: none
+    Eigen::Isometry3d lidarToCam0 = Eigen::Isometry3d::Identity();
+};
+
+/** What --scene can be. */
+std::vector<std::string> sceneNames();
+/** Whether a world of that name can be grown around a given trajectory. */
+bool takesTrajectory(const std::string& sceneName);
+/** The name has to be one of sceneNames(). Throws Error for a trajectory that cannot be driven. */
+std::unique_ptr<Scene> makeScene(const SceneRequest& request);
+}  // namespace delio::synth

@@ -1,0 +1,115 @@
+#include "delio/movers/dynamic_objects.h"
+
+#include <gtest/gtest.h>
+
+#include "delio/scan/voxel_grid.h"
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using movers::DynamicObjects;
+using mrpt::poses::CPose3D;
+
+/** A street of houses and parked cars along x, without an end that matters. */
+test::Scene street() {
+    test::Scene scene = {{{-200, -50, -3}, {500, 50, -1.8}}};
+    for (int i = -10; i < 40; ++i) {
+        const double x = 12 * i + 3 * (i % 3);
+        scene.push_back({{x, 9, -1.8}, {x + 8, 20, 4.0 + i % 4}});
+        scene.push_back({{x + 4, -22, -1.8}, {x + 11, -10, 5}});
+        if (i % 2) scene.push_back({{x, -7, -1.8}, {x + 4, -5.2, -0.3}});
+    }
+    return scene;
+}
+
+test::Block van(double x, double y) { return {{x, y - 1, -1.6}, {x + 5, y + 1, 0.2}}; }
+
+bool isIn(const test::Block& block, const Eigen::Vector3d& point) {
+    constexpr double kNear = 0.15;
+    return ((point - block.low).array() > -kNear).all() &&
+           ((point - block.high).array() < kNear).all();
+}
+
+/** How much of a moving block was told, and how much else, in a drive along x. */
+class MovingObjectsInAStreet : public testing::Test {
+ protected:
+    /** One scan more, `step_s` after the one before. `things`: in the world. */
+    void look(const CPose3D& pose, const test::Scene& things, double step_s = 0.1) {
+        test::Scene scene = street();
+        scene.insert(scene.end(), things.begin(), things.end());
+        const auto all = ringScan(scene, pose, {48, 900, -24, 4, 0.02}, noise_).points;
+        const auto points = scan::voxelCentroids(all, 0.25);
+        stamp_s_ += step_s;
+        const auto told = objects_.find(points, all, pose, stamp_s_);
+        objects_.remember(pose);
+        found_ = missed_ = wrong_ = 0;
+        for (Eigen::Index i = 0; i < points.cols(); ++i) {
+            const Eigen::Vector3d point =
+                pose.getRotationMatrix().asEigen() * points.col(i).cast<double>() +
+                Eigen::Vector3d(pose.x(), pose.y(), pose.z());
+            const bool moves = std::any_of(things.begin(), things.end(),
+                                           [&](const auto& thing) { return isIn(thing, point); });
+            const bool wasTold = told[static_cast<std::size_t>(i)] != 0;
+            found_ += moves && wasTold;
+            missed_ += moves && !wasTold && point.z() > -1.4;  // lower is ground
+            wrong_ += !moves && wasTold;
+        }
+    }
+
+    test::Noise noise_;
+    DynamicObjects objects_{{}, {}};
+    double stamp_s_ = 0;
+    int found_ = 0, missed_ = 0, wrong_ = 0;
+};
+
+TEST_F(MovingObjectsInAStreet, AVanThatStaysFiveMetresAheadForAHundredScans) {
+    int found = 0, missed = 0, wrong = 0;
+    for (int i = 0; i < 100; ++i) {
+        look(CPose3D(0.9 * i, 0, 0, 0, 0, 0), {van(0.9 * i + 5, 0)});
+        if (i < 5) continue;
+        found += found_;
+        missed += missed_;
+        wrong += wrong_;
+    }
+    EXPECT_GT(found, 90 * 100);
+    EXPECT_LT(missed, 0.1 * found);
+    EXPECT_LT(wrong, 0.02 * found);
+}
+
+TEST_F(MovingObjectsInAStreet, OncomingAndCrossingOnesAreToldWithinThreeScans) {
+    for (int i = 0; i < 8; ++i) {
+        const double ahead = 0.5 * i;
+        look(CPose3D(ahead, 0, 0, 0.002 * i, 0, 0), {van(25 - 1.2 * i, 3), van(8, -4 + 0.7 * i)});
+        if (i < 3) continue;
+        EXPECT_GT(found_, 100) << i;
+        EXPECT_LT(missed_, 0.2 * found_) << i;
+        EXPECT_LT(wrong_, 0.05 * found_) << i;
+    }
+}
+
+TEST_F(MovingObjectsInAStreet, WhereNothingMovesNothingIsTold) {
+    for (int i = 0; i < 20; ++i) {
+        look(CPose3D(0.9 * i, 0.05 * i, 0, 0.01 * i, 0, 0), {});
+        EXPECT_LT(wrong_, 20) << i;
+    }
+    for (int i = 0; i < 3; ++i) {  // the vehicle stands
+        look(CPose3D(17.1, 0.95, 0, 0.19, 0, 0), {});
+        EXPECT_LT(wrong_, 20) << i;
+    }
+}
+
+TEST_F(MovingObjectsInAStreet, AVanThatHasStoppedIsPartOfTheStreetAgain) {
+    for (int i = 0; i < 6; ++i) look(CPose3D(0.5 * i, 0, 0, 0, 0, 0), {van(20 - i, 3)});
+    EXPECT_GT(found_, 100);
+    for (int i = 0; i < 12; ++i) look(CPose3D(3, 0, 0, 0, 0, 0), {van(14, 3)});
+    EXPECT_EQ(found_, 0);
+}
+
+TEST_F(MovingObjectsInAStreet, NothingIsToldByTheFirstScanOrAfterAPause) {
+    look({}, {van(20, 3)});
+    EXPECT_EQ(found_ + wrong_, 0);
+    look({}, {van(19, 3)});
+    look({}, {van(12, 3)}, 30);
+    EXPECT_EQ(found_ + wrong_, 0);
+}
+}  // namespace

@@ -1,0 +1,149 @@
+#include "delio/paper/outlier_removal.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using paper::OutlierRemovalOptions;
+using paper::removeOutliers;
+using surfaces::SurfaceNormals;
+
+constexpr Eigen::Index kBlob = 600, kScattered = 30;
+
+/** Normals within some 6 deg of an axis, then scattered ones far from it. The planarities are the
+ *  column's number, so that each normal can be told afterwards. */
+SurfaceNormals blobAndScattered() {
+    test::Noise noise;
+    SurfaceNormals normals;
+    normals.directions.resize(3, kBlob + kScattered);
+    normals.planarity = Eigen::VectorXf::LinSpaced(kBlob + kScattered, 0, kBlob + kScattered - 1);
+    for (Eigen::Index i = 0; i < kBlob + kScattered;) {
+        const Eigen::Vector3d n =
+            i < kBlob ? Eigen::Vector3d(Eigen::Vector3d(0, 0, 1) + 0.03 * noise.normals())
+                      : noise.direction();
+        if (i >= kBlob && n.z() > 0.8) continue;
+        normals.directions.col(i++) = n.normalized().cast<float>();
+    }
+    return normals;
+}
+
+/** Columns that one round keeps, the plainest way. */
+std::vector<float> keptOfOneRound(const SurfaceNormals& normals, std::size_t k, double alpha) {
+    const Eigen::Matrix3Xd n = normals.directions.cast<double>();
+    Eigen::VectorXd means(n.cols());
+    for (Eigen::Index i = 0; i < n.cols(); ++i) {
+        std::vector<double> distances;
+        for (Eigen::Index j = 0; j < n.cols(); ++j)
+            if (j != i) distances.push_back((n.col(i) - n.col(j)).norm());
+        std::sort(distances.begin(), distances.end());
+        distances.resize(std::min(k, distances.size()));
+        double sum = 0;
+        for (const double d : distances) sum += d;
+        means[i] = sum / static_cast<double>(distances.size());
+    }
+    const double mean = means.mean(), sigma = std::sqrt((means.array() - mean).square().mean());
+    std::vector<float> kept;
+    for (Eigen::Index i = 0; i < n.cols(); ++i)
+        if (means[i] <= mean + alpha * sigma) kept.push_back(normals.planarity[i]);
+    return kept;
+}
+
+std::vector<float> keptOf(const paper::Pattern& pattern) {
+    return {pattern.weights.data(), pattern.weights.data() + pattern.weights.size()};
+}
+
+OutlierRemovalOptions rounds(unsigned count, unsigned first = 40, unsigned last = 10) {
+    OutlierRemovalOptions options;
+    options.rounds = count;
+    options.first_neighbours = first;
+    options.last_neighbours = last;
+    return options;
+}
+
+TEST(OutlierRemoval, ScatteredNormalsGoAndABlobStays) {
+    const auto normals = blobAndScattered();
+    const auto pattern = removeOutliers(normals, {});
+    const auto kept = keptOf(pattern);
+    const auto ofBlob = std::count_if(kept.begin(), kept.end(), [](float i) { return i < kBlob; });
+    EXPECT_EQ(static_cast<Eigen::Index>(kept.size()) - ofBlob, 0);
+    EXPECT_GT(static_cast<double>(ofBlob), 0.85 * kBlob);  // three rounds of two sigmas
+    EXPECT_EQ(pattern.removed + kept.size(), static_cast<std::size_t>(kBlob + kScattered));
+    // Each keeps its own direction.
+    for (Eigen::Index i = 0; i < pattern.directions.cols(); ++i)
+        EXPECT_EQ(pattern.directions.col(i),
+                  normals.directions.col(static_cast<Eigen::Index>(pattern.weights[i])));
+}
+
+TEST(OutlierRemoval, OneRoundAgreesWithThePlainestWay) {
+    const auto normals = blobAndScattered();
+    for (const unsigned k : {1U, 10U, 40U})
+        for (const double alpha : {0.5, 2.0}) {
+            auto options = rounds(1, k, 7);  // the first number counts if there is one round
+            options.alpha = alpha;
+            EXPECT_EQ(keptOf(removeOutliers(normals, options)), keptOfOneRound(normals, k, alpha))
+                << k << " neighbours, alpha " << alpha;
+        }
+}
+
+TEST(OutlierRemoval, RoundsGoFromTheFirstToTheLastNumber) {
+    SurfaceNormals normals = blobAndScattered();
+    const auto pattern = removeOutliers(normals, rounds(3, 40, 10));
+    for (const std::size_t k : {40, 25, 10}) {
+        const auto kept = keptOfOneRound(normals, k, 2);
+        SurfaceNormals next;
+        next.directions.resize(3, static_cast<Eigen::Index>(kept.size()));
+        next.planarity.resize(static_cast<Eigen::Index>(kept.size()));
+        const auto all = blobAndScattered();
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            next.directions.col(static_cast<Eigen::Index>(i)) =
+                all.directions.col(static_cast<Eigen::Index>(kept[i]));
+            next.planarity[static_cast<Eigen::Index>(i)] = kept[i];
+        }
+        normals = next;
+    }
+    EXPECT_EQ(keptOf(pattern),
+              std::vector<float>(normals.planarity.data(),
+                                 normals.planarity.data() + normals.planarity.size()));
+}
+
+TEST(OutlierRemoval, NoRoundRemovesNothing) {
+    const auto normals = blobAndScattered();
+    const auto pattern = removeOutliers(normals, rounds(0));
+    EXPECT_EQ(pattern.directions, normals.directions);
+    EXPECT_EQ(pattern.weights, normals.planarity);
+    EXPECT_EQ(pattern.removed, 0U);
+}
+
+TEST(OutlierRemoval, FewerNormalsThanNeighbours) {
+    SurfaceNormals few;
+    few.directions.resize(3, 3);
+    few.directions << 1, 0, 0, 0, 1, 0, 0, 0, 1;
+    few.planarity = Eigen::VectorXf::LinSpaced(3, 0, 2);
+    EXPECT_EQ(keptOf(removeOutliers(few, {})).size(), 3U);  // each as far from the others
+
+    SurfaceNormals one;
+    one.directions = Eigen::Vector3f(0, 0, 1);
+    one.planarity = Eigen::VectorXf::Ones(1);
+    EXPECT_EQ(removeOutliers(one, {}).directions.cols(), 1);
+}
+
+TEST(OutlierRemoval, IdenticalNormalsAllStay) {
+    SurfaceNormals same;
+    same.directions = Eigen::Vector3f(0.6F, 0, 0.8F).replicate(1, 200);
+    same.planarity = Eigen::VectorXf::Ones(200);
+    const auto pattern = removeOutliers(same, {});
+    EXPECT_EQ(pattern.directions.cols(), 200);
+    EXPECT_EQ(pattern.removed, 0U);
+}
+
+TEST(OutlierRemoval, Empty) {
+    const auto pattern = removeOutliers({}, {});
+    EXPECT_EQ(pattern.directions.cols(), 0);
+    EXPECT_EQ(pattern.weights.size(), 0);
+}
+}  // namespace

@@ -1,0 +1,92 @@
+#include "delio/planes/plane_map.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using planes::PlaneMap;
+using planes::PlaneMapOptions;
+
+/** Points of the plane n.(p - q) = 0 about q, off it by `sigma`. */
+Eigen::Matrix3Xd patch(const Eigen::Vector3d& q, const Eigen::Vector3d& normal, double sigma,
+                       Eigen::Index count, test::Noise& noise) {
+    const Eigen::Vector3d n = normal.normalized(), u = n.unitOrthogonal(), v = n.cross(u);
+    Eigen::Matrix3Xd points(3, count);
+    for (Eigen::Index i = 0; i < count; ++i)
+        points.col(i) =
+            q + 0.4 * noise.uniform() * u + 0.4 * noise.uniform() * v + sigma * noise.normal() * n;
+    return points;
+}
+
+TEST(PlaneMap, APlaneComesBackWithItsThickness) {
+    test::Noise noise;
+    PlaneMap map(PlaneMapOptions{});
+    // Far from the origin: sums are taken about the voxel's first point.
+    const Eigen::Vector3d middle(4000.5, -3000.5, 20.5),
+        normal = Eigen::Vector3d(1, 2, 3).normalized();
+    map.add(patch(middle, normal, 0.02, 200, noise));
+    const auto* plane = map.at(middle);
+    ASSERT_TRUE(plane);
+    EXPECT_GT(std::abs(plane->normal().dot(normal)), std::cos(0.02));
+    EXPECT_NEAR(std::sqrt(plane->variances[0]), 0.02, 0.005);
+    EXPECT_LT((plane->mean - middle).norm(), 0.1);
+    EXPECT_GT(plane->count, 100);
+    // A point in the middle of the plane is known to its thickness, one beside it less well.
+    EXPECT_NEAR(plane->varianceAt(plane->mean) / plane->variances[0], 1 + 1 / plane->count, 1e-9);
+    const Eigen::Vector3d beside = plane->mean + 3 * plane->axes.col(2);
+    EXPECT_GT(plane->varianceAt(beside), plane->varianceAt(plane->mean));
+}
+
+TEST(PlaneMap, PointsInTwoCallsAreOnePlane) {
+    test::Noise noise;
+    const auto points = patch({0.5, 0.5, 0.5}, {0, 0, 1}, 0.01, 100, noise);
+    PlaneMap once(PlaneMapOptions{}), twice(PlaneMapOptions{});
+    once.add(points);
+    twice.add(points.leftCols(40));
+    twice.add(points.rightCols(60));
+    const auto *a = once.at({0.5, 0.5, 0.5}), *b = twice.at({0.5, 0.5, 0.5});
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->mean, b->mean);
+    EXPECT_EQ(a->variances, b->variances);
+}
+
+TEST(PlaneMap, WhatIsNoPlaneIsNone) {
+    test::Noise noise;
+    PlaneMap map(PlaneMapOptions{});
+    Eigen::Matrix3Xd ball(3, 100), line(3, 100);
+    for (Eigen::Index i = 0; i < 100; ++i) {
+        ball.col(i) = Eigen::Vector3d(0.5, 0.5, 0.5) + 0.1 * noise.normals();
+        line.col(i) << 5 + 0.01 * static_cast<double>(i), 0.5, 0.5;
+    }
+    map.add(ball);
+    map.add(line);
+    map.add(patch({10.5, 0.5, 0.5}, {0, 0, 1}, 0.01, 5, noise));  // too few
+    EXPECT_FALSE(map.at({0.5, 0.5, 0.5}));
+    EXPECT_FALSE(map.at({5.5, 0.5, 0.5}));
+    EXPECT_FALSE(map.at({10.5, 0.5, 0.5}));
+    EXPECT_FALSE(map.at({50, 50, 50}));
+}
+
+TEST(PlaneMap, AFullVoxelStaysAndAFarOneGoes) {
+    test::Noise noise;
+    PlaneMapOptions options;
+    options.max_points = 50;
+    options.radius = 20;
+    PlaneMap map(options);
+    map.add(patch({0.5, 0.5, 0.4}, {0, 0, 1}, 0.001, 60, noise));
+    map.add(patch({0.5, 0.5, 0.6}, {0, 0, 1}, 0.001, 60, noise));
+    ASSERT_TRUE(map.at({0.5, 0.5, 0.5}));
+    EXPECT_NEAR(map.at({0.5, 0.5, 0.5})->mean.z(), 0.4, 0.001);
+    map.add(patch({30.5, 0.5, 0.5}, {0, 0, 1}, 0.001, 60, noise));
+    map.forgetFarFrom({25, 0, 0});
+    EXPECT_FALSE(map.at({0.5, 0.5, 0.5}));
+    EXPECT_TRUE(map.at({30.5, 0.5, 0.5}));
+    map.forgetFarFrom({1000, 0, 0});
+    EXPECT_EQ(map.voxels(), 0U);
+}
+}  // namespace
