@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <sstream>
 #include <thread>
@@ -106,9 +107,15 @@ std::optional<Scan> firstScan(CommandLine& line, io::ScanReader& reader) {
     return reader.next();
 }
 
+void warnOfOthers(const io::ScanReader& reader,
+                  const std::function<void(const std::string&)>& warn) {
+    for (const auto& other : reader.otherLabels())
+        warn("scans of sensor '" + other + "' were not used; see --sensor-label");
+}
+
 /** Scans into the run until the end, the wanted count, an interrupt or a fault in the rawlog. */
-void process(CommandLine& line, std::optional<Scan> scan, io::ScanReader& reader,
-             double read_ms, run::Run& run) {
+void process(CommandLine& line, std::optional<Scan> scan, io::ScanReader& reader, double read_ms,
+             run::Run& run) {
     const unsigned count = line.count.getValue();
     cli::Progress progress("scans", count);
     try {
@@ -126,12 +133,10 @@ void process(CommandLine& line, std::optional<Scan> scan, io::ScanReader& reader
     } catch (const std::exception& e) {
         run.fail(plainMessage(e));
     }
-    for (const auto& other : reader.otherLabels())
-        run.warn("scans of sensor '" + other + "' were not used; see --sensor-label");
+    warnOfOthers(reader, [&](const std::string& text) { run.warn(text); });
 }
 
-std::shared_ptr<LiveView> liveViewFor(CommandLine& line, const Options& options,
-                                      run::Run& run) {
+std::shared_ptr<LiveView> liveViewFor(CommandLine& line, const Options& options, run::Run& run) {
     if (!line.gui.getValue()) return nullptr;
     auto view = std::make_shared<LiveView>(options.paper);
     run.attach(view);
@@ -146,6 +151,7 @@ int slamDrive(CommandLine& line, run::RunSettings settings) {
     auto first = firstScan(line, *reader);
     const double read_ms = watch.lap_ms();
     if (!first) {
+        warnOfOthers(*reader, cli::warn);
         const unsigned start = line.start.getValue();
         const std::string label = line.label.getValue();
         throw Error("'" + input + "' holds no LiDAR scans" +

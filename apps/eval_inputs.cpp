@@ -10,25 +10,22 @@
 #include "delio/core/error.h"
 #include "delio/io/scan_table.h"
 #include "delio/io/trajectory.h"
+#include "delio/run/run_folder.h"
 
 namespace delio {
 namespace fs = std::filesystem;
 using evaluation::Comparison;
+using run::RunFolder;
 
 namespace {
-// What delio-slam writes into its folder.
-constexpr const char* kPosesOfCam0 = "trajectory_kitti_cam0.txt";
-constexpr const char* kPoses = "trajectory_kitti.txt";
-constexpr const char* kScanTable = "scans.csv";
-
 /** The pose file of an estimate: a folder that delio-slam has written stands for the trajectory in
  *  it that is, or after --calib will be, in the frame of cam0. */
 std::string poseFile(const std::string& path, bool calibrationGiven) {
     if (!fs::is_directory(path)) return path;
-    const fs::path ofCam0 = fs::path(path) / kPosesOfCam0, file = fs::path(path) / kPoses;
-    if (fs::exists(ofCam0) && !calibrationGiven) return ofCam0.string();
-    if (fs::exists(file)) return file.string();
-    throw Error("'" + path + "' is a folder without a " + kPoses +
+    const RunFolder folder(path);
+    if (folder.has(RunFolder::kCam0) && !calibrationGiven) return folder.path(RunFolder::kCam0);
+    if (folder.has(RunFolder::kTrajectory)) return folder.path(RunFolder::kTrajectory);
+    throw Error("'" + path + "' is a folder without a " + RunFolder::kTrajectory +
                 "; give --ref a folder too to score "
                 "every NN.txt in it, or name a pose file");
 }
@@ -55,7 +52,7 @@ std::vector<Sequence> sharedSequences(const fs::path& reference, const fs::path&
         const fs::path own = estimate / file.filename(), folder = estimate / file.stem();
         if (fs::exists(own))
             sequences.push_back({file.string(), own.string()});
-        else if (fs::exists(folder / kPoses))
+        else if (RunFolder(folder).has(RunFolder::kTrajectory))
             sequences.push_back({file.string(), poseFile(folder.string(), calibrationGiven)});
     }
     if (sequences.empty())
@@ -76,7 +73,7 @@ std::string faultOfFrames(const evaluation::WrongFrames& fault, bool calibration
 
 /** The scans.csv beside a trajectory that delio-slam has written. */
 std::optional<io::ScanTable> scanTableBeside(const fs::path& estimateFile, std::size_t poses) {
-    const fs::path file = estimateFile.parent_path() / kScanTable;
+    const fs::path file = estimateFile.parent_path() / RunFolder::kScans;
     if (estimateFile.filename().string().rfind("trajectory", 0) != 0 || !fs::exists(file))
         return {};
     auto table = io::readScanTable(file.string());
@@ -105,7 +102,7 @@ void describe(const Comparison& comparison, bool verbose, const std::string& pai
     if (comparison.unusedReference > 0)
         cli::inform(pair + "scored on the " + matched + " of " +
                     std::to_string(comparison.reference.size() + comparison.unusedReference) +
-                    " scans that were used, as " + kScanTable + " has them");
+                    " scans that were used, as " + RunFolder::kScans + " has them");
     if (comparison.unmatchedReference + comparison.unmatchedEstimate > 0)
         cli::warn(pair + matched + " poses match in time; " +
                   std::to_string(comparison.unmatchedEstimate) + " of the estimate and " +

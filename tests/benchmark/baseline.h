@@ -1,6 +1,5 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
-
+#include <Eigen/Geometry>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,12 +15,11 @@ class Baseline {
     virtual ~Baseline() = default;
     virtual void process(const Scan& scan) = 0;
     /** After the last scan: poses of the sensor, the first is the identity. */
-    virtual std::vector<mrpt::poses::CPose3D> poses() = 0;
+    virtual std::vector<Eigen::Isometry3d> poses() = 0;
 };
 
 /** What every baseline is given of a drive. */
 struct DriveFacts {
-    std::string label;                  //!< of the sensor
     double verticalCorrection_deg = 0;  //!< as io::DriveMeta has it
 };
 
@@ -45,26 +43,26 @@ class ScanToScan : public Baseline {
     void process(const Scan& scan) final {
         Features features = extract(scan::preprocess(scan, options_));
         if (poses_.empty()) {
-            poses_.emplace_back();
+            poses_.push_back(Eigen::Isometry3d::Identity());
         } else {
             const auto increment = align(last_, features, prediction_.predict());
             prediction_.observe(increment);
-            poses_.push_back(poses_.back() + increment);
+            poses_.push_back(poses_.back() * increment);
         }
         last_ = std::move(features);
     }
-    std::vector<mrpt::poses::CPose3D> poses() final { return poses_; }
+    std::vector<Eigen::Isometry3d> poses() final { return poses_; }
 
  protected:
     virtual Features extract(const scan::PointCloud& cloud) = 0;
     /** Maps the frame of `to` to that of `from`; `guess` where that fails. */
-    virtual mrpt::poses::CPose3D align(const Features& from, const Features& to,
-                                       const mrpt::poses::CPose3D& guess) = 0;
+    virtual Eigen::Isometry3d align(const Features& from, const Features& to,
+                                    const Eigen::Isometry3d& guess) = 0;
 
  private:
     scan::PreprocessOptions options_;
     LinearPrediction prediction_;
     Features last_;
-    std::vector<mrpt::poses::CPose3D> poses_;
+    std::vector<Eigen::Isometry3d> poses_;
 };
 }  // namespace delio::benchmark

@@ -1,32 +1,37 @@
 #include "baseline.h"
+#include "delio/core/geometry.h"
+#include "delio/paper/coupled_registration.h"
+#include "delio/scan/rings.h"
+#include "delio/slam/graph_builder.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"
-#include "delio/paper/coupled_registration.h"
 
 namespace delio::benchmark {
-using mrpt::poses::CPose3D;
-
 namespace {
 /** DeLiO as delio-slam --no-map runs it. */
 class Delio : public Baseline {
  public:
-    Delio(const Options& options, const std::string& label) : slam_(options, true, false, label) {}
+    explicit Delio(const Options& options)
+        : slam_(makeOdometry(options)), graph_(std::make_shared<GraphBuilder>(options.graph)) {
+        slam_.attach(graph_);
+    }
 
     void process(const Scan& scan) override {
         slam_.process(scan);
         sensorPoses_.push_back(scan.sensorPose);
     }
-    std::vector<CPose3D> poses() override {
-        slam_.optimise();
-        auto poses = slam_.trajectory().poses;
+    std::vector<Eigen::Isometry3d> poses() override {
+        graph_->optimise();
+        auto poses = graph_->graph().poses();
         for (std::size_t i = 0; i < poses.size(); ++i)
-            poses[i] = (-sensorPoses_[0]) + poses[i] + sensorPoses_[i];
+            poses[i] = sensorPoses_[0].inverse() * poses[i] * sensorPoses_[i];
         return poses;
     }
 
  private:
     Slam slam_;
-    std::vector<CPose3D> sensorPoses_;
+    std::shared_ptr<GraphBuilder> graph_;
+    std::vector<Eigen::Isometry3d> sensorPoses_;
 };
 
 /** Rotation and translation together from line clouds, as Velas et al., with the lines of profile
@@ -34,26 +39,24 @@ class Delio : public Baseline {
  *  not find a vehicle that is moving already. */
 class CoupledLines : public ScanToScan<paper::LineCloud> {
  public:
-    CoupledLines(const DriveFacts& facts, const OdometryOptions& options)
+    CoupledLines(const DriveFacts& facts, const PaperOdometryOptions& options)
         : ScanToScan(facts), draw_(options.lines), registration_(options.lineRegistration) {}
 
  protected:
     paper::LineCloud extract(const scan::PointCloud& cloud) override {
         ++draw_.seed;  // the same draw twice would pair lines with themselves
-        return paper::drawLines(cloud.points, cloud.rings, draw_);
+        return paper::drawLines(cloud.points, scan::neighbouringRings(cloud), draw_);
     }
-    CPose3D align(const paper::LineCloud& from, const paper::LineCloud& to,
-                  const CPose3D& guess) override {
-        Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
-        start.linear() = guess.getRotationMatrix().asEigen();
-        const Eigen::Vector3d t(guess.x(), guess.y(), guess.z());
-        start.translation() = first_ ? paper::searchTranslation(
-                                           from, to, t, registration_.search_radius, registration_)
-                                           .translation
-                                     : t;
+    Eigen::Isometry3d align(const paper::LineCloud& from, const paper::LineCloud& to,
+                            const Eigen::Isometry3d& guess) override {
+        Eigen::Isometry3d start = guess;
+        if (first_)
+            start.translation() =
+                paper::searchTranslation(from, to, guess.translation(), registration_.search_radius,
+                                         registration_)
+                    .translation;
         first_ = false;
-        const auto found = paper::registerCoupled(from, to, start, registration_);
-        return {Eigen::Matrix3d(found.pose.linear()), Eigen::Vector3d(found.pose.translation())};
+        return paper::registerCoupled(from, to, start, registration_).pose;
     }
 
  private:
@@ -65,11 +68,12 @@ class CoupledLines : public ScanToScan<paper::LineCloud> {
 
 std::unique_ptr<Baseline> makeDelio(const std::string& profile, const DriveFacts& facts) {
     auto options = Options::ofProfile(profile);
-    options.odometry.preprocess.vertical_correction_deg = facts.verticalCorrection_deg;
-    return std::make_unique<Delio>(options, facts.label);
+    options.planes.scan.vertical_correction_deg = facts.verticalCorrection_deg;
+    options.paper.scan.vertical_correction_deg = facts.verticalCorrection_deg;
+    return std::make_unique<Delio>(options);
 }
 
 std::unique_ptr<Baseline> makeCoupledLines(const DriveFacts& facts) {
-    return std::make_unique<CoupledLines>(facts, Options::ofProfile("paper").odometry);
+    return std::make_unique<CoupledLines>(facts, Options::ofProfile("paper").paper);
 }
 }  // namespace delio::benchmark

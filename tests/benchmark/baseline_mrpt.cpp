@@ -3,11 +3,11 @@
 #include <mrpt/slam/CICP.h>
 
 #include "baseline.h"
+#include "delio/core/geometry.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio::benchmark {
 using mrpt::maps::CSimplePointsMap;
-using mrpt::poses::CPose3D;
 
 namespace {
 constexpr double kVoxel_m = 0.5;
@@ -32,11 +32,11 @@ class MrptIcp : public ScanToScan<CSimplePointsMap::Ptr> {
             map->setPoint(static_cast<std::size_t>(i), points(0, i), points(1, i), points(2, i));
         return map;
     }
-    CPose3D align(const CSimplePointsMap::Ptr& from, const CSimplePointsMap::Ptr& to,
-                  const CPose3D& guess) override {
+    Eigen::Isometry3d align(const CSimplePointsMap::Ptr& from, const CSimplePointsMap::Ptr& to,
+                            const Eigen::Isometry3d& guess) override {
         const auto found =
-            icp_.Align3DPDF(from.get(), to.get(), mrpt::poses::CPose3DPDFGaussian(guess));
-        return found ? found->getMeanVal() : guess;
+            icp_.Align3DPDF(from.get(), to.get(), mrpt::poses::CPose3DPDFGaussian(toMrpt(guess)));
+        return found ? fromMrpt(found->getMeanVal()) : guess;
     }
 
  private:

@@ -8,11 +8,10 @@
 #include <Eigen/Dense>
 
 #include "baseline.h"
+#include "delio/core/geometry.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio::benchmark {
-using mrpt::poses::CPose3D;
-
 namespace {
 // Common choices: one point in half a metre, pairs of at most a metre, iterated until it settles.
 constexpr double kVoxel_m = 0.5;
@@ -46,18 +45,17 @@ class Pcl : public ScanToScan<Cloud<Point>> {
             (*result)[static_cast<std::size_t>(i)].getVector3fMap() = points.col(i);
         return result;
     }
-    CPose3D align(const Cloud<Point>& from, const Cloud<Point>& to, const CPose3D& guess) override {
+    Eigen::Isometry3d align(const Cloud<Point>& from, const Cloud<Point>& to,
+                            const Eigen::Isometry3d& guess) override {
         registration.setInputTarget(from);
         registration.setInputSource(to);
         pcl::PointCloud<Point> aligned;
-        registration.align(aligned, guess.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>()
-                                        .asEigen()
-                                        .template cast<float>());
+        registration.align(aligned, guess.matrix().template cast<float>());
         if (!registration.hasConverged()) return guess;
         const Eigen::Matrix4d T = registration.getFinalTransformation().template cast<double>();
         if (!T.allFinite()) return guess;
         const Eigen::Quaterniond q(Eigen::Matrix3d(T.topLeftCorner<3, 3>()));
-        return {q.normalized().toRotationMatrix(), Eigen::Vector3d(T.topRightCorner<3, 1>())};
+        return isometry(q.normalized().toRotationMatrix(), T.topRightCorner<3, 1>());
     }
 };
 

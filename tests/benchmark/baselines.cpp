@@ -21,7 +21,7 @@
 #include "delio/core/error.h"
 #include "delio/evaluation/report/report.h"
 #include "delio/io/drive_meta.h"
-#include "delio/io/scan_source.h"
+#include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
 
 namespace {
@@ -50,8 +50,8 @@ std::vector<Method> methods() {
 
 struct Drive {
     std::string rawlog, name;
-    mrpt::poses::CPose3D Tr;
-    std::vector<mrpt::poses::CPose3D> truth;  // of cam0
+    Eigen::Isometry3d Tr = Eigen::Isometry3d::Identity();
+    std::vector<Eigen::Isometry3d> truth;  // of cam0
 };
 
 struct Settings {
@@ -62,7 +62,9 @@ struct Settings {
 };
 
 Drive openDrive(const std::string& rawlog) {
-    Drive drive{rawlog, fs::path(rawlog).stem().string(), {}, {}};
+    Drive drive;
+    drive.rawlog = rawlog;
+    drive.name = fs::path(rawlog).stem().string();
     const auto calibration = io::readCalibration(io::sidecarPath(rawlog, ".calib.txt"));
     if (!calibration.hasTr) throw Error("'" + rawlog + "': its calib.txt has no Tr");
     drive.Tr = calibration.Tr;
@@ -76,22 +78,18 @@ void runMethod(const Method& method, const Drive& drive, std::size_t count,
     DriveFacts facts;
     if (const auto meta = io::readDriveMeta(drive.rawlog))
         facts.verticalCorrection_deg = meta->verticalCorrectionDeg;
-    io::ScanSource source(drive.rawlog);
-    std::unique_ptr<Baseline> baseline;
+    const auto reader = io::openScans(drive.rawlog);
+    const std::unique_ptr<Baseline> baseline = method.make(facts);
     double seconds = 0;
     std::size_t scans = 0;
     for (; count == 0 || scans < count; ++scans) {
-        const auto scan = source.next();
+        const auto scan = reader->next();
         if (!scan) break;
         const double begin = mrpt::Clock::nowDouble();
-        if (!baseline) {
-            facts.label = source.label();
-            baseline = method.make(facts);
-        }
         baseline->process(*scan);
         seconds += mrpt::Clock::nowDouble() - begin;
     }
-    if (!baseline) throw Error("'" + drive.rawlog + "' has no scan");
+    if (scans == 0) throw Error("'" + drive.rawlog + "' has no scan");
     io::writeKitti(io::lidarToCam0({baseline->poses(), {}}, drive.Tr), poseFile);
     std::ofstream(msFile) << 1e3 * seconds / static_cast<double>(scans);
 }
@@ -122,12 +120,12 @@ std::string number(double value, int decimals) {
 
 /** Scores poses of cam0 and prints a row. `ms` and `mb`: NaN where they were not measured. */
 void printRow(const std::string& name, const Drive& drive,
-              const std::vector<mrpt::poses::CPose3D>& poses, double ms, double mb,
+              const std::vector<Eigen::Isometry3d>& poses, double ms, double mb,
               std::ostream& tsv) {
     if (poses.size() > drive.truth.size())
         throw Error("'" + drive.name + "' has fewer true poses than '" + name + "' has poses");
     const auto end = drive.truth.begin() + static_cast<std::ptrdiff_t>(poses.size());
-    const std::vector<mrpt::poses::CPose3D> truth(drive.truth.begin(), end);
+    const std::vector<Eigen::Isometry3d> truth(drive.truth.begin(), end);
     auto lengths = evaluation::kittiLengths_m();
     const double path = evaluation::pathLength_m(truth);
     if (path < 2 * lengths.front()) lengths = evaluation::suggestedLengths_m(path);

@@ -18,10 +18,7 @@ Eigen::Matrix3Xf placed(const MapPoints& map, const Poses& poses) {
     Eigen::Matrix3Xf result(3, map.points.cols());
     for (Eigen::Index i = 0; i < map.points.cols(); ++i) {
         const auto& pose = poses[map.scan[static_cast<std::size_t>(i)]];
-        const Eigen::Matrix3d R = pose.getRotationMatrix().asEigen();
-        result.col(i) =
-            (R * map.points.col(i).cast<double>() + Eigen::Vector3d(pose.x(), pose.y(), pose.z()))
-                .cast<float>();
+        result.col(i) = (pose * map.points.col(i).cast<double>()).cast<float>();
     }
     return result;
 }

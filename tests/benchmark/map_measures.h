@@ -1,7 +1,5 @@
 #pragma once
-#include <mrpt/poses/CPose3D.h>
-
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <vector>
 
@@ -12,7 +10,7 @@ struct SplitScan {
 };
 
 /** Poses, sensor to map, one a scan. */
-using Poses = std::vector<mrpt::poses::CPose3D>;
+using Poses = std::vector<Eigen::Isometry3d>;
 
 /** Distances of points to the plane of their 20 neighbours, metres, in the order of the points;
  *  NaN where the neighbourhood is no plane. */

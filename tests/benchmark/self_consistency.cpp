@@ -20,16 +20,15 @@
 #include "delio/evaluation/relative_error.h"
 #include "delio/evaluation/rotation_angle.h"
 #include "delio/io/drive_meta.h"
-#include "delio/io/scan_source.h"
+#include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
-#include "delio/odometry/odometry.h"
-#include "delio/slam/options.h"
+#include "delio/odometry/make_odometry.h"
 #include "delio/scan/preprocess.h"
+#include "delio/slam/options.h"
 #include "map_measures.h"
 
 namespace {
 using namespace delio;
-using mrpt::poses::CPose3D;
 
 /** One program's poses; `back` and the others may be missing. */
 struct Entry {
@@ -39,9 +38,9 @@ struct Entry {
 };
 
 std::vector<Scan> readScans(const std::string& rawlog) {
-    io::ScanSource source(rawlog);
+    const auto reader = io::openScans(rawlog);
     std::vector<Scan> scans;
-    while (auto scan = source.next()) scans.push_back(std::move(*scan));
+    while (auto scan = reader->next()) scans.push_back(std::move(*scan));
     return scans;
 }
 
@@ -76,11 +75,12 @@ Poses run(const std::vector<Scan>& scans, std::size_t every, bool backwards,
             for (auto& time : scan.times_s) time = -time;
         }
     }
-    Odometry odometry(options);
+    const auto odometry = makeOdometry(options);
     Poses poses;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     for (const auto& scan : order) {
-        const CPose3D before = poses.empty() ? CPose3D() : poses.back();
-        poses.push_back(before + odometry.process(scan).increment.pose);
+        pose = pose * odometry->process(scan).increment.pose;
+        poses.push_back(pose);
     }
     if (backwards) std::reverse(poses.begin(), poses.end());
     return poses;
@@ -152,8 +152,9 @@ void printAgreement(const std::string& name, const char* what, const Poses& a, c
     const auto steps = evaluation::relativeError(a, b);
     std::vector<double> metres, degrees;
     for (std::size_t i = 1; i < a.size(); ++i) {
-        const CPose3D off = (b[i] - b[0]) - (a[i] - a[0]);
-        metres.push_back(off.norm());
+        const Eigen::Isometry3d own = a[0].inverse() * a[i];
+        const Eigen::Isometry3d off = own.inverse() * (b[0].inverse() * b[i]);
+        metres.push_back(off.translation().norm());
         degrees.push_back(evaluation::rotationAngle_rad(off) * 180 / M_PI);
     }
     const auto m = evaluation::spreadOf(metres), deg = evaluation::spreadOf(degrees);
@@ -171,7 +172,9 @@ void printAgreement(const std::string& name, const char* what, const Poses& a, c
 void measure(const std::string& rawlog, Options options, const std::vector<std::string>& arguments,
              double spacing, bool withReference) {
     const auto meta = io::readDriveMeta(rawlog);
-    if (meta) options.odometry.preprocess.vertical_correction_deg = meta->verticalCorrectionDeg;
+    if (meta)
+        for (auto* scan : {&options.planes.scan, &options.paper.scan})
+            scan->vertical_correction_deg = meta->verticalCorrectionDeg;
     const auto scans = readScans(rawlog);
     if (scans.size() < 3) throw Error(rawlog + ": three scans are needed at least");
 
@@ -179,16 +182,16 @@ void measure(const std::string& rawlog, Options options, const std::vector<std::
     std::vector<Scan> usedHalves;
     for (const auto& scan : scans) {
         usedHalves.push_back(half(scan, 0));
-        split.push_back({scan::preprocess(usedHalves.back(), options.odometry.preprocess).points,
-                         scan::preprocess(half(scan, 1), options.odometry.preprocess).points});
+        split.push_back({scan::preprocess(usedHalves.back(), options.scan()).points,
+                         scan::preprocess(half(scan, 1), options.scan()).points});
     }
     Entry delio;
     delio.name = "DeLiO";
-    delio.all = run(scans, 1, false, options.odometry);
-    delio.back = run(scans, 1, true, options.odometry);
-    delio.second = run(scans, 2, false, options.odometry);
-    delio.secondBack = run(scans, 2, true, options.odometry);
-    delio.heldOut = run(usedHalves, 1, false, options.odometry);
+    delio.all = run(scans, 1, false, options);
+    delio.back = run(scans, 1, true, options);
+    delio.second = run(scans, 2, false, options);
+    delio.secondBack = run(scans, 2, true, options);
+    delio.heldOut = run(usedHalves, 1, false, options);
     std::vector<Entry> entries = {delio};
     for (const auto& argument : arguments) entries.push_back(readEntry(argument, scans.size()));
     if (withReference) {
@@ -196,7 +199,8 @@ void measure(const std::string& rawlog, Options options, const std::vector<std::
         Entry reference;
         reference.name = "reference";
         reference.all =
-            io::lidarToCam0(io::readTrajectory(io::sidecarPath(rawlog, ".poses.txt")), -Tr).poses;
+            io::lidarToCam0(io::readTrajectory(io::sidecarPath(rawlog, ".poses.txt")), Tr.inverse())
+                .poses;
         reference.heldOut = reference.all;
         if (reference.all.size() != scans.size())
             throw Error(rawlog + " and its .poses.txt do not have the same number of scans");
@@ -248,6 +252,7 @@ int main(int argc, char** argv) try {
     }
     Options options = Options::ofProfile(profile);
     for (const auto& setting : settings) options.set(setting);
+    options.check();
     measure(rawlog, options, poses, spacing, withReference);
 } catch (const std::exception& e) {
     std::fprintf(stderr, "benchmark_self_consistency: %s\n", delio::plainMessage(e).c_str());

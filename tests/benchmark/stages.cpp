@@ -1,7 +1,7 @@
 // Accuracy and time of each stage on drives with known poses: DRIVE.rawlog with DRIVE.poses.txt
 // and DRIVE.calib.txt beside it.
 //   benchmark_stages [--profile NAME] [--set section.key=value]... DRIVE.rawlog...
-#include <Eigen/Geometry>
+#include <Eigen/Dense>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -9,36 +9,31 @@
 #include <vector>
 
 #include "delio/core/error.h"
+#include "delio/core/geometry.h"
 #include "delio/evaluation/relative_error.h"
 #include "delio/io/drive_meta.h"
-#include "delio/io/scan_source.h"
+#include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
-#include "delio/odometry/odometry.h"
-#include "delio/slam/options.h"
 #include "delio/paper/coupled_registration.h"
+#include "delio/slam/options.h"
 
 namespace {
 using namespace delio;
-using mrpt::poses::CPose3D;
+using Eigen::Isometry3d;
 
 /** True motions of the LiDAR from scan to scan. */
-std::vector<CPose3D> trueMotions(const std::string& rawlog) {
+std::vector<Isometry3d> trueMotions(const std::string& rawlog) {
     const auto Tr = io::readCalibration(io::sidecarPath(rawlog, ".calib.txt")).Tr;
     const auto cam0 = io::readTrajectory(io::sidecarPath(rawlog, ".poses.txt")).poses;
-    std::vector<CPose3D> motions;
+    std::vector<Isometry3d> motions;
     for (std::size_t i = 1; i < cam0.size(); ++i)
-        motions.push_back((-Tr) + (-cam0[i - 1]) + cam0[i] + Tr);
+        motions.push_back(Tr.inverse() * cam0[i - 1].inverse() * cam0[i] * Tr);
     return motions;
 }
 
-double degreesBetween(const CPose3D& a, const CPose3D& b) {
-    const Eigen::Matrix3d A = a.getRotationMatrix().asEigen(), B = b.getRotationMatrix().asEigen();
-    const Eigen::Matrix3d D = A.transpose() * B;
-    const Eigen::Vector3d skew(D(2, 1) - D(1, 2), D(0, 2) - D(2, 0), D(1, 0) - D(0, 1));
-    return std::atan2(skew.norm(), D.trace() - 1) * 180 / M_PI;
+double degreesBetween(const Isometry3d& a, const Isometry3d& b) {
+    return angleOf(a.linear().transpose() * b.linear()) * 180 / M_PI;
 }
-
-Eigen::Vector3d translationOf(const CPose3D& pose) { return {pose.x(), pose.y(), pose.z()}; }
 
 void print(const char* what, std::vector<double> errors, const char* unit) {
     double sum = 0;
@@ -59,89 +54,103 @@ struct Errors {
     double along = 0, givenAlong = 0, path = 0;              //!< signed, along the true motion
 };
 
+/** What a drive came to. */
+struct Run {
+    Errors errors;
+    std::vector<Named> times_ms;  //!< sums
+    std::size_t scans = 0, predicted = 0;
+    Isometry3d driven = Isometry3d::Identity(), drivenTruly = Isometry3d::Identity();
+};
+
 /** Squared error in units of its covariance. */
 double normalised(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
     return error.dot(covariance.ldlt().solve(error));
 }
 
 /** The line stage alone with the true rotation given, and the coupled way from the same lines. */
-void compareLines(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, const CPose3D& predicted,
-                  const Features& before, const Features& now, const OdometryOptions& options,
-                  Errors& errors) {
-    const Eigen::Vector3d start = translationOf(predicted);
-    const auto lines = paper::registerLines(before.lines, paper::rotated(now.lines, R),
-                                                  start, options.lineRegistration);
+void compareLines(const Isometry3d& truth, const Isometry3d& predicted, const PaperFeatures& before,
+                  const PaperFeatures& now, const PaperOdometryOptions& options, Errors& errors) {
+    const Eigen::Vector3d t = truth.translation();
+    errors.iterations +=
+        paper::registerPatterns(before.pattern, now.pattern, predicted.linear(), options.pattern)
+            .iterations;
+    const auto lines = paper::registerLines(before.lines, paper::rotated(now.lines, truth.linear()),
+                                            predicted.translation(), options.lineRegistration);
     const Eigen::Vector3d given = lines.translation - t;
     errors.givenRotation.push_back(given.norm());
     if (t.norm() > 0.05) errors.givenAlong += given.dot(t.normalized());
-    Eigen::Isometry3d guess = Eigen::Isometry3d::Identity();
-    guess.linear() = predicted.getRotationMatrix().asEigen();
-    guess.translation() = start;
     const auto coupled =
-        paper::registerCoupled(before.lines, now.lines, guess, options.lineRegistration).pose;
+        paper::registerCoupled(before.lines, now.lines, predicted, options.lineRegistration).pose;
     errors.coupledTranslation.push_back((coupled.translation() - t).norm());
-    const Eigen::AngleAxisd turn(Eigen::Matrix3d(R.transpose() * coupled.linear()));
-    errors.coupledRotation.push_back(turn.angle() * 180 / M_PI);
+    errors.coupledRotation.push_back(degreesBetween(truth, coupled));
 }
 
-void compare(const CPose3D& truth, const CPose3D& predicted, const OdometryResult& result,
-             const Features* before, const OdometryOptions& options, Errors& errors) {
-    const CPose3D& found = result.increment.pose;
-    errors.iterations += result.registration.rotation.iterations;
+void compare(const Isometry3d& truth, const Isometry3d& predicted, const Step& step,
+             Errors& errors) {
+    const Isometry3d& found = step.increment.pose;
     errors.rotation.push_back(degreesBetween(truth, found));
     errors.predictedRotation.push_back(degreesBetween(truth, predicted));
-    const Eigen::Vector3d t = translationOf(truth), e = translationOf(found) - t;
+    const Eigen::Vector3d t = truth.translation(), e = found.translation() - t;
     errors.translation.push_back(e.norm());
-
-    const Eigen::Matrix3d R = truth.getRotationMatrix().asEigen();
     if (t.norm() > 0.05) {
         errors.along += e.dot(t.normalized());
         errors.path += t.norm();
     }
-    if (result.features && before)
-        compareLines(R, t, predicted, *before, *result.features, options, errors);
-    const Eigen::Matrix<double, 6, 6> covariance = result.increment.covariance.asEigen();
-    const Eigen::Matrix3d F = found.getRotationMatrix().asEigen();
-    const Eigen::AngleAxisd off(F.transpose() * R);
-    errors.meanRotation += off.angle() * off.axis() * 180 / M_PI;
-    errors.rotationNes.push_back(
-        normalised(off.angle() * off.axis(), covariance.bottomRightCorner<3, 3>()));
+    const Matrix6& covariance = step.increment.covariance;
+    const Eigen::Matrix3d F = found.linear();
+    const Eigen::Vector3d off = rotationLog(F.transpose() * truth.linear());
+    errors.meanRotation += off * 180 / M_PI;
+    errors.rotationNes.push_back(normalised(off, covariance.bottomRightCorner<3, 3>()));
     errors.translationNes.push_back(
         normalised(F.transpose() * -e, covariance.topLeftCorner<3, 3>()));
 }
 
-void run(const std::string& rawlog, Options options) {
-    const auto meta = io::readDriveMeta(rawlog);
-    if (meta) options.adaptTo(*meta);
+void add(const std::vector<Named>& times_ms, std::vector<Named>& sums) {
+    if (sums.empty())
+        sums = times_ms;
+    else
+        for (std::size_t i = 0; i < sums.size(); ++i) sums[i].second += times_ms[i].second;
+}
+
+Run run(const std::string& rawlog, Options options) {
+    const auto reader = io::openScans(rawlog);
+    if (reader->meta()) options.adaptTo(*reader->meta());
     const auto truth = trueMotions(rawlog);
-    io::ScanSource source(rawlog);
-    Odometry odometry(options.odometry);
-    LinearPrediction prediction(options.odometry.prediction);
-    Errors errors;
-    StageTimes times{};
-    std::shared_ptr<const Features> before;
-    std::size_t scans = 0, predictedScans = 0;
-    CPose3D driven, drivenTruly;
-    while (const auto scan = source.next()) {
-        const auto result = odometry.process(*scan);
-        for (std::size_t s = 0; s < kStages; ++s) times[s] += result.times_ms[s];
-        if (scans > 0 && scans - 1 < truth.size()) {
-            compare(truth[scans - 1], prediction.predict(), result, before.get(), options.odometry,
-                    errors);
-            prediction.observe(result.increment.pose);
-            driven = driven + result.increment.pose;
-            drivenTruly = drivenTruly + truth[scans - 1];
+    const auto odometry = makeOdometry(options);
+    LinearPrediction prediction(options.isPaper() ? options.paper.prediction
+                                                  : options.planes.prediction);
+    Run run;
+    std::shared_ptr<const PaperFeatures> before;  // the method of planes has none
+    while (const auto scan = reader->next()) {
+        const auto step = odometry->process(*scan);
+        const auto now = std::dynamic_pointer_cast<const PaperFeatures>(step.features);
+        add(step.times_ms, run.times_ms);
+        if (run.scans > 0 && run.scans - 1 < truth.size()) {
+            const auto& motion = truth[run.scans - 1];
+            const auto predicted = prediction.predict();
+            compare(motion, predicted, step, run.errors);
+            if (now && before)
+                compareLines(motion, predicted, *before, *now, options.paper, run.errors);
+            prediction.observe(step.increment.pose);
+            run.driven = run.driven * step.increment.pose;
+            run.drivenTruly = run.drivenTruly * motion;
         }
-        predictedScans += result.predicted;
-        before = result.features;
-        ++scans;
+        run.predicted += step.predicted;
+        before = now;
+        ++run.scans;
     }
-    std::printf("%s: %zu scans, %.0f m, %zu predicted, end error %.2f %%\n", rawlog.c_str(), scans,
-                errors.path, predictedScans,
-                100 * translationOf((-drivenTruly) + driven).norm() / errors.path);
+    return run;
+}
+
+void print(const std::string& rawlog, const Run& run) {
+    const Errors& errors = run.errors;
+    const auto scans = static_cast<double>(run.scans);
+    std::printf("%s: %zu scans, %.0f m, %zu predicted, end error %.2f %%\n", rawlog.c_str(),
+                run.scans, errors.path, run.predicted,
+                100 * (run.drivenTruly.inverse() * run.driven).translation().norm() / errors.path);
     print("rotation", errors.rotation, "deg");
     print("rotation, of the prediction", errors.predictedRotation, "deg");
-    const Eigen::Vector3d bias = errors.meanRotation / static_cast<double>(scans - 1);
+    const Eigen::Vector3d bias = errors.meanRotation / (scans - 1);
     std::printf("  mean rotation error about x, y, z %+.4f %+.4f %+.4f deg\n", bias.x(), bias.y(),
                 bias.z());
     print("translation", errors.translation, "m");
@@ -153,14 +162,14 @@ void run(const std::string& rawlog, Options options) {
                     100 * errors.givenAlong / errors.path);
         print("coupled: rotation", errors.coupledRotation, "deg");
         print("         translation", errors.coupledTranslation, "m");
+        std::printf("  pairings of patterns, from the prediction %.1f\n",
+                    errors.iterations / (scans - 1));
     }
     print("normalised squared error, rotation", errors.rotationNes, "(3 expected)");
     print("                       translation", errors.translationNes, "(3 expected)");
     std::printf("  ms a scan:");
-    for (std::size_t s = 0; s < kStages; ++s)
-        std::printf(" %s %.1f", kStageNames[s], times[s] / static_cast<double>(scans));
-    std::printf("; pairings of patterns %.1f\n",
-                errors.iterations / static_cast<double>(scans - 1));
+    for (const auto& [stage, ms] : run.times_ms) std::printf(" %s %.1f", stage, ms / scans);
+    std::printf("\n");
 }
 }  // namespace
 
@@ -178,7 +187,8 @@ int main(int argc, char** argv) try {
     }
     Options options = Options::ofProfile(profile);
     for (const auto& setting : settings) options.set(setting);
-    for (const auto& drive : drives) run(drive, options);
+    options.check();
+    for (const auto& drive : drives) print(drive, run(drive, options));
 } catch (const std::exception& e) {
     std::fprintf(stderr, "benchmark_stages: %s\n", e.what());
     return 1;

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "command.h"
 #include "delio/io/trajectory.h"
+#include "scan_columns.h"
 #include "test_data.h"
-#include "toy_drive.h"
 
 namespace {
 using namespace delio;
@@ -39,19 +41,21 @@ TEST(Pcap, GrabbedByMrptAndRead) {
 
     // The sample is of a room: three scans of a sensor that stands still.
     const std::string out = folder / "out";
-    const auto slam =
-        test::runTool("delio-slam", {"-i", rawlog, "-o", out, "--set", "scan.min_range=0.5",
-                                     "--set", "normals.voxel_size=0.1", "--no-map"});
+    const auto slam = test::runTool(
+        "delio-slam", {"-i", rawlog, "-o", out, "--set", "scan.min_range=0.5", "--no-map"});
     ASSERT_EQ(slam.exitCode, 0) << slam.err;
     const auto trajectory = io::readTrajectory(out + "/trajectory_kitti.txt");
     ASSERT_EQ(trajectory.poses.size(), 3U);
-    for (const auto& pose : trajectory.poses) EXPECT_LT(pose.norm(), 0.01);
+    for (const auto& pose : trajectory.poses) EXPECT_LT(pose.translation().norm(), 0.01);
     // Half of a VLP-16's returns would be 6900 a scan.
-    const auto rows = test::linesOf(test::readText(out + "/scans.csv"));
-    ASSERT_EQ(rows.size(), 4U);
-    for (std::size_t i = 1; i < rows.size(); ++i) {
-        const auto points = rows[i].find(',', rows[i].find(',') + 1) + 1;
-        EXPECT_GT(std::stoi(rows[i].substr(points)), 13000) << rows[i];
-    }
+    const auto scans = test::csvColumns(out + "/scans.csv");
+    ASSERT_EQ(scans.at("points").size(), 3U);
+    for (const auto& points : scans.at("points")) EXPECT_GT(std::stoi(points), 13000);
+    // Known: both scans after the first are predicted today ("too few planes": voxels and spacings
+    // are made for streets, not for a room), so that the poses above are those of a vehicle that
+    // was at rest before, and say nothing of a registration. It has to become 0, 0, 0.
+    const std::vector<std::string> predictedToday = {"0", "1", "1"};
+    EXPECT_EQ(scans.at("predicted"), predictedToday)
+        << "0, 0, 0? Then it is registered at last: ask for that, and remove the comment above";
 }
 }  // namespace

@@ -1,52 +1,91 @@
-// Two scans of the inside of a box, the sensor turned by 5 deg, through the installed library.
-#include <mrpt/maps/CSimplePointsMap.h>
-
-#include <algorithm>
+// Scans of the inside of a box, the sensor turned by 5 deg between them, through all that the
+// installed library offers.  consumer OUTDIR
 #include <cmath>
 #include <cstdio>
+#include <exception>
+#include <memory>
 
+#include "box_scan.h"
+#include "delio/core/geometry.h"
 #include "delio/odometry/aligner.h"
-#include "delio/odometry/odometry.h"
-#include "delio/slam/options.h"
+#include "delio/odometry/make_odometry.h"
+#include "delio/run/run.h"
+#include "delio/run/run_folder.h"
+#include "delio/slam/graph_builder.h"
+#include "delio/slam/slam.h"
 
 namespace {
-/** 32 rings of a LiDAR, turned by `yaw`, in a box: walls 15 m, 15 m, 7 m and 9 m away, floor 1.7 m
- *  below, roof 6 m above. */
-delio::Scan scanAt(double yaw) {
-    auto points = mrpt::maps::CSimplePointsMap::Create();
-    delio::Scan scan;
-    for (int ring = 0; ring < 32; ++ring)
-        for (int column = 0; column < 1000; ++column) {
-            const double elevation = (10 - 1.1 * ring) * M_PI / 180;
-            const double azimuth = 2 * M_PI * column / 1000;
-            const double flat = std::cos(elevation), up = std::sin(elevation);
-            const double x = flat * std::cos(azimuth + yaw), y = flat * std::sin(azimuth + yaw);
-            const double range = std::min({15 / std::abs(x), (y > 0 ? 7 : 9) / std::abs(y),
-                                           (up > 0 ? 6 : 1.7) / std::abs(up)});
-            points->insertPoint(static_cast<float>(range * flat * std::cos(azimuth)),
-                                static_cast<float>(range * flat * std::sin(azimuth)),
-                                static_cast<float>(range * up));
-            scan.rings.push_back(static_cast<std::uint16_t>(ring));
-        }
-    scan.points = points;
-    return scan;
+constexpr double kYaw = 5 * M_PI / 180;
+bool allRight = true;
+
+/** The sensor only turned, `turns` times. */
+void expectTurns(const char* what, const Eigen::Isometry3d& pose, int turns = 1) {
+    const Eigen::Vector3d turn = delio::rotationLog(pose.linear());
+    const double metres = pose.translation().norm();
+    const bool right =
+        (turn - turns * kYaw * Eigen::Vector3d::UnitZ()).norm() < 0.2 * M_PI / 180 && metres < 0.02;
+    std::printf("%-24s turned %.3f deg, moved %.3f m%s\n", what, turn.z() * 180 / M_PI, metres,
+                right ? "" : ": wrong");
+    allRight = allRight && right;
+}
+
+void expect(const char* what, bool right) {
+    std::printf("%-24s %s\n", what, right ? "right" : "wrong");
+    allRight = allRight && right;
+}
+
+/** An odometry alone. */
+void useOdometry(const char* what, delio::Odometry& odometry) {
+    odometry.process(scanAt(0, 0));
+    const auto step = odometry.process(scanAt(kYaw, 1));
+    expectTurns(what, step.increment.pose);
+    expect("   registered", !step.predicted && step.quality.matches > 100);
+}
+
+/** An odometry with a pose graph that listens. */
+void useSlam() {
+    const delio::Options options;
+    delio::Slam slam(delio::makeOdometry(options));
+    const auto graph = std::make_shared<delio::GraphBuilder>(options.graph);
+    slam.attach(graph);
+    for (int i = 0; i < 3; ++i) slam.process(scanAt(i * kYaw, static_cast<std::size_t>(i)));
+    graph->optimise();
+    expectTurns("Slam, odometry", slam.trajectory().poses.back(), 2);
+    expectTurns("Slam, pose graph", graph->graph().poses().back(), 2);
+}
+
+/** A whole run into a folder, without pictures. */
+void useRun(const std::string& out) {
+    delio::run::Run run(delio::Options(), {});
+    for (int i = 0; i < 3; ++i) run.process(scanAt(i * kYaw, static_cast<std::size_t>(i)));
+    run.finish(true);
+    const delio::run::RunFolder folder(out);
+    expect("Run, written", folder.write(run.record(), run.map()).empty());
+    expectTurns("Run, read back", folder.trajectory().poses.back(), 2);
+    const auto summary = folder.summary();
+    expect("   summary", summary.complete && summary.scans == 3 && summary.predicted == 0);
+}
+
+void useAligner() {
+    const auto found =
+        delio::Aligner().Align3D(scanAt(0).points.get(), scanAt(kYaw).points.get(), {});
+    expectTurns("Aligner", delio::fromMrpt(found->getMeanVal()));
 }
 }  // namespace
 
-int main() {
-    constexpr double kYaw = 5 * M_PI / 180;
-    delio::Odometry odometry(delio::Options::ofProfile("paper").odometry);
-    odometry.process(scanAt(0));
-    const auto result = odometry.process(scanAt(kYaw));
-    const auto& pose = result.increment.pose;
-    std::printf("installed library: turned %.3f deg, moved %.3f m\n", pose.yaw() * 180 / M_PI,
-                pose.norm());
-    const auto isRight = [&](const mrpt::poses::CPose3D& found) {
-        return std::abs(found.yaw() - kYaw) < 0.2 * M_PI / 180 && found.norm() < 0.02;
-    };
-    const auto aligned =
-        delio::Aligner()
-            .Align3D(scanAt(0).points.get(), scanAt(kYaw).points.get(), mrpt::poses::CPose3D())
-            ->getMeanVal();
-    return !result.predicted && isRight(pose) && isRight(aligned) ? 0 : 1;
+int main(int argc, char** argv) try {
+    if (argc != 2) {
+        std::fprintf(stderr, "usage: consumer OUTDIR\n");
+        return 2;
+    }
+    delio::PaperOdometry paper(delio::Options::ofProfile("paper").paper);
+    useOdometry("PaperOdometry", paper);
+    useOdometry("the default odometry", *delio::makeOdometry(delio::Options()));
+    useSlam();
+    useRun(argv[1]);
+    useAligner();
+    return allRight ? 0 : 1;
+} catch (const std::exception& e) {
+    std::fprintf(stderr, "consumer: %s\n", e.what());
+    return 1;
 }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string>
 
+#include "delio/core/geometry.h"
 #include "delio/evaluation/rotation_angle.h"
 #include "delio/io/trajectory.h"
 #include "delio/scan/preprocess.h"
@@ -41,16 +42,20 @@ std::pair<double, double> errorOf(mrpt::slam::CMetricMapsAlignmentAlgorithm& alg
     const auto name = [](std::size_t scan) {
         return std::string(scan < 10 ? "00000" : "0000") + std::to_string(scan) + ".bin";
     };
-    const auto poses = io::lidarToCam0(io::readTrajectory((folder / "poses.txt").string()),
-                                       -io::readCalibration((folder / "calib.txt").string()).Tr)
-                           .poses;
+    const auto poses =
+        io::lidarToCam0(io::readTrajectory((folder / "poses.txt").string()),
+                        io::readCalibration((folder / "calib.txt").string()).Tr.inverse())
+            .poses;
     const auto a = loadScan(folder / "velodyne" / name(first));
     const auto b = loadScan(folder / "velodyne" / name(second));
-    const CPose3D found = algorithm.Align3D(a.get(), b.get(), CPose3D())->getMeanVal();
-    const CPose3D off = found - (poses[second] - poses[first]);
+    const Eigen::Isometry3d found =
+        fromMrpt(algorithm.Align3D(a.get(), b.get(), CPose3D())->getMeanVal());
+    const Eigen::Isometry3d truth = poses[first].inverse() * poses[second];
+    const Eigen::Isometry3d off = truth.inverse() * found;
+    const double metres = off.translation().norm();
     const double degrees = evaluation::rotationAngle_rad(off) * 180 / M_PI;
-    std::printf("scan %zu to %zu: %.3f m, %.3f deg\n", second, first, off.norm(), degrees);
-    return {off.norm(), degrees};
+    std::printf("scan %zu to %zu: %.3f m, %.3f deg\n", second, first, metres, degrees);
+    return {metres, degrees};
 }
 
 // The references are good to about 1 % of the way.

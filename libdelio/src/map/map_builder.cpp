@@ -41,6 +41,10 @@ std::vector<OptionField> MapOptions::fields() const {
     };
 }
 
+void MapOptions::check(const std::string& section) const {
+    requireOrder(section + ".min_range", minRange_m, section + ".max_range", maxRange_m);
+}
+
 struct MapBuilder::Keyframe {
     std::size_t poseIndex = 0;
     Isometry3d sensorPose = Isometry3d::Identity();

@@ -184,10 +184,16 @@ void AlignerOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
         stage->saveToConfigFile(target, section + "." + name);
 }
 
+void AlignerOptions::check(const std::string& section) const {
+    for (const auto& [name, stage] : stagesOf<ConstStageList>(*this))
+        stage->check(section + "." + name);
+}
+
 mrpt::poses::CPose3DPDF::Ptr Aligner::Align3DPDF(
     const CMetricMap* m1, const CMetricMap* m2, const CPose3DPDFGaussian& initialEstimationPDF,
     mrpt::optional_ref<mrpt::slam::TMetricMapAlignmentResult> outInfo) {
     Stopwatch watch;
+    options.check("Aligner");
     const Eigen::Matrix3Xf from = pointsOf(m1, "first"), to = pointsOf(m2, "second");
     const Eigen::Isometry3d guess = fromMrpt(initialEstimationPDF.mean);
     if (!guess.matrix().allFinite()) throw Error("Aligner: the initial estimate is not finite");

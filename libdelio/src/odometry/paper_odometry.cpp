@@ -133,7 +133,11 @@ Step PaperOdometry::process(const Scan& scan) {
     step.predicted = !step.reason.empty();
     step.times_ms.emplace_back("rotation", registration.rotation_ms);
     step.times_ms.emplace_back("translation", registration.translation_ms);
-    if (reference_) takeIncrement(registration, duration_s, step);
+    if (reference_)
+        takeIncrement(registration, duration_s, step);
+    else  // nothing was measured
+        step.quality.unobservedRotation = step.quality.unobservedTranslation =
+            Eigen::Matrix3d::Identity();
     if (usable) {
         reference_ = features;
         sinceReference_ = Eigen::Isometry3d::Identity();

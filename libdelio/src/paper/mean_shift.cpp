@@ -63,17 +63,9 @@ surfaces::SurfaceNormals subset(const surfaces::SurfaceNormals& normals,
 /** One direction a cell: the centroid, whose weight is the mean of the weights. */
 void thin(Pattern& pattern, double cell) {
     const auto cells = scan::numberVoxels(pattern.directions, cell);
-    Eigen::Matrix3Xf sums = Eigen::Matrix3Xf::Zero(3, cells.voxels);
-    Eigen::VectorXf weights = Eigen::VectorXf::Zero(cells.voxels);
-    Eigen::VectorXf counts = Eigen::VectorXf::Zero(cells.voxels);
-    for (Eigen::Index i = 0; i < pattern.directions.cols(); ++i) {
-        const Eigen::Index cell_i = cells.ofPoint[static_cast<std::size_t>(i)];
-        sums.col(cell_i) += pattern.directions.col(i);
-        weights[cell_i] += pattern.weights[i];
-        counts[cell_i] += 1;
-    }
-    pattern.directions = sums.colwise().normalized();
-    pattern.weights = weights.cwiseQuotient(counts);
+    const auto [weights, counts] = scan::sumsOf<1>(pattern.weights.transpose(), cells);
+    pattern.directions = scan::sumsOf<3>(pattern.directions, cells).sums.colwise().normalized();
+    pattern.weights = weights.cwiseQuotient(counts).transpose();
 }
 }  // namespace
 

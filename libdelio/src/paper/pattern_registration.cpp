@@ -109,13 +109,9 @@ Pattern condensed(const Pattern& pattern, double kernel_deg,
     const auto cells = scan::numberVoxels(pattern.directions, cell_deg * kDeg);
     Pattern result;
     result.normals = pattern.normals;
-    result.directions = Eigen::Matrix3Xf::Zero(3, cells.voxels);
-    result.weights = Eigen::VectorXf::Zero(cells.voxels);
-    for (Eigen::Index i = 0; i < pattern.directions.cols(); ++i) {
-        const Eigen::Index cell = cells.ofPoint[static_cast<std::size_t>(i)];
-        result.directions.col(cell) += pattern.weights[i] * pattern.directions.col(i);
-        result.weights[cell] += pattern.weights[i];
-    }
+    result.directions =
+        scan::sumsOf<3>(pattern.directions * pattern.weights.asDiagonal(), cells).sums;
+    result.weights = scan::sumsOf<1>(pattern.weights.transpose(), cells).sums.transpose();
     result.directions.colwise().normalize();
     return result;
 }

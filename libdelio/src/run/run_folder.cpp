@@ -112,6 +112,9 @@ void RunFolder::writeMap(const RunRecord& record, const map::MapBuilder* map,
 
 std::string RunFolder::write(RunRecord record, const map::MapBuilder* map,
                              const Illustrate& illustrate) const {
+    std::error_code fault;
+    fs::create_directories(folder_, fault);
+    if (fault) throw Error("cannot make the folder '" + folder_ + "': " + fault.message());
     remove(kSummary);
     writeTrajectories(record);
     io::saveG2o(record.graph, path(kGraph));

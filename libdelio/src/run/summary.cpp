@@ -77,7 +77,9 @@ std::string wordsOf(const std::vector<std::string>& words) {
 void write(YAML::Emitter& yaml, const char* key, const std::string& text) {
     yaml << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << text << YAML::Auto;
 }
-void write(YAML::Emitter& yaml, const std::string& key, double value) {
+/** Counts are written as such: 100000 as a double would be 1e+05, which is no whole number. */
+template <typename Number>
+void write(YAML::Emitter& yaml, const std::string& key, Number value) {
     yaml << YAML::Key << key << YAML::Value << digitsOf(value);
 }
 void write(YAML::Emitter& yaml, const char* key, const Summary::Figures& figures) {
@@ -140,12 +142,12 @@ void writeSummary(const Summary& s, const std::string& path) {
     write(yaml, "profile", s.profile);
     yaml << YAML::Key << "complete" << YAML::Value << s.complete;
     if (!s.fault.empty()) write(yaml, "fault", s.fault);
-    write(yaml, "scans", static_cast<double>(s.scans));
-    write(yaml, "predicted", static_cast<double>(s.predicted));
-    write(yaml, "searched", static_cast<double>(s.searched));
+    write(yaml, "scans", s.scans);
+    write(yaml, "predicted", s.predicted);
+    write(yaml, "searched", s.searched);
     write(yaml, "path_m", s.path_m);
     write(yaml, "vertical_correction_deg", s.vertical_correction_deg);
-    write(yaml, "deskewed", static_cast<double>(s.deskewed));
+    write(yaml, "deskewed", s.deskewed);
     write(yaml, "ms_per_scan", s.ms_per_scan);
     write(yaml, "ms_per_scan_of_stages", s.ms_per_scan_of_stages);
     write(yaml, "map_ms_per_scan", s.map_ms_per_scan);

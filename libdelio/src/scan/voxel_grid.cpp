@@ -36,14 +36,8 @@ VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
 }
 
 Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers& numbers) {
-    Eigen::Matrix3Xf centroids = Eigen::Matrix3Xf::Zero(3, numbers.voxels);
-    Eigen::VectorXf counts = Eigen::VectorXf::Zero(numbers.voxels);
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const Eigen::Index voxel = numbers.ofPoint[static_cast<std::size_t>(i)];
-        centroids.col(voxel) += points.col(i);
-        counts[voxel] += 1;
-    }
-    centroids.array().rowwise() /= counts.transpose().array();
+    auto [centroids, counts] = sumsOf<3>(points, numbers);
+    centroids.array().rowwise() /= counts.array();
     return centroids;
 }
 

@@ -40,6 +40,7 @@ Options Options::ofProfile(const std::string& name) {
     }
     Options options;
     options.load(text->second);
+    options.given_.clear();  // by a user: nothing yet
     return options;
 }
 

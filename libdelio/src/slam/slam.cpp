@@ -1,8 +1,20 @@
 #include "delio/slam/slam.h"
 
+#include <string>
+
+#include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 
 namespace delio {
+namespace {
+/** All poses after it would be what it is. */
+void requireFinite(const Increment& increment, const Scan& scan) {
+    if (!increment.pose.matrix().allFinite() || !increment.covariance.allFinite())
+        throw Error("scan " + std::to_string(scan.index) +
+                    ": the odometry gave an increment that is not finite");
+}
+}  // namespace
+
 void Slam::attach(std::shared_ptr<SlamListener> listener) {
     listeners_.push_back(std::move(listener));
 }
@@ -23,6 +35,7 @@ void Slam::tell(const SlamScan& scan, ScanReport& report) {
 
 ScanReport Slam::process(const Scan& scan) {
     ScanReport report{odometry_->process(scan), {}};
+    requireFinite(report.step.increment, scan);
     auto& [poses, stamps_s] = trajectory_;
     const std::size_t node = poses.size();
     Increment increment;  // since the last scan that was taken

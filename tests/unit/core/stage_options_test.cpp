@@ -20,10 +20,10 @@ struct SampleOptions : delio::StageOptions {
     bool flag = false;
 
  protected:
-    std::vector<OptionField> fields() override {
-        return {{"width", &width, "m; how wide", -10, 10},
-                {"count", &count, "how many", 1, 4294967295.0},
-                {"flag", &flag, "whether at all"}};
+    std::vector<OptionField> fields() const override {
+        return {{"width", &SampleOptions::width, "m; how wide", -10, 10},
+                {"count", &SampleOptions::count, "how many", 1, 4294967295.0},
+                {"flag", &SampleOptions::flag, "whether at all"}};
     }
 };
 
@@ -34,13 +34,17 @@ SampleOptions loaded(const std::string& lines) {
 }
 
 /** What is thrown, or "" if nothing is. */
-std::string faultOf(const std::string& lines) {
+std::string errorOf(const std::function<void()>& action) {
     try {
-        loaded(lines);
+        action();
     } catch (const delio::Error& e) {
         return e.what();
     }
     return "";
+}
+
+std::string faultOf(const std::string& lines) {
+    return errorOf([&] { loaded(lines); });
 }
 
 bool contains(const std::string& text, const std::string& part) {
@@ -141,5 +145,76 @@ TEST(StageOptions, EachKeyIsWrittenUnderItsMeaning) {
     EXPECT_EQ(text.str(),
               "[sample]\n# m; how wide\nwidth = 0.25\n# how many\ncount = 3\n"
               "# whether at all\nflag = false\n");
+}
+
+/** One that is one of a few words, and two that have to go together. */
+struct RangeOptions : delio::StageOptions {
+    std::string way = "up";
+    double low = 1, high = 2;
+
+    void check(const std::string& section) const override {
+        delio::requireOrder(section + ".low", low, section + ".high", high);
+    }
+
+ protected:
+    std::vector<OptionField> fields() const override {
+        return {{"way", &RangeOptions::way, "which way", {"up", "down"}},
+                {"low", &RangeOptions::low, "m; from"},
+                {"high", &RangeOptions::high, "m; to"}};
+    }
+};
+
+RangeOptions rangeOf(const std::string& lines) {
+    RangeOptions options;
+    options.loadFromConfigFile(CConfigFileMemory("[range]\n" + lines), "range");
+    return options;
+}
+
+TEST(StageOptions, AWordIsOneOfThoseThatAreKnown) {
+    EXPECT_EQ(rangeOf("").way, "up");
+    EXPECT_EQ(rangeOf("way = down").way, "down");
+    EXPECT_EQ(rangeOf("  way =   up  ").way, "up");
+    for (const char* text : {"", "UP", "Down", "up down", "updown", "do", "1", "\"up\""})
+        EXPECT_EQ(errorOf([&] { rangeOf("way = " + std::string(text)); }),
+                  "option range.way: '" + std::string(text) + "' is none of: up, down");
+}
+
+TEST(StageOptions, AWordIsWrittenAsItIsRead) {
+    RangeOptions options;
+    options.way = "down";
+    std::ostringstream text;
+    options.write(text, "range");
+    EXPECT_EQ(text.str(),
+              "[range]\n# which way\nway = down\n# m; from\nlow = 1\n# m; to\nhigh = 2\n");
+    RangeOptions again, fromMrpt;
+    again.loadFromConfigFile(CConfigFileMemory(text.str()), "range");
+    EXPECT_EQ(again.way, "down");
+    CConfigFileMemory file;
+    options.saveToConfigFile(file, "range");
+    fromMrpt.loadFromConfigFile(CConfigFileMemory(file.getContent()), "range");
+    EXPECT_EQ(fromMrpt.way, "down");
+}
+
+TEST(StageOptions, WhatDoesNotGoTogetherIsFoundWhenAsked) {
+    EXPECT_EQ(errorOf([] { SampleOptions().check("sample"); }), "");  // by default all goes
+    EXPECT_EQ(errorOf([] { RangeOptions().check("range"); }), "");
+    // Loading asks nothing: the other one may still come.
+    RangeOptions options = rangeOf("low = 3.5");
+    EXPECT_EQ(errorOf([&] { options.check("range"); }),
+              "option range.low (3.5) has to be at most range.high (2)");
+    options.loadFromConfigFile(CConfigFileMemory("[range]\nhigh = 3.5\n"), "range");
+    EXPECT_EQ(errorOf([&] { options.check("range"); }), "");
+}
+
+TEST(RequireOrder, EqualNumbersAreInOrderAndNaNIsNot) {
+    const auto fault = [](double low, double high) {
+        return errorOf([&] { delio::requireOrder("a.low", low, "b.high", high); });
+    };
+    EXPECT_EQ(fault(-1, 1), "");
+    EXPECT_EQ(fault(0.1, 0.1), "");
+    EXPECT_EQ(fault(0.1, -0.1), "option a.low (0.1) has to be at most b.high (-0.1)");
+    EXPECT_NE(fault(std::nextafter(1.0, 2.0), 1), "");
+    EXPECT_NE(fault(NAN, 1), "");
+    EXPECT_NE(fault(1, NAN), "");
 }
 }  // namespace

@@ -8,7 +8,7 @@
 namespace {
 using namespace delio;
 using movers::DynamicObjects;
-using mrpt::poses::CPose3D;
+using test::poseAt;
 
 /** A street of houses and parked cars along x, without an end that matters. */
 test::Scene street() {
@@ -33,20 +33,20 @@ bool isIn(const test::Block& block, const Eigen::Vector3d& point) {
 /** How much of a moving block was told, and how much else, in a drive along x. */
 class MovingObjectsInAStreet : public testing::Test {
  protected:
-    /** One scan more, `step_s` after the one before. `things`: in the world. */
-    void look(const CPose3D& pose, const test::Scene& things, double step_s = 0.1) {
+    /** One scan more, `step_s` after the one before. `things`: in the world. `predicted`: where
+     *  the motion model has the sensor, of which detect() is asked; remembered is the true pose. */
+    void look(const Eigen::Isometry3d& pose, const test::Scene& things,
+              const Eigen::Isometry3d& predicted, double step_s = 0.1) {
         test::Scene scene = street();
         scene.insert(scene.end(), things.begin(), things.end());
         const auto all = ringScan(scene, pose, {48, 900, -24, 4, 0.02}, noise_).points;
         const auto points = scan::voxelCentroids(all, 0.25);
         stamp_s_ += step_s;
-        const auto told = objects_.find(points, all, pose, stamp_s_);
+        const auto told = objects_.detect(points, all, predicted, stamp_s_);
         objects_.remember(pose);
         found_ = missed_ = wrong_ = 0;
         for (Eigen::Index i = 0; i < points.cols(); ++i) {
-            const Eigen::Vector3d point =
-                pose.getRotationMatrix().asEigen() * points.col(i).cast<double>() +
-                Eigen::Vector3d(pose.x(), pose.y(), pose.z());
+            const Eigen::Vector3d point = pose * points.col(i).cast<double>();
             const bool moves = std::any_of(things.begin(), things.end(),
                                            [&](const auto& thing) { return isIn(thing, point); });
             const bool wasTold = told[static_cast<std::size_t>(i)] != 0;
@@ -54,6 +54,11 @@ class MovingObjectsInAStreet : public testing::Test {
             missed_ += moves && !wasTold && point.z() > -1.4;  // lower is ground
             wrong_ += !moves && wasTold;
         }
+    }
+
+    /** The same with a prediction that is right. */
+    void look(const Eigen::Isometry3d& pose, const test::Scene& things, double step_s = 0.1) {
+        look(pose, things, pose, step_s);
     }
 
     test::Noise noise_;
@@ -65,7 +70,7 @@ class MovingObjectsInAStreet : public testing::Test {
 TEST_F(MovingObjectsInAStreet, AVanThatStaysFiveMetresAheadForAHundredScans) {
     int found = 0, missed = 0, wrong = 0;
     for (int i = 0; i < 100; ++i) {
-        look(CPose3D(0.9 * i, 0, 0, 0, 0, 0), {van(0.9 * i + 5, 0)});
+        look(poseAt(0.9 * i, 0, 0), {van(0.9 * i + 5, 0)});
         if (i < 5) continue;
         found += found_;
         missed += missed_;
@@ -79,7 +84,7 @@ TEST_F(MovingObjectsInAStreet, AVanThatStaysFiveMetresAheadForAHundredScans) {
 TEST_F(MovingObjectsInAStreet, OncomingAndCrossingOnesAreToldWithinThreeScans) {
     for (int i = 0; i < 8; ++i) {
         const double ahead = 0.5 * i;
-        look(CPose3D(ahead, 0, 0, 0.002 * i, 0, 0), {van(25 - 1.2 * i, 3), van(8, -4 + 0.7 * i)});
+        look(poseAt(ahead, 0, 0, 0.002 * i, 0, 0), {van(25 - 1.2 * i, 3), van(8, -4 + 0.7 * i)});
         if (i < 3) continue;
         EXPECT_GT(found_, 100) << i;
         EXPECT_LT(missed_, 0.2 * found_) << i;
@@ -87,29 +92,60 @@ TEST_F(MovingObjectsInAStreet, OncomingAndCrossingOnesAreToldWithinThreeScans) {
     }
 }
 
+/** What a motion model may be off by in scan `i`, half of the margin (0.4 m): another way in each.
+ */
+Eigen::Isometry3d off(int i) {
+    const double to = i % 2 ? -0.2 : 0.2;
+    return i / 2 % 3 == 0 ? poseAt(to, 0, 0) : i / 2 % 3 == 1 ? poseAt(0, to, 0) : poseAt(0, 0, to);
+}
+
+// detect() is asked at the predicted pose, "good to a part of the margin".
+TEST_F(MovingObjectsInAStreet, APredictionThatIsOffByHalfTheMarginWillDo) {
+    int found = 0, missed = 0, wrong = 0;
+    for (int i = 0; i < 24; ++i) {
+        const Eigen::Isometry3d pose = poseAt(0.5 * i, 0, 0, 0.002 * i);
+        look(pose, {van(32 - 1.2 * i, 3), van(0.5 * i + 8, -2)}, pose * off(i));
+        if (i < 8) continue;
+        EXPECT_GT(found_, 150) << i;
+        found += found_;
+        missed += missed_;
+        wrong += wrong_;
+    }
+    EXPECT_LT(missed, 0.1 * found);
+    EXPECT_LT(wrong, 0.05 * found);
+}
+
+TEST_F(MovingObjectsInAStreet, APredictionThatIsOffMakesNothingMove) {
+    for (int i = 0; i < 20; ++i) {
+        const Eigen::Isometry3d pose = poseAt(0.9 * i, 0.05 * i, 0, 0.01 * i);
+        look(pose, {}, pose * off(i));
+        EXPECT_LT(wrong_, 100) << i;  // of thousands
+    }
+}
+
 TEST_F(MovingObjectsInAStreet, WhereNothingMovesNothingIsTold) {
     for (int i = 0; i < 20; ++i) {
-        look(CPose3D(0.9 * i, 0.05 * i, 0, 0.01 * i, 0, 0), {});
+        look(poseAt(0.9 * i, 0.05 * i, 0, 0.01 * i, 0, 0), {});
         EXPECT_LT(wrong_, 20) << i;
     }
     for (int i = 0; i < 3; ++i) {  // the vehicle stands
-        look(CPose3D(17.1, 0.95, 0, 0.19, 0, 0), {});
+        look(poseAt(17.1, 0.95, 0, 0.19, 0, 0), {});
         EXPECT_LT(wrong_, 20) << i;
     }
 }
 
 TEST_F(MovingObjectsInAStreet, AVanThatHasStoppedIsPartOfTheStreetAgain) {
-    for (int i = 0; i < 6; ++i) look(CPose3D(0.5 * i, 0, 0, 0, 0, 0), {van(20 - i, 3)});
+    for (int i = 0; i < 6; ++i) look(poseAt(0.5 * i, 0, 0), {van(20 - i, 3)});
     EXPECT_GT(found_, 100);
-    for (int i = 0; i < 12; ++i) look(CPose3D(3, 0, 0, 0, 0, 0), {van(14, 3)});
+    for (int i = 0; i < 12; ++i) look(poseAt(3, 0, 0), {van(14, 3)});
     EXPECT_EQ(found_, 0);
 }
 
 TEST_F(MovingObjectsInAStreet, NothingIsToldByTheFirstScanOrAfterAPause) {
-    look({}, {van(20, 3)});
+    look(Eigen::Isometry3d::Identity(), {van(20, 3)});
     EXPECT_EQ(found_ + wrong_, 0);
-    look({}, {van(19, 3)});
-    look({}, {van(12, 3)}, 30);
+    look(Eigen::Isometry3d::Identity(), {van(19, 3)});
+    look(Eigen::Isometry3d::Identity(), {van(12, 3)}, 30);
     EXPECT_EQ(found_ + wrong_, 0);
 }
 }  // namespace

@@ -8,9 +8,9 @@ namespace {
 using namespace delio;
 using movers::Segment;
 using movers::SegmentOptions;
-using mrpt::poses::CPose3D;
 
-Eigen::Matrix3Xf seen(const test::Scene& things, const CPose3D& pose = {}) {
+Eigen::Matrix3Xf seen(const test::Scene& things,
+                      const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
     test::Noise noise;
     test::Scene scene = {{{-200, -200, -3}, {200, 200, -1.8}}};
     scene.insert(scene.end(), things.begin(), things.end());
@@ -32,7 +32,7 @@ TEST(Segments, ThingsThatStandApartAreOneSegmentEach) {
 
 TEST(Segments, GroundIsNoneAlsoWhereItSlopes) {
     EXPECT_TRUE(segmentsOf(seen({}), SegmentOptions{}).empty());
-    const CPose3D tilted(0, 0, 0, 0, mrpt::DEG2RAD(5.0), 0);
+    const Eigen::Isometry3d tilted = test::poseAtDeg(0, 0, 0, 0, 5);
     EXPECT_TRUE(segmentsOf(seen({}, tilted), SegmentOptions{}).empty());
 }
 

@@ -15,10 +15,12 @@
 #include <limits>
 
 #include "delio/core/error.h"
+#include "poses.h"
 #include "ring_scan.h"
 
 namespace {
 using namespace delio;
+using Eigen::Isometry3d;
 using mrpt::maps::CPointsMap;
 using mrpt::poses::CPose2D;
 using mrpt::poses::CPose3D;
@@ -26,12 +28,14 @@ using mrpt::poses::CPose3DPDFGaussian;
 using mrpt::poses::CPosePDFGaussian;
 using mrpt::slam::CMetricMapsAlignmentAlgorithm;
 using test::degreesBetween;
+using test::metresBetween;
+using test::poseAt;
 
 constexpr double kDeg = M_PI / 180;
-const CPose3D kMotion(1.5, -0.4, 0.15, 12 * kDeg, -3 * kDeg, 5 * kDeg);
+const Isometry3d kMotion = poseAt(1.5, -0.4, 0.15, 12 * kDeg, -3 * kDeg, 5 * kDeg);
 
 /** What a LiDAR with 2 cm of noise sees of the yard. */
-CPointsMap::Ptr seenFrom(const CPose3D& pose, std::uint32_t seed, const test::Scene& scene) {
+CPointsMap::Ptr seenFrom(const Isometry3d& pose, std::uint32_t seed, const test::Scene& scene) {
     test::Noise noise(seed);
     test::Sensor sensor;
     sensor.noise_m = 0.02;
@@ -39,12 +43,12 @@ CPointsMap::Ptr seenFrom(const CPose3D& pose, std::uint32_t seed, const test::Sc
 }
 
 /** Where the first cloud of a pair is seen from: not along the walls. */
-const CPose3D kFirst(0.37, 0.21, 0.13, 17 * kDeg, 2 * kDeg, -3 * kDeg);
+const Isometry3d kFirst = poseAt(0.37, 0.21, 0.13, 17 * kDeg, 2 * kDeg, -3 * kDeg);
 
 /** A pair of clouds, the second moved by `motion` from the first. */
 struct Pair {
-    explicit Pair(const CPose3D& motion = kMotion, const test::Scene& scene = test::yard())
-        : first(seenFrom(kFirst, 1, scene)), second(seenFrom(kFirst + motion, 2, scene)) {}
+    explicit Pair(const Isometry3d& motion = kMotion, const test::Scene& scene = test::yard())
+        : first(seenFrom(kFirst, 1, scene)), second(seenFrom(kFirst * motion, 2, scene)) {}
     CPointsMap::Ptr first, second;
 };
 
@@ -54,23 +58,21 @@ CPose3DPDFGaussian gaussian(const mrpt::poses::CPose3DPDF::Ptr& pdf) {
     return result ? *result : CPose3DPDFGaussian();
 }
 
-double metresBetween(const CPose3D& a, const CPose3D& b) {
-    return Eigen::Vector3d(a.x() - b.x(), a.y() - b.y(), a.z() - b.z()).norm();
-}
+Isometry3d meanOf(const CPose3DPDFGaussian& pdf) { return fromMrpt(pdf.mean); }
 
 TEST(Aligner, FindsAKnownMotionFromManyStarts) {
     const Pair pair;
     test::Noise noise;
     Aligner aligner;
     for (int i = 0; i < 8; ++i) {
-        const CPose3D off(0.4 * noise.uniform(), 0.4 * noise.uniform(), 0.1 * noise.uniform(),
-                          3 * kDeg * noise.uniform(), kDeg * noise.uniform(),
-                          kDeg * noise.uniform());
+        const Isometry3d off =
+            poseAt(0.4 * noise.uniform(), 0.4 * noise.uniform(), 0.1 * noise.uniform(),
+                   3 * kDeg * noise.uniform(), kDeg * noise.uniform(), kDeg * noise.uniform());
         Aligner::TReturnInfo info;
-        const auto found =
-            gaussian(aligner.Align3D(pair.first.get(), pair.second.get(), kMotion + off, info));
-        EXPECT_LT(metresBetween(found.mean, kMotion), 0.01) << i;
-        EXPECT_LT(degreesBetween(found.mean, kMotion), 0.05) << i;
+        const auto found = gaussian(
+            aligner.Align3D(pair.first.get(), pair.second.get(), toMrpt(kMotion * off), info));
+        EXPECT_LT(metresBetween(meanOf(found), kMotion), 0.01) << i;
+        EXPECT_LT(degreesBetween(meanOf(found), kMotion), 0.05) << i;
         EXPECT_GT(info.goodness, 0.8);
         EXPECT_LE(info.goodness, 1);
         EXPECT_GT(info.agreement, aligner.options.min_agreement);
@@ -88,16 +90,17 @@ TEST(Aligner, SearchesWhereTheEstimateIsFarOff) {
     Aligner aligner;
     Aligner::TReturnInfo info;
     const auto found = gaussian(aligner.Align3D(pair.first.get(), pair.second.get(),
-                                                CPose3D(6, 4, 0, -10 * kDeg, 0, 0), info));
+                                                toMrpt(poseAt(6, 4, 0, -10 * kDeg)), info));
     EXPECT_TRUE(info.searched);
-    EXPECT_LT(metresBetween(found.mean, kMotion), 0.01);
-    EXPECT_LT(degreesBetween(found.mean, kMotion), 0.05);
+    EXPECT_LT(metresBetween(meanOf(found), kMotion), 0.01);
+    EXPECT_LT(degreesBetween(meanOf(found), kMotion), 0.05);
 }
 
 /** As a program would that knows nothing but the base class. */
-CPose3D aligned(CMetricMapsAlignmentAlgorithm& algorithm, const Pair& pair, const CPose3D& start,
-                mrpt::slam::CICP::TReturnInfo& info) {
-    return algorithm.Align3D(pair.first.get(), pair.second.get(), start, info)->getMeanVal();
+Isometry3d aligned(CMetricMapsAlignmentAlgorithm& algorithm, const Pair& pair,
+                   const Isometry3d& start, mrpt::slam::CICP::TReturnInfo& info) {
+    return fromMrpt(
+        algorithm.Align3D(pair.first.get(), pair.second.get(), toMrpt(start), info)->getMeanVal());
 }
 
 TEST(Aligner, IsNearerToTheTruthThanCICPInTheSameProgram) {
@@ -107,10 +110,10 @@ TEST(Aligner, IsNearerToTheTruthThanCICPInTheSameProgram) {
     icp.options.thresholdAng = 3 * kDeg;
     icp.options.maxIterations = 200;
     Aligner aligner;
-    for (const auto& off : {CPose3D(), CPose3D(0.3, -0.2, 0, 2 * kDeg, 0, 0)}) {
+    for (const auto& off : {poseAt(0, 0, 0), poseAt(0.3, -0.2, 0, 2 * kDeg)}) {
         mrpt::slam::CICP::TReturnInfo icpInfo, info;
-        const CPose3D byIcp = aligned(icp, pair, kMotion + off, icpInfo);
-        const CPose3D byAligner = aligned(aligner, pair, kMotion + off, info);
+        const Isometry3d byIcp = aligned(icp, pair, kMotion * off, icpInfo);
+        const Isometry3d byAligner = aligned(aligner, pair, kMotion * off, info);
         EXPECT_LT(metresBetween(byAligner, kMotion), metresBetween(byIcp, kMotion) / 2);
         EXPECT_LT(degreesBetween(byAligner, kMotion), degreesBetween(byIcp, kMotion) / 2);
         EXPECT_GT(info.goodness, 0.8);
@@ -120,7 +123,7 @@ TEST(Aligner, IsNearerToTheTruthThanCICPInTheSameProgram) {
 
 TEST(Aligner, GivesThePoseInThePlaneFor2D) {
     const CPose2D motion(1.2, -0.5, 8 * kDeg);
-    const Pair pair{CPose3D(motion)};
+    const Pair pair{fromMrpt(CPose3D(motion))};
     Aligner aligner;
     const auto pdf = aligner.Align(pair.first.get(), pair.second.get(), CPose2D(1, -0.3, 6 * kDeg));
     const auto* found = dynamic_cast<const CPosePDFGaussian*>(pdf.get());
@@ -143,13 +146,14 @@ TEST(Aligner, CovarianceHasTheSizeOfTheErrors) {
     Aligner aligner;
     for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
         const auto first = seenFrom(kFirst, 10 + 2 * seed, test::yard());
-        const auto second = seenFrom(kFirst + kMotion, 11 + 2 * seed, test::yard());
-        const auto found = gaussian(aligner.Align3D(first.get(), second.get(), kMotion));
+        const auto second = seenFrom(kFirst * kMotion, 11 + 2 * seed, test::yard());
+        const auto found = gaussian(aligner.Align3D(first.get(), second.get(), toMrpt(kMotion)));
         const auto& m = found.mean;
-        const Eigen::Vector3d t(m.x() - kMotion.x(), m.y() - kMotion.y(), m.z() - kMotion.z());
-        const Eigen::Vector3d angles(m.yaw() - kMotion.yaw(), m.pitch() - kMotion.pitch(),
-                                     m.roll() - kMotion.roll());
-        const Eigen::Matrix<double, 6, 6> C = found.cov.asEigen();
+        const CPose3D truth = toMrpt(kMotion);
+        const Eigen::Vector3d t = meanOf(found).translation() - kMotion.translation();
+        const Eigen::Vector3d angles(m.yaw() - truth.yaw(), m.pitch() - truth.pitch(),
+                                     m.roll() - truth.roll());
+        const Matrix6 C = found.cov.asEigen();
         ASSERT_EQ(C.llt().info(), Eigen::Success);
         translation += t.dot(C.topLeftCorner<3, 3>().llt().solve(t));
         rotation += angles.dot(C.bottomRightCorner<3, 3>().llt().solve(angles));
@@ -163,30 +167,29 @@ TEST(Aligner, CovarianceHasTheSizeOfTheErrors) {
 
 TEST(Aligner, FindsWallsThatLieOnTheBordersBetweenVoxels) {
     // The yard's walls are at whole metres, and so in the first cloud.
-    const auto first = seenFrom(CPose3D(), 1, test::yard());
+    const auto first = seenFrom(Isometry3d::Identity(), 1, test::yard());
     const auto second = seenFrom(kMotion, 2, test::yard());
     Aligner aligner;
-    const auto found = gaussian(aligner.Align3D(first.get(), second.get(), kMotion));
-    EXPECT_LT(metresBetween(found.mean, kMotion), 0.005);
-    EXPECT_LT(degreesBetween(found.mean, kMotion), 0.02);
+    const auto found = gaussian(aligner.Align3D(first.get(), second.get(), toMrpt(kMotion)));
+    EXPECT_LT(metresBetween(meanOf(found), kMotion), 0.005);
+    EXPECT_LT(degreesBetween(meanOf(found), kMotion), 0.02);
 }
 
 TEST(Aligner, AlongACorridorTheEstimateStaysAndTheCovarianceSaysSo) {
-    const CPose3D motion(1, 0.2, 0.05, 3 * kDeg, 0, 0);
+    const Isometry3d motion = poseAt(1, 0.2, 0.05, 3 * kDeg);
     const Pair pair(motion, test::corridor());
     Aligner aligner;
     Aligner::TReturnInfo info;
     // The corridor's axis in the first cloud's frame.
-    const Eigen::Vector3d along = kFirst.getRotationMatrix().asEigen().row(0).transpose();
+    const Eigen::Vector3d along = kFirst.linear().row(0).transpose();
     const Eigen::Vector3d off = -0.4 * along;
     const auto found =
         gaussian(aligner.Align3D(pair.first.get(), pair.second.get(),
-                                 CPose3D(off.x(), off.y(), off.z(), 0, 0, 0) + motion, info));
+                                 toMrpt(poseAt(off.x(), off.y(), off.z()) * motion), info));
     ASSERT_EQ(info.unobservedTranslation.cols(), 1);
     EXPECT_NEAR(std::abs(along.dot(info.unobservedTranslation.col(0))), 1, 1e-2);
     EXPECT_LT(info.quality, 1e-3);
-    const Eigen::Vector3d error(found.mean.x() - motion.x(), found.mean.y() - motion.y(),
-                                found.mean.z() - motion.z());
+    const Eigen::Vector3d error = meanOf(found).translation() - motion.translation();
     EXPECT_NEAR(error.dot(along), -0.4, 0.05);
     EXPECT_LT((error - error.dot(along) * along).norm(), 0.01);
     const Eigen::Matrix3d C = found.cov.asEigen().topLeftCorner<3, 3>();
@@ -195,11 +198,11 @@ TEST(Aligner, AlongACorridorTheEstimateStaysAndTheCovarianceSaysSo) {
 
 TEST(Aligner, SameBytesWithOneAndTwoThreads) {
     const Pair pair;
-    const auto run = [&](std::size_t threads, const CPose3D& start) {
+    const auto run = [&](std::size_t threads, const Isometry3d& start) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        return gaussian(Aligner().Align3D(pair.first.get(), pair.second.get(), start));
+        return gaussian(Aligner().Align3D(pair.first.get(), pair.second.get(), toMrpt(start)));
     };
-    for (const auto& start : {kMotion, CPose3D(6, 4, 0, -10 * kDeg, 0, 0)}) {
+    for (const auto& start : {kMotion, poseAt(6, 4, 0, -10 * kDeg)}) {
         const auto one = run(1, start), two = run(2, start);
         EXPECT_EQ(one.mean.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>(),
                   two.mean.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>());
@@ -214,8 +217,8 @@ TEST(Aligner, PassesOverPointsThatAreNotFiniteAndTakesAnyMapOfPoints) {
     constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
     for (int i = 0; i < 100; ++i) second->insertPointFast(kNaN, 1, 1);
     Aligner aligner;
-    const auto found = gaussian(aligner.Align3D(pair.first.get(), second.get(), kMotion));
-    EXPECT_LT(metresBetween(found.mean, kMotion), 0.01);
+    const auto found = gaussian(aligner.Align3D(pair.first.get(), second.get(), toMrpt(kMotion)));
+    EXPECT_LT(metresBetween(meanOf(found), kMotion), 0.01);
     EXPECT_TRUE(found.cov.asEigen().allFinite());
 }
 
@@ -233,8 +236,9 @@ TEST(Aligner, RefusesWhatItCannotAlign) {
     const Pair pair;
     Aligner aligner;
     const auto align = [&](const mrpt::maps::CMetricMap* first,
-                           const mrpt::maps::CMetricMap* second, const CPose3D& start = kMotion) {
-        return [&aligner, first, second, start] { aligner.Align3D(first, second, start); };
+                           const mrpt::maps::CMetricMap* second,
+                           const Isometry3d& start = kMotion) {
+        return [&aligner, first, second, start] { aligner.Align3D(first, second, toMrpt(start)); };
     };
     const CPointsMap* first = pair.first.get();
     const CPointsMap* second = pair.second.get();
@@ -258,9 +262,9 @@ TEST(Aligner, RefusesWhatItCannotAlign) {
     expectError("the second map has too few points: 30 ", align(first, &few));
 
     expectError("within 10 m of the initial estimate fewer than 100 points",
-                align(first, second, CPose3D(1000, 0, 0, 0, 0, 0)));
+                align(first, second, poseAt(1000, 0, 0)));
     expectError("the initial estimate is not finite",
-                align(first, second, CPose3D(std::nan(""), 0, 0, 0, 0, 0)));
+                align(first, second, poseAt(std::nan(""), 0, 0)));
     expectError("the first map is a ", [&] { aligner.Align(&grid, second, CPose2D(0, 0, 0)); });
 }
 

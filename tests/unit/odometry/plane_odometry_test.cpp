@@ -1,20 +1,26 @@
-#include "delio/odometry/plane_tracker.h"
+#include "delio/odometry/plane_odometry.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "delio/odometry/odometry.h"
+#include "delio/scan/deskew.h"
 #include "delio/slam/options.h"
+#include "poses.h"
 #include "ring_scan.h"
 
 namespace {
 using namespace delio;
-using mrpt::poses::CPose3D;
+using Eigen::Isometry3d;
 using test::degreesBetween;
+using test::metresBetween;
+using test::poseAt;
 
-Eigen::Matrix3Xf pointsSeenFrom(const test::Scene& scene, const CPose3D& pose, test::Noise& noise) {
+PlaneOdometryOptions accurate() { return Options::ofProfile("accurate").planes; }
+
+Eigen::Matrix3Xf pointsSeenFrom(const test::Scene& scene, const Isometry3d& pose,
+                                test::Noise& noise) {
     return ringScan(scene, pose, {48, 900, -24, 8, 0.01}, noise).points;
 }
 
@@ -23,74 +29,77 @@ std::vector<Scan> driveScans(const std::vector<double>& x, test::Noise& noise) {
     std::vector<Scan> scans;
     for (std::size_t i = 0; i < x.size(); ++i) {
         scans.push_back(
-            test::scanOf(pointsSeenFrom(test::yard(), {x[i], 0, 0, 0.01 * x[i], 0, 0}, noise)));
+            test::scanOf(pointsSeenFrom(test::yard(), poseAt(x[i], 0, 0, 0.01 * x[i]), noise)));
         scans.back().stamp_s = x[i] / 10;  // at 10 m/s
     }
     return scans;
 }
 
 // The recording pauses for a quarter of an hour: what the prediction says then is far off.
-TEST(PlaneTracker, BeginsANewMapAfterALongPause) {
+// Known: that enshrines a fault. What should be asked is that the vehicle, which drove on by a
+// metre, is found again in the old map, with no scan predicted and no pose off by more than three
+// standard deviations of its covariance (|jump| < 3 sigma).
+TEST(PlaneOdometry, BeginsANewMapAfterALongPause) {
     test::Noise noise;
     const std::vector<double> x = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
     auto scans = driveScans(x, noise);
     for (std::size_t i = 4; i < scans.size(); ++i) scans[i].stamp_s += 900;
-    Odometry odometry(Options::ofProfile("accurate").odometry);
+    PlaneOdometry odometry(accurate());
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto result = odometry.process(scans[i]);
         EXPECT_EQ(result.predicted, i >= 4 && i <= 6) << i << " " << result.reason;
-        const Eigen::Matrix<double, 6, 6> C = result.increment.covariance.asEigen();
+        const Matrix6& C = result.increment.covariance;
         EXPECT_TRUE(C.allFinite());
         if (i == 0 || result.predicted) continue;
-        const CPose3D truth =
-            CPose3D(x[i], 0, 0, 0.01 * x[i], 0, 0) - CPose3D(x[i - 1], 0, 0, 0.01 * x[i - 1], 0, 0);
-        EXPECT_LT(result.increment.pose.distanceTo(truth), 0.03) << i;
+        const Isometry3d truth =
+            poseAt(x[i - 1], 0, 0, 0.01 * x[i - 1]).inverse() * poseAt(x[i], 0, 0, 0.01 * x[i]);
+        EXPECT_LT(metresBetween(result.increment.pose, truth), 0.03) << i;
     }
 }
 
-TEST(PlaneTracker, FollowsADriveAlsoWhereScansAreMissingOrEmpty) {
+TEST(PlaneOdometry, FollowsADriveAlsoWhereScansAreMissingOrEmpty) {
     test::Noise noise;
     const std::vector<double> x = {0, 1, 2, 3, 6, 7, 8, 9, 10};  // two are lost after 3
     auto scans = driveScans(x, noise);
     scans[6] = test::scanOf(Eigen::Matrix3Xf(3, 0));
     scans[6].stamp_s = 0.8;
-    Odometry odometry(Options::ofProfile("accurate").odometry);
-    CPose3D pose;
+    PlaneOdometry odometry(accurate());
+    Isometry3d pose = Isometry3d::Identity();
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto result = odometry.process(scans[i]);
-        pose = pose + result.increment.pose;
+        pose = pose * result.increment.pose;
         EXPECT_EQ(result.predicted, i == 6) << i;
         EXPECT_EQ(result.reason.empty(), i != 6);
-        const CPose3D truth(x[i], 0, 0, 0.01 * x[i], 0, 0);
-        EXPECT_LT(pose.distanceTo(truth), i == 6 ? 0.1 : 0.02) << i;
+        const Isometry3d truth = poseAt(x[i], 0, 0, 0.01 * x[i]);
+        EXPECT_LT(metresBetween(pose, truth), i == 6 ? 0.1 : 0.02) << i;
         EXPECT_LT(degreesBetween(pose, truth), 0.1) << i;
-        const Eigen::Matrix<double, 6, 6> C = result.increment.covariance.asEigen();
+        const Matrix6& C = result.increment.covariance;
         if (i == 0) continue;
         EXPECT_EQ(C.llt().info(), Eigen::Success) << C;
     }
 }
 
 // The motion is not known yet: what was driven meanwhile was driven in two intervals.
-TEST(PlaneTracker, ASecondScanWithoutPointsDoesNotDoubleTheSpeed) {
+TEST(PlaneOdometry, ASecondScanWithoutPointsDoesNotDoubleTheSpeed) {
     test::Noise noise;
     const std::vector<double> x = {0, 1.2, 2.4, 3.6, 4.8};
     for (const bool stampsRise : {true, false}) {
         auto scans = driveScans(x, noise);
         scans[1].points = test::scanOf(Eigen::Matrix3Xf(3, 0)).points;
-        Odometry odometry(Options::ofProfile("accurate").odometry);
+        PlaneOdometry odometry(accurate());
         for (std::size_t i = 0; i < x.size(); ++i) {
             scans[i].stamp_s = stampsRise ? 0.1 * static_cast<double>(i) : 7;
             const auto result = odometry.process(scans[i]);
             EXPECT_EQ(result.predicted, i == 1);
             const double driven_m = i < 2 ? 0 : i == 2 ? 2.4 : 1.2;
-            EXPECT_NEAR(result.increment.pose.norm(), driven_m, 0.03) << i;
+            EXPECT_NEAR(result.increment.pose.translation().norm(), driven_m, 0.03) << i;
         }
     }
 }
 
 /** As a sensor sees it that turns once in 0.1 s while it moves on by `step`: each point in the
  *  sensor's frame at the time of its azimuth. */
-void skew(Scan& scan, const CPose3D& step) {
+void skew(Scan& scan, const Isometry3d& step) {
     const auto& x = scan.points->getPointsBufferRef_x();
     Eigen::Matrix3Xf points(3, static_cast<Eigen::Index>(x.size()));
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -107,84 +116,93 @@ void skew(Scan& scan, const CPose3D& step) {
 /** Turns between the scans of a drive through a bend that begins and ends, at 10 m/s. */
 const std::vector<double> kBend_rad = {0, 0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.05, 0.04, 0.03, 0.02};
 
-double medianError_m(const std::vector<Scan>& scans, const OdometryOptions& options) {
-    Odometry odometry(options);
+double medianError_m(const std::vector<Scan>& scans, const PlaneOdometryOptions& options) {
+    PlaneOdometry odometry(options);
     odometry.process(scans[0]);
     std::vector<double> errors_m;
     for (std::size_t i = 1; i < scans.size(); ++i) {
-        const auto step = odometry.process(scans[i]).increment.pose;
-        errors_m.push_back(step.distanceTo(CPose3D(1, 0, 0, kBend_rad[i - 1], 0, 0)));
+        const Isometry3d step = odometry.process(scans[i]).increment.pose;
+        errors_m.push_back(metresBetween(step, poseAt(1, 0, 0, kBend_rad[i - 1])));
     }
     std::sort(errors_m.begin(), errors_m.end());
     return errors_m[errors_m.size() / 2];
 }
 
-TEST(PlaneTracker, ScansWhosePointsHaveTimesAreDeskewedFromTheFirstOn) {
+TEST(PlaneOdometry, ScansWhosePointsHaveTimesAreDeskewedFromTheFirstOn) {
     test::Noise noise;
     std::vector<Scan> scans;
-    CPose3D pose;
+    Isometry3d pose = Isometry3d::Identity();
     for (std::size_t i = 0; i < kBend_rad.size(); ++i) {
         scans.push_back(test::scanOf(pointsSeenFrom(test::yard(), pose, noise)));
         scans.back().stamp_s = 0.1 * static_cast<double>(i);
         // The sweep lies halfway in the step before and halfway in the one after.
         const double before = kBend_rad[i == 0 ? 0 : i - 1], after = kBend_rad[i];
-        skew(scans.back(), CPose3D(1, 0, 0, (before + after) / 2, 0, 0));
-        pose = pose + CPose3D(1, 0, 0, after, 0, 0);
+        skew(scans.back(), poseAt(1, 0, 0, (before + after) / 2));
+        pose = pose * poseAt(1, 0, 0, after);
     }
-    auto options = Options::ofProfile("accurate").odometry;
+    auto options = accurate();
     const double deskewed_m = medianError_m(scans, options);
     EXPECT_LT(deskewed_m, 0.004);
-    options.preprocess.deskew = false;
+    options.scan.deskew = false;
     EXPECT_GT(medianError_m(scans, options), 3 * deskewed_m);
     // Without times, from the azimuth.
     for (auto& scan : scans) scan.times_s.clear();
-    options.preprocess.deskew = true;
-    options.preprocess.sweep_s = 0.1;
+    options.scan.deskew = true;
+    options.scan.sweep_s = 0.1;
     EXPECT_LT(medianError_m(scans, options), 0.004);
 }
 
-TEST(PlaneTracker, AHundredScansOfStandstill) {
+TEST(PlaneOdometry, AHundredScansOfStandstill) {
     test::Noise noise;
-    Odometry odometry(Options::ofProfile("accurate").odometry);
-    CPose3D pose;
+    PlaneOdometry odometry(accurate());
+    Isometry3d pose = Isometry3d::Identity();
     for (int i = 0; i < 100; ++i) {
-        Scan scan = test::scanOf(ringScan(test::yard(), {}, {32, 360, -24, 8, 0.02}, noise).points);
+        Scan scan = test::scanOf(
+            ringScan(test::yard(), Isometry3d::Identity(), {32, 360, -24, 8, 0.02}, noise).points);
         scan.stamp_s = 0.1 * i;
         const auto result = odometry.process(scan);
         EXPECT_FALSE(result.predicted);
-        pose = pose + result.increment.pose;
-        EXPECT_LT(pose.norm(), 0.01) << i;
-        EXPECT_LT(degreesBetween(pose, {}), 0.02) << i;
+        pose = pose * result.increment.pose;
+        EXPECT_LT(pose.translation().norm(), 0.01) << i;
+        EXPECT_LT(degreesBetween(pose, Isometry3d::Identity()), 0.02) << i;
     }
 }
 
+double detailOf(const Step& step, const std::string& name) {
+    for (const auto& [known, value] : step.details)
+        if (name == known) return value;
+    return std::nan("");
+}
+
 /** A van that keeps 5 m ahead all the way. */
-TEST(PlaneTracker, WhatDrivesAheadIsToldAndKeptOut) {
+TEST(PlaneOdometry, WhatDrivesAheadIsToldAndKeptOut) {
     test::Noise noise;
-    Odometry odometry(Options::ofProfile("accurate").odometry);
+    PlaneOdometry odometry(accurate());
     for (int i = 0; i < 15; ++i) {
         const double x = 0.8 * i;
         test::Scene scene = test::yard();
         scene.push_back({{x + 5, -1, -1.6}, {x + 10, 1, 0.2}});
-        Scan scan = test::scanOf(pointsSeenFrom(scene, CPose3D(x, 0, 0, 0, 0, 0), noise));
+        Scan scan = test::scanOf(pointsSeenFrom(scene, poseAt(x, 0, 0), noise));
         scan.stamp_s = 0.1 * i;
         const auto result = odometry.process(scan);
-        ASSERT_EQ(result.used.moving.size(), result.used.indices.size());
+        ASSERT_EQ(result.used.dynamic.size(), result.used.indices.size());
         ASSERT_EQ(static_cast<std::size_t>(result.used.points.cols()), result.used.indices.size());
-        const CPose3D truth(i == 0 ? 0 : 0.8, 0, 0, 0, 0, 0);
-        EXPECT_LT(result.increment.pose.distanceTo(truth), 0.02) << i;
+        const Isometry3d truth = poseAt(i == 0 ? 0 : 0.8, 0, 0);
+        EXPECT_LT(metresBetween(result.increment.pose, truth), 0.02) << i;
+        const double dynamic = detailOf(result, "dynamic");
+        EXPECT_EQ(dynamic, std::count(result.used.dynamic.begin(), result.used.dynamic.end(), 1));
         if (i < 6) continue;
         std::size_t found = 0, onVan = 0;
-        for (std::size_t k = 0; k < result.used.moving.size(); ++k) {
+        for (std::size_t k = 0; k < result.used.dynamic.size(); ++k) {
             const Eigen::Vector3f p = result.used.points.col(static_cast<Eigen::Index>(k));
             const bool isVan = p.x() > 4.9F && p.x() < 10.1F && std::abs(p.y()) < 1.1F &&
                                p.z() > -1.5F && p.z() < 0.3F;
             onVan += isVan;
-            found += isVan && result.used.moving[k];
+            found += isVan && result.used.dynamic[k];
         }
         EXPECT_GT(onVan, 1000U);
         EXPECT_GT(static_cast<double>(found), 0.9 * static_cast<double>(onVan)) << i;
-        EXPECT_LT(static_cast<double>(result.counts.moving), 1.1 * static_cast<double>(onVan)) << i;
+        EXPECT_LT(dynamic, 1.1 * static_cast<double>(onVan)) << i;
     }
 }
 }  // namespace

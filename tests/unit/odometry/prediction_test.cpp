@@ -5,13 +5,16 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "ring_scan.h"
+#include "delio/core/geometry.h"
+#include "poses.h"
 
 namespace {
 using delio::LinearPrediction;
 using delio::PredictionOptions;
 using delio::test::degreesBetween;
-using mrpt::poses::CPose3D;
+using delio::test::metresBetween;
+using delio::test::poseAt;
+using Eigen::Isometry3d;
 
 LinearPrediction ofFrames(unsigned frames) {
     PredictionOptions options;
@@ -20,29 +23,23 @@ LinearPrediction ofFrames(unsigned frames) {
 }
 
 /** Translation and rotation vector. */
-CPose3D motion(const Eigen::Vector3d& t, const Eigen::Vector3d& w) {
-    const double angle = w.norm();
-    const Eigen::Matrix3d R =
-        Eigen::AngleAxisd(angle, angle > 0 ? Eigen::Vector3d(w / angle) : Eigen::Vector3d(1, 0, 0))
-            .toRotationMatrix();
-    CPose3D pose(t.x(), t.y(), t.z());
-    pose.setRotationMatrix(mrpt::math::CMatrixDouble33(R));
-    return pose;
+Isometry3d motion(const Eigen::Vector3d& t, const Eigen::Vector3d& w) {
+    return delio::isometry(delio::rotationExp(w), t);
 }
 
-void expectSame(const CPose3D& a, const CPose3D& b, double tolerance) {
-    EXPECT_LT(a.distanceTo(b), tolerance) << a << " and " << b;
-    EXPECT_LT(degreesBetween(a, b), tolerance) << a << " and " << b;
+void expectSame(const Isometry3d& a, const Isometry3d& b, double tolerance) {
+    EXPECT_LT(metresBetween(a, b), tolerance) << a.matrix() << "\nand\n" << b.matrix();
+    EXPECT_LT(degreesBetween(a, b), tolerance) << a.matrix() << "\nand\n" << b.matrix();
 }
 
 TEST(Prediction, NothingKnownIsNoMotion) {
     const auto prediction = ofFrames(3);
     EXPECT_FALSE(prediction.hasMotion());
-    expectSame(prediction.predict(), {}, 1e-15);
+    expectSame(prediction.predict(), Isometry3d::Identity(), 1e-15);
 }
 
 TEST(Prediction, ConstantMotionGoesOn) {
-    const CPose3D step = motion({1.3, -0.1, 0.02}, {0.02, -0.3, 0.7});
+    const Isometry3d step = motion({1.3, -0.1, 0.02}, {0.02, -0.3, 0.7});
     auto prediction = ofFrames(3);
     for (int i = 0; i < 6; ++i) {
         prediction.observe(step);
@@ -69,26 +66,27 @@ TEST(Prediction, RotationVectorsAreAveragedTheSameWay) {
 TEST(Prediction, FewerThanNAreThoseThatThereAre) {
     auto prediction = ofFrames(3);
     prediction.observe(motion({6, 0, 0}, {0, 0, 0}));
-    expectSame(prediction.predict(), CPose3D(6, 0, 0), 1e-12);
+    expectSame(prediction.predict(), poseAt(6, 0, 0), 1e-12);
     prediction.observe(motion({0, 3, 0}, {0, 0, 0}));
-    expectSame(prediction.predict(), CPose3D(2, 2, 0), 1e-12);  // 2/3 and 1/3
+    expectSame(prediction.predict(), poseAt(2, 2, 0), 1e-12);  // 2/3 and 1/3
 }
 
 TEST(Prediction, OlderThanNIsForgotten) {
     auto prediction = ofFrames(2), one = ofFrames(1);
     for (const double x : {100.0, 3.0, 6.0}) {
-        prediction.observe(CPose3D(x, 0, 0));
-        one.observe(CPose3D(x, 0, 0));
+        prediction.observe(poseAt(x, 0, 0));
+        one.observe(poseAt(x, 0, 0));
     }
-    expectSame(prediction.predict(), CPose3D(5, 0, 0), 1e-12);
-    expectSame(one.predict(), CPose3D(6, 0, 0), 1e-12);
+    expectSame(prediction.predict(), poseAt(5, 0, 0), 1e-12);
+    expectSame(one.predict(), poseAt(6, 0, 0), 1e-12);
 }
+
 // Steps of a constant twist over unequal times, as where scans were dropped.
 TEST(Prediction, ConstantSpeedGoesOnOverUnequalTimes) {
     const Eigen::Vector3d speed(13, -1, 0.2), turn(0.2, -0.3, 0.7);
     const auto over = [&](double s) {  // exp(s * twist), by many small steps
-        CPose3D pose;
-        for (int i = 0; i < 100000; ++i) pose = pose + motion(speed * s / 1e5, turn * s / 1e5);
+        Isometry3d pose = Isometry3d::Identity();
+        for (int i = 0; i < 100000; ++i) pose = pose * motion(speed * s / 1e5, turn * s / 1e5);
         return pose;
     };
     auto prediction = ofFrames(3);

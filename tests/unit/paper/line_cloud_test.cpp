@@ -17,7 +17,8 @@ using paper::LineCloudOptions;
 
 test::RingScan scan() {
     test::Noise noise;
-    return test::ringScan(test::yard(), {}, {16, 720, -20, 8, 0.01}, noise);
+    return test::ringScan(test::yard(), Eigen::Isometry3d::Identity(), {16, 720, -20, 8, 0.01},
+                          noise);
 }
 
 std::size_t sectorOf(const Eigen::Vector3d& p, unsigned sectors) {
@@ -100,7 +101,8 @@ double shareOnOneSurface(const LineCloud& lines, const test::Scene& scene) {
 TEST(LineCloud, LinesStayOnOneSurface) {
     test::Noise noise;
     const auto scene = test::room();
-    const auto made = test::ringScan(scene, {}, {64, 1440, -24, 8, 0}, noise);
+    const auto made =
+        test::ringScan(scene, Eigen::Isometry3d::Identity(), {64, 1440, -24, 8, 0}, noise);
     LineCloudOptions all;
     all.kept = all.drawn;
     const double kept = shareOnOneSurface(drawLines(made.points, made.rings, {}), scene);

@@ -10,7 +10,6 @@
 
 namespace {
 using namespace delio;
-using mrpt::poses::CPose3D;
 using paper::closestPoints;
 using paper::LineCloud;
 using paper::LineRegistrationOptions;
@@ -21,13 +20,12 @@ using paper::searchTranslation;
  *  place, as odometry does it. */
 LineCloud linesAt(const test::Scene& scene, const Eigen::Vector3d& place, double noise_m = 0) {
     // Turned, so that neither rings nor sectors lie along the walls.
-    const auto pose = CPose3D::FromXYZYawPitchRoll(place.x(), place.y(), place.z(), 0.4, 0, 0);
+    const auto pose = test::poseAt(place.x(), place.y(), place.z(), 0.4);
     paper::LineCloudOptions options;
     test::Noise noise(static_cast<std::uint32_t>(1e4 + 1e3 * (place.x() + place.y())));
     options.seed = static_cast<std::uint32_t>(1e4 + 1e3 * (place.x() + place.y() + place.z()));
     const auto scan = test::ringScan(scene, pose, {40, 540, -24, 14, noise_m}, noise);
-    return paper::rotated(paper::drawLines(scan.points, scan.rings, options),
-                                pose.getRotationMatrix().asEigen());
+    return paper::rotated(paper::drawLines(scan.points, scan.rings, options), pose.linear());
 }
 
 LineRegistrationOptions withCentroids(unsigned iterations) {
@@ -301,8 +299,7 @@ TEST(LineRegistration, TheLeverIsHowTheTranslationFollowsTheRotation) {
         const auto at = [&](double angle) {
             const Eigen::Matrix3d turned =
                 test::rotationAbout(Eigen::Vector3d::Unit(k), angle * 180 / M_PI);
-            return registerLines(from, paper::rotated(to, turned), {0, 0, 0}, options)
-                .translation;
+            return registerLines(from, paper::rotated(to, turned), {0, 0, 0}, options).translation;
         };
         numeric.col(k) = (at(w) - at(-w)) / (2 * w);
     }

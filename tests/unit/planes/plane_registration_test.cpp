@@ -6,23 +6,24 @@
 #include <cmath>
 
 #include "delio/planes/plane_rotation.h"
-#include "delio/scan/voxel_grid.h"
+#include "delio/planes/plane_search.h"
 #include "delio/planes/plane_translation.h"
+#include "delio/scan/voxel_grid.h"
 #include "ring_scan.h"
 
 namespace {
 using namespace delio;
+using planes::Correspondences;
 using planes::PlaneMap;
-using planes::PlaneMatches;
 using planes::PlaneRegistrationOptions;
-using mrpt::poses::CPose3D;
 using test::degreesBetween;
+using test::poseAt;
 using test::rotationAbout;
 
 /** Points on random planes, seen from pose (R, t), with their true planes. */
-PlaneMatches matchesSeenFrom(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double noise_m,
-                             test::Noise& noise) {
-    PlaneMatches matches(300);
+Correspondences matchesSeenFrom(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double noise_m,
+                                test::Noise& noise) {
+    Correspondences matches(300);
     for (auto& match : matches) {
         match.normal = noise.direction();
         match.mean = 10 * noise.normals();
@@ -40,8 +41,8 @@ TEST(PlaneRotation, DoesNotDependOnTheTranslation) {
     const Eigen::Matrix3d truth = rotationAbout({1, 2, 3}, 20);
     const auto matches = matchesSeenFrom(truth, {3, -2, 1}, 0.01, noise);
     const Eigen::Matrix3d R = truth * rotationAbout({0, 1, 1}, 0.5);
-    const auto here = planes::rotationFromPlanes(matches, R, {3, -2, 1}, 0);
-    const auto there = planes::rotationFromPlanes(matches, R, {-50, 70, 20}, 0);
+    const auto here = planes::rotationFromPlanes(matches, isometry(R, {3, -2, 1}), 0);
+    const auto there = planes::rotationFromPlanes(matches, isometry(R, {-50, 70, 20}), 0);
     EXPECT_LT((here.step - there.step).norm(), 1e-9);
     EXPECT_GT(here.step.norm(), 0.008);
     EXPECT_TRUE(here.information.isApprox(there.information));
@@ -53,15 +54,16 @@ TEST(PlaneRotation, ConvergesToThePlantedRotationFromTenDegrees) {
     const auto matches = matchesSeenFrom(truth, {5, 6, 7}, 0, noise);
     Eigen::Matrix3d R = truth * rotationAbout({1, 1, -1}, 10);
     for (int i = 0; i < 10; ++i) {
-        const Eigen::Vector3d w = planes::rotationFromPlanes(matches, R, {0, 0, 0}, 0).step;
+        const Eigen::Vector3d w =
+            planes::rotationFromPlanes(matches, isometry(R, {0, 0, 0}), 0).step;
         if (w.norm() > 0) R = R * Eigen::AngleAxisd(w.norm(), w.normalized()).matrix();
     }
     EXPECT_LT(degreesBetween(R, truth), 1e-6);
 }
 
 /** Half the weighted squares of the residuals, with the best translation for each rotation. */
-double reducedCost(const PlaneMatches& matches, const Eigen::Matrix3d& R) {
-    const auto move = planes::translationFromPlanes(matches, R, {0, 0, 0}, 0);
+double reducedCost(const Correspondences& matches, const Eigen::Matrix3d& R) {
+    const auto move = planes::translationFromPlanes(matches, isometry(R, {0, 0, 0}), 0);
     double cost = 0;
     for (const auto& match : matches)
         cost += match.weight * std::pow(match.residual(R, move.step), 2) / 2;
@@ -72,7 +74,7 @@ TEST(PlaneRotation, InformationIsTheCurvatureOfTheCostWithoutTranslation) {
     test::Noise noise;
     const Eigen::Matrix3d truth = rotationAbout({0, 0, 1}, 40);
     const auto matches = matchesSeenFrom(truth, {1, 2, 3}, 0, noise);
-    const auto found = planes::rotationFromPlanes(matches, truth, {1, 2, 3}, 0);
+    const auto found = planes::rotationFromPlanes(matches, isometry(truth, {1, 2, 3}), 0);
     constexpr double h = 1e-4;
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
@@ -89,7 +91,7 @@ TEST(PlaneTranslation, IsTheLeastSquaresSolution) {
     const Eigen::Matrix3d R = rotationAbout({1, 0, 2}, 15);
     const Eigen::Vector3d truth(3, -1, 0.5);
     const auto exact = matchesSeenFrom(R, truth, 0, noise);
-    EXPECT_LT((planes::translationFromPlanes(exact, R, {0, 0, 0}, 0).step - truth).norm(),
+    EXPECT_LT((planes::translationFromPlanes(exact, isometry(R, {0, 0, 0}), 0).step - truth).norm(),
               1e-9);
     const auto noisy = matchesSeenFrom(R, truth, 0.05, noise);
     const auto cost = [&](const Eigen::Vector3d& t) {
@@ -97,7 +99,8 @@ TEST(PlaneTranslation, IsTheLeastSquaresSolution) {
         for (const auto& match : noisy) sum += match.weight * std::pow(match.residual(R, t), 2);
         return sum;
     };
-    const Eigen::Vector3d best = planes::translationFromPlanes(noisy, R, {0, 0, 0}, 0).step;
+    const Eigen::Vector3d best =
+        planes::translationFromPlanes(noisy, isometry(R, {0, 0, 0}), 0).step;
     for (int i = 0; i < 50; ++i) EXPECT_GT(cost(best + 1e-3 * noise.direction()), cost(best));
 }
 
@@ -109,34 +112,36 @@ TEST(PlaneTranslation, AnAxisThatNoNormalSeesIsLeftAlone) {
         match.normal.normalize();
         match.point = match.mean - Eigen::Vector3d(1, 1, 1);
     }
-    const auto found =
-        planes::translationFromPlanes(matches, Eigen::Matrix3d::Identity(), {0, 0, 0}, 1e-3);
+    const auto found = planes::translationFromPlanes(matches, Eigen::Isometry3d::Identity(), 1e-3);
     EXPECT_LT((found.step - Eigen::Vector3d(0, 1, 1)).norm(), 1e-9);
 }
 
 const test::Sensor kSensor{64, 1440, -24, 4, 0.01};
 
-Eigen::Matrix3Xf pointsSeenFrom(const test::Scene& scene, const CPose3D& pose, test::Noise& noise) {
+Eigen::Matrix3Xf pointsSeenFrom(const test::Scene& scene, const Eigen::Isometry3d& pose,
+                                test::Noise& noise) {
     return test::ringScan(scene, pose, kSensor, noise).points;
 }
 
 /** The scene as one scan from the origin sees it. */
 PlaneMap mapOf(const test::Scene& scene, test::Noise& noise) {
     PlaneMap map(planes::PlaneMapOptions{});
-    map.add(scan::voxelCentroids(pointsSeenFrom(scene, {}, noise), 0.25).cast<double>());
+    map.add(scan::voxelCentroids(pointsSeenFrom(scene, Eigen::Isometry3d::Identity(), noise), 0.25)
+                .cast<double>());
     return map;
 }
 
 TEST(PlaneRegistration, FindsAScanInTheMap) {
     test::Noise noise;
     const PlaneMap map = mapOf(test::yard(), noise);
-    const CPose3D truth(0.8, 0.1, 0.02, 0.03, 0.004, -0.003);
+    const Eigen::Isometry3d truth = poseAt(0.8, 0.1, 0.02, 0.03, 0.004, -0.003);
     const Eigen::Matrix3Xd points =
         scan::voxelCentroids(pointsSeenFrom(test::yard(), truth, noise), 0.5).cast<double>();
-    const auto found = planes::registerToPlanes(map, points, rotationAbout({0, 0, 1}, 0.5),
-                                                  {0.5, 0, 0}, 1, PlaneRegistrationOptions{});
+    const auto found =
+        planes::registerToPlanes(map, points, isometry(rotationAbout({0, 0, 1}, 0.5), {0.5, 0, 0}),
+                                 1, PlaneRegistrationOptions{});
     ASSERT_TRUE(found.valid);
-    EXPECT_LT(degreesBetween(found.rotation.rotation, truth.getRotationMatrix().asEigen()), 0.05);
+    EXPECT_LT(degreesBetween(found.rotation.rotation, truth.linear()), 0.05);
     EXPECT_LT((found.translation.translation - Eigen::Vector3d(0.8, 0.1, 0.02)).norm(), 0.01);
     EXPECT_GT(found.share, 0.9);
     EXPECT_EQ(found.rotation.unobservedAxes.cols() + found.translation.unobservedAxes.cols(), 0);
@@ -147,16 +152,16 @@ TEST(PlaneRegistration, FindsAScanInTheMap) {
 TEST(PlaneRegistration, TheSearchFindsWhatTheIterationCannot) {
     test::Noise noise;
     const PlaneMap map = mapOf(test::yard(), noise);
-    const CPose3D truth(3.2, -0.9, 0, 0, 0, 0);
+    const Eigen::Isometry3d truth = poseAt(3.2, -0.9, 0);
     const Eigen::Matrix3Xf scan = pointsSeenFrom(test::yard(), truth, noise);
     const Eigen::Matrix3Xd points = scan::voxelCentroids(scan, 0.5).cast<double>();
     const auto surfaces = surfaces::estimateNormals(scan, surfaces::NormalsOptions{});
-    const auto found = planes::searchInPlanes(map, points, surfaces, Eigen::Matrix3d::Identity(),
-                                                {0, 0, 0}, 4, PlaneRegistrationOptions{});
+    const auto found = planes::searchInPlanes(map, points, surfaces, Eigen::Isometry3d::Identity(),
+                                              4, PlaneRegistrationOptions{});
     ASSERT_TRUE(found.valid);
     EXPECT_LT((found.translation.translation - Eigen::Vector3d(3.2, -0.9, 0)).norm(), 0.02);
     const auto agreed = [&](const Eigen::Vector3d& t) {
-        return planes::agreement(map, surfaces, Eigen::Matrix3d::Identity(), t, 0.2);
+        return planes::agreement(map, surfaces, isometry(Eigen::Matrix3d::Identity(), t), 0.2);
     };
     EXPECT_GT(agreed({3.2, -0.9, 0}), 1.5 * agreed({0, 0, 0}));
     EXPECT_LE(agreed({3.2, -0.9, 0}), 1);
@@ -166,10 +171,10 @@ TEST(PlaneRegistration, AlongACorridorThePredictionStays) {
     test::Noise noise;
     const PlaneMap map = mapOf(test::corridor(), noise);
     const Eigen::Matrix3Xd points =
-        scan::voxelCentroids(pointsSeenFrom(test::corridor(), {1, 0.2, 0.05, 0, 0, 0}, noise), 0.5)
+        scan::voxelCentroids(pointsSeenFrom(test::corridor(), poseAt(1, 0.2, 0.05), noise), 0.5)
             .cast<double>();
-    const auto found = planes::registerToPlanes(map, points, Eigen::Matrix3d::Identity(),
-                                                  {0.6, 0, 0}, 1, PlaneRegistrationOptions{});
+    const auto found =
+        planes::registerToPlanes(map, points, poseAt(0.6, 0, 0), 1, PlaneRegistrationOptions{});
     ASSERT_TRUE(found.valid);
     ASSERT_EQ(found.translation.unobservedAxes.cols(), 1);
     EXPECT_NEAR(std::abs(found.translation.unobservedAxes(0, 0)), 1, 1e-2);
@@ -182,11 +187,12 @@ TEST(PlaneRegistration, AlongACorridorThePredictionStays) {
 TEST(PlaneRegistration, WithoutPlanesThePredictionStays) {
     test::Noise noise;
     const PlaneMap empty(planes::PlaneMapOptions{});
-    const Eigen::Matrix3Xd points = pointsSeenFrom(test::yard(), {}, noise).cast<double>();
+    const Eigen::Matrix3Xd points =
+        pointsSeenFrom(test::yard(), Eigen::Isometry3d::Identity(), noise).cast<double>();
     const Eigen::Matrix3d R = rotationAbout({0, 0, 1}, 3);
     for (const auto& cloud : {points, Eigen::Matrix3Xd(3, 0)}) {
-        const auto found =
-            planes::registerToPlanes(empty, cloud, R, {1, 2, 3}, 1, PlaneRegistrationOptions{});
+        const auto found = planes::registerToPlanes(empty, cloud, isometry(R, {1, 2, 3}), 1,
+                                                    PlaneRegistrationOptions{});
         EXPECT_FALSE(found.valid);
         EXPECT_EQ(found.rotation.rotation, R);
         EXPECT_EQ(found.translation.translation, Eigen::Vector3d(1, 2, 3));
@@ -194,5 +200,4 @@ TEST(PlaneRegistration, WithoutPlanesThePredictionStays) {
         EXPECT_EQ(found.translation.covariance.llt().info(), Eigen::Success);
     }
 }
-
 }  // namespace

@@ -9,10 +9,10 @@
 
 namespace {
 using namespace delio;
-using mrpt::poses::CPose3D;
+using test::poseAt;
 
 /** The pose that the motion leads to after `time_s`, in many small steps. */
-CPose3D poseAfter(const Motion& motion, double time_s) {
+Eigen::Isometry3d poseAfter(const Motion& motion, double time_s) {
     constexpr int kSteps = 20000;
     const double dt = time_s / kSteps, angle = dt * motion.turning.norm();
     Eigen::Isometry3d step = Eigen::Isometry3d::Identity(), pose = step;
@@ -20,32 +20,32 @@ CPose3D poseAfter(const Motion& motion, double time_s) {
     if (angle != 0)
         step.linear() = Eigen::AngleAxisd(angle, motion.turning.normalized()).toRotationMatrix();
     for (int i = 0; i < kSteps; ++i) pose = pose * step;
-    return {Eigen::Matrix3d(pose.rotation()), Eigen::Vector3d(pose.translation())};
+    return pose;
 }
 
 TEST(Deskew, TheMotionOfAnIncrementLeadsThereInItsTime) {
-    const CPose3D increment(1.5, -0.2, 0.05, 0.1, -0.03, 0.02);
+    const Eigen::Isometry3d increment = poseAt(1.5, -0.2, 0.05, 0.1, -0.03, 0.02);
     const Motion motion = Motion::of(increment, 0.25);
-    EXPECT_LT(poseAfter(motion, 0.25).distanceTo(increment), 1e-4);
-    const Motion straight = Motion::of(CPose3D(2, 0, 0, 0, 0, 0), 0.5);
+    EXPECT_LT(test::metresBetween(poseAfter(motion, 0.25), increment), 1e-4);
+    const Motion straight = Motion::of(poseAt(2, 0, 0, 0, 0, 0), 0.5);
     EXPECT_NEAR(straight.velocity.x(), 4, 1e-12);
     EXPECT_EQ(straight.turning.norm(), 0);
 }
 
 TEST(Deskew, PointsComeToWhereTheyAreSeenFromAtTheStamp) {
     test::Noise noise;
-    for (const CPose3D& increment : {CPose3D(2.5, 0.1, 0.02, 0.12, 0.02, -0.01),
-                                     CPose3D(1, 0, 0, 0, 0, 0), CPose3D(0, 0, 0, 0.3, 0, 0)}) {
+    for (const Eigen::Isometry3d& increment :
+         {poseAt(2.5, 0.1, 0.02, 0.12, 0.02, -0.01), poseAt(1, 0, 0, 0, 0, 0),
+          poseAt(0, 0, 0, 0.3, 0, 0)}) {
         const Motion motion = Motion::of(increment, 0.1);
         Eigen::Matrix3Xf seen(3, 50), expected(3, 50);
         std::vector<float> times_s;
         for (Eigen::Index i = 0; i < seen.cols(); ++i) {
             times_s.push_back(static_cast<float>(0.05 * noise.uniform()));
             seen.col(i) = (30 * noise.direction()).cast<float>();
-            double x = 0, y = 0, z = 0;
-            poseAfter(motion, double{times_s.back()})
-                .composePoint(double{seen(0, i)}, double{seen(1, i)}, double{seen(2, i)}, x, y, z);
-            expected.col(i) = Eigen::Vector3d(x, y, z).cast<float>();
+            const Eigen::Isometry3d pose = poseAfter(motion, double{times_s.back()});
+            const Eigen::Vector3d there = pose * seen.col(i).cast<double>();
+            expected.col(i) = there.cast<float>();
         }
         EXPECT_LT((scan::deskew(seen, times_s, motion) - expected).cwiseAbs().maxCoeff(), 1e-4);
     }

@@ -29,7 +29,7 @@ TEST(Preprocess, WhatIsNotFiniteIsDroppedAndCounted) {
     ASSERT_EQ(cloud.points.cols(), 2);
     EXPECT_EQ(cloud.points.col(0), points.col(0));  // in the sensor's order, to the bit
     EXPECT_EQ(cloud.points.col(1), points.col(6));
-    EXPECT_EQ(cloud.rings.size(), 2U);
+    EXPECT_EQ(scan::neighbouringRings(cloud).size(), 2U);
 }
 
 TEST(Preprocess, PointsWithoutATimeAreDroppedWhereTimesCount) {
@@ -100,21 +100,25 @@ TEST(Preprocess, RingsThatTheSourceKnowsStayWithTheirPoints) {
     Scan scan = test::scanOf(points);
     scan.rings = {7, 8, 9, 63};
     // Numbered from the top: the second of the points that are kept is the higher one.
-    EXPECT_EQ(preprocess(scan, {}).rings, (std::vector<std::uint16_t>{1, 0}));
+    const auto cloud = preprocess(scan, {});
+    EXPECT_EQ(cloud.rings, (std::vector<std::uint16_t>{7, 63}));
+    EXPECT_EQ(scan::neighbouringRings(cloud), (std::vector<std::uint16_t>{1, 0}));
 }
 
 TEST(Preprocess, RingsAreFoundWhereTheSourceDoesNotKnow) {
     test::Noise noise;
-    const auto made = test::ringScan(test::yard(), {}, {}, noise);
+    const auto made = test::ringScan(test::yard(), Eigen::Isometry3d::Identity(), {}, noise);
     const auto cloud = preprocess(test::scanOf(made.points), {});
     ASSERT_EQ(cloud.points.cols(), made.points.cols());  // nothing is near or far in the yard
-    EXPECT_EQ(cloud.rings, made.rings);
+    EXPECT_TRUE(cloud.rings.empty());
+    EXPECT_EQ(scan::neighbouringRings(cloud), made.rings);
 }
 
 TEST(Preprocess, AnEmptyScanStaysEmpty) {
     const auto cloud = preprocess(test::scanOf({}), {});
     EXPECT_EQ(cloud.points.cols(), 0);
     EXPECT_TRUE(cloud.rings.empty());
+    EXPECT_TRUE(scan::neighbouringRings(cloud).empty());
     const auto none = preprocess(test::scanOf(Eigen::Vector3f(kNaN, 0, 0)), {});
     EXPECT_EQ(none.points.cols(), 0);
     EXPECT_EQ(none.notFinite, 1U);

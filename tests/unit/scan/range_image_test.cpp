@@ -14,7 +14,8 @@ class RangeImageOfARoom : public testing::Test {
     RangeImageOfARoom() {
         test::Noise noise;
         const test::Sensor sensor{64, 1800, -24, 8, 0.02};
-        image_ = RangeImage(ringScan(test::room(), {}, sensor, noise).points, 0.5);
+        image_ = RangeImage(
+            ringScan(test::room(), Eigen::Isometry3d::Identity(), sensor, noise).points, 0.5);
     }
     Place at(float x, float y, float z) const { return image_.at({x, y, z}, 0.4F); }
 

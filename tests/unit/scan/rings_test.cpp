@@ -18,7 +18,8 @@ constexpr unsigned kRings = 64;
 /** 64 rings of an HDL-64E's field of view, 0 to 63, ranges as they come, 2 cm of noise. */
 delio::test::RingScan hdl64() {
     Noise noise;
-    return delio::test::ringScan(delio::test::yard(), {}, {kRings, 400, -24.8, 2, 0.02}, noise);
+    return delio::test::ringScan(delio::test::yard(), Eigen::Isometry3d::Identity(),
+                                 {kRings, 400, -24.8, 2, 0.02}, noise);
 }
 
 delio::test::RingScan reordered(const delio::test::RingScan& scan,

@@ -104,7 +104,7 @@ TEST(Normals, ABallOfPointsIsRough) {
 
 TEST(Normals, EveryNeighbourhoodIsCountedOnce) {
     test::Noise noise;
-    const auto scan = test::ringScan(test::yard(), {}, {}, noise);
+    const auto scan = test::ringScan(test::yard(), Eigen::Isometry3d::Identity(), {}, noise);
     const auto normals = estimateNormals(scan.points, {});
     EXPECT_GT(normals.lines, 0U);
     EXPECT_GT(normals.rough, 0U);

@@ -25,6 +25,8 @@ struct MapOptions : StageOptions {
     double minRange_m = 2.5;
     double maxRange_m = 60.0;
 
+    void check(const std::string& section) const override;
+
  protected:
     std::vector<OptionField> fields() const override;
 };

@@ -35,6 +35,8 @@ struct AlignerOptions : public StageOptions {
                             const std::string& section) override;
     void saveToConfigFile(mrpt::config::CConfigFileBase& target,
                           const std::string& section) const override;
+    /** Of every stage. */
+    void check(const std::string& section) const override;
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -57,8 +59,8 @@ struct AlignerOptions : public StageOptions {
  *
  *  Throws delio::Error, one line that says which map or estimate is wrong and why, where a map is
  *  missing, is no CPointsMap or has no finite point, where the first has no planes (a cloud of a
- *  2D scan has none), the second too few points, the estimate is not finite, or where too few
- *  points come to lie on planes of the first. */
+ *  2D scan has none), the second too few points, the estimate is not finite, where too few points
+ *  come to lie on planes of the first, or where two of the options contradict each other. */
 class Aligner : public mrpt::slam::CMetricMapsAlignmentAlgorithm {
  public:
     /** Give it (or a CICP::TReturnInfo, or the base) as `outInfo`. `goodness`: share of the points

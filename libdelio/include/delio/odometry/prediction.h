@@ -32,7 +32,7 @@ class LinearPrediction {
  private:
     std::size_t frames_;
     struct Observed {
-        Eigen::Isometry3d increment;
+        Eigen::Isometry3d increment = Eigen::Isometry3d::Identity();
         double duration_s;
     };
     std::deque<Observed> latestFirst_;

@@ -20,7 +20,7 @@ struct Quality {
     Eigen::Vector3d rotationObservability = Eigen::Vector3d::Zero();
     Eigen::Vector3d translationObservability = Eigen::Vector3d::Zero();
     /** Unit vectors in the sensor's frame at this scan about which, and along which, the prediction
-     *  was kept; all three axes where the scan was predicted. */
+     *  was kept; all three axes where the scan was predicted, or was the first. */
     Eigen::Matrix3Xd unobservedRotation, unobservedTranslation;
 };
 

@@ -14,7 +14,7 @@ struct RunSettings {
     std::string profile = "accurate";  //!< that the options were made of, for the summary
     std::vector<std::string> command;  //!< for the summary
     std::string sensorLabel = "lidar";
-    /** Where key frames are put aside while the drive goes on; empty: the system's folder for
+    /** Where keyframes are put aside while the drive goes on; empty: the system's folder for
      *  temporary files. */
     std::string folder;
     bool graph = true;  //!< false: the chain of increments alone, not optimised

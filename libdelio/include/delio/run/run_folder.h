@@ -41,10 +41,10 @@ class RunFolder {
     std::string path(const char* name) const;
     bool has(const char* name) const;
 
-    /** Writes all that the record has; files of an earlier run that this one does not have are
-     *  removed. `map`: null for none. Returns what is missing: the record's fault, or why map or
-     *  pictures could not be made; empty if nothing. Where anything else cannot be written, Error,
-     *  and there is no summary. */
+    /** Writes all that the record has (making the folder where it is not there); files of an
+     * earlier run that this one does not have are removed. `map`: null for none. Returns what is
+     * missing: the record's fault, or why map or pictures could not be made; empty if nothing.
+     * Where anything else cannot be written, Error, and there is no summary. */
     std::string write(RunRecord record, const map::MapBuilder* map = nullptr,
                       const Illustrate& illustrate = {}) const;
 

@@ -15,6 +15,26 @@ struct VoxelNumbers {
 };
 VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size);
 
+/** The sum of the columns in each voxel, and their count. */
+template <int kRows>
+struct VoxelSums {
+    Eigen::Matrix<float, kRows, Eigen::Dynamic> sums;
+    Eigen::RowVectorXf counts;
+};
+template <int kRows>
+VoxelSums<kRows> sumsOf(const Eigen::Matrix<float, kRows, Eigen::Dynamic>& columns,
+                        const VoxelNumbers& numbers) {
+    VoxelSums<kRows> result;
+    result.sums.setZero(kRows, numbers.voxels);
+    result.counts.setZero(numbers.voxels);
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+        const Eigen::Index voxel = numbers.ofPoint[static_cast<std::size_t>(i)];
+        result.sums.col(voxel) += columns.col(i);
+        result.counts[voxel] += 1;
+    }
+    return result;
+}
+
 /** The centroid of the points in each voxel, in the order of their numbers. */
 Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers& numbers);
 

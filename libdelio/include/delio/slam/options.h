@@ -52,6 +52,6 @@ struct Options : public OdometryOptions {
     /** Those in use, in the order in which they are written. */
     ConstStageList stages() const;
 
-    std::set<std::string> given_;  //!< sections that were loaded or set
+    std::set<std::string> given_;  //!< sections that were loaded or set, the profile's apart
 };
 }  // namespace delio

@@ -24,7 +24,9 @@ class Slam {
     void attach(std::shared_ptr<SlamListener> listener);
 
     /** Where the odometry or a listener throws, trajectory and listeners are as they were before,
-     *  as if the scan had not been recorded: how far it led is counted to the next one. */
+     *  as if the scan had not been recorded: how far it led is counted to the next one. (Not where
+     *  that is not known: the odometry threw, or gave an increment that is not finite, which is an
+     *  Error.) */
     ScanReport process(const Scan& scan);
 
     /** Of the odometry alone. */

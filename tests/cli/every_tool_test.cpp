@@ -1,0 +1,29 @@
+// What every tool has.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "command.h"
+
+namespace {
+using namespace delio;
+using test::runTool;
+
+TEST(EveryTool, HelpAndVersion) {
+    for (const std::string tool : {"kitti2rawlog", "rawlog2kitti", "synth2rawlog", "delio-slam",
+                                   "delio-eval", "delio-snapshot", "delio-figures"}) {
+        const auto help = runTool(tool, {"--help"});
+        EXPECT_EQ(help.exitCode, 0) << tool;
+        EXPECT_EQ(help.err, "") << tool;
+        for (const std::string option : {"--help", "--version", "--verbose"})
+            EXPECT_NE(help.out.find(option), std::string::npos) << tool << option;
+        const auto version = runTool(tool, {"--version"});
+        EXPECT_EQ(version.exitCode, 0) << tool;
+        EXPECT_EQ(version.out, tool + " 0.1.0\n");
+        EXPECT_EQ(version.err, "") << tool;
+        const auto nothing = runTool(tool, {});
+        test::expectFailure(nothing, 2, {"--help"});
+        EXPECT_EQ(nothing.out, "") << tool;
+    }
+}
+}  // namespace

@@ -1,0 +1,60 @@
+#include "delio/core/timeline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+using delio::Timeline;
+
+constexpr double kUsual_s = 0.1;
+
+TEST(Timeline, BeforeTheFirstScanIsWhatIsUsual) {
+    for (const double stamp_s : {0.0, -5.0, 1317354879.5}) {
+        Timeline timeline;
+        EXPECT_EQ(timeline.sinceStart_s(), 0);
+        EXPECT_EQ(timeline.advance(stamp_s), kUsual_s);
+        EXPECT_EQ(timeline.sinceStart_s(), 0);  // the first scan is the start
+    }
+}
+
+TEST(Timeline, StampsThatRiseAreBelieved) {
+    Timeline timeline;
+    timeline.advance(1000);
+    EXPECT_EQ(timeline.advance(1000.25), 0.25);
+    EXPECT_EQ(timeline.advance(1000.5), 0.25);
+    EXPECT_EQ(timeline.advance(1060.5), 60);  // a pause
+    EXPECT_EQ(timeline.sinceStart_s(), 60.5);
+}
+
+TEST(Timeline, StampsThatStandStillAreNot) {
+    Timeline timeline;
+    timeline.advance(7);
+    for (int i = 1; i < 5; ++i) {
+        EXPECT_EQ(timeline.advance(7), kUsual_s);
+        EXPECT_NEAR(timeline.sinceStart_s(), i * kUsual_s, 1e-12);
+    }
+    EXPECT_EQ(timeline.advance(7.5), 0.5);
+    EXPECT_NEAR(timeline.sinceStart_s(), 4 * kUsual_s + 0.5, 1e-12);
+}
+
+TEST(Timeline, AClockThatIsSetBackCountsOnFromThere) {
+    Timeline timeline;
+    timeline.advance(1000);
+    timeline.advance(1000.5);
+    EXPECT_EQ(timeline.advance(3), kUsual_s);
+    EXPECT_EQ(timeline.advance(3.25), 0.25);
+    EXPECT_NEAR(timeline.sinceStart_s(), 0.5 + kUsual_s + 0.25, 1e-12);
+}
+
+TEST(Timeline, TimeGoesOnWhateverTheStampsAre) {
+    Timeline timeline;
+    const double nan = std::nan("");
+    double before_s = -1;
+    for (const double stamp_s : {5.0, 5.0, 4.0, nan, nan, 4.0, 4.5, -1e9, 0.0}) {
+        EXPECT_GT(timeline.advance(stamp_s), 0);
+        EXPECT_GT(timeline.sinceStart_s(), before_s);
+        before_s = timeline.sinceStart_s();
+    }
+}
+}  // namespace

@@ -1,0 +1,73 @@
+#include "delio/odometry/adaptive_kernel.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "poses.h"
+
+namespace {
+using namespace delio;
+using Eigen::Isometry3d;
+using test::poseAt;
+
+/** Kernels from 2 * 0.01 m to 100 m. */
+planes::PlaneRegistrationOptions wide() {
+    planes::PlaneRegistrationOptions options;
+    options.first_kernel = 100;
+    options.last_kernel = 0.01;
+    return options;
+}
+
+/** After predictions that were off by so many metres each. */
+AdaptiveKernel after(const std::vector<double>& errors_m) {
+    AdaptiveKernel kernel;
+    for (const double error : errors_m) kernel.observe(poseAt(0, error, 0), poseAt(0, 0, 0));
+    return kernel;
+}
+
+TEST(AdaptiveKernel, IsTheFirstOneUntilThreePredictionsAreKnown) {
+    for (const auto& errors : {std::vector<double>{}, {0.1}, {0.1, 0.1}})
+        EXPECT_EQ(after(errors).width(wide()), 100);
+    EXPECT_NE(after({0.1, 0.1, 0.1}).width(wide()), 100);
+}
+
+TEST(AdaptiveKernel, IsThreeTimesTheRootMeanSquare) {
+    EXPECT_NEAR(after({0.1, 0.1, 0.1}).width(wide()), 0.3, 1e-12);
+    EXPECT_NEAR(after({0.1, 0.1, 0.2}).width(wide()), 3 * std::sqrt(0.06 / 3), 1e-12);
+    EXPECT_NEAR(after({0, 0, 0, 0.5}).width(wide()), 0.75, 1e-12);
+}
+
+TEST(AdaptiveKernel, ATurnCountsAsWhatItMovesAtTwentyMetres) {
+    const auto widthOf = [](const Isometry3d& off) {
+        AdaptiveKernel kernel;
+        const Isometry3d predicted = poseAt(100, -20, 3, 2, 0.1, -0.2);  // wherever that is
+        for (int i = 0; i < 3; ++i) kernel.observe(predicted * off, predicted);
+        return kernel.width(wide());
+    };
+    for (const double angle : {0.01, -0.2, 1.0}) {
+        const double chord = 2 * 20 * std::sin(std::abs(angle) / 2);
+        EXPECT_NEAR(widthOf(poseAt(0, 0, 0, angle)), 3 * chord, 1e-9);
+        EXPECT_NEAR(widthOf(poseAt(0.03, 0.04, 0, 0, 0, angle)), 3 * (0.05 + chord), 1e-9);
+    }
+}
+
+TEST(AdaptiveKernel, StaysWithinTheOptions) {
+    planes::PlaneRegistrationOptions options;
+    options.first_kernel = 1;
+    options.last_kernel = 0.1;
+    EXPECT_EQ(after({0, 0, 0}).width(options), 0.2);  // twice the last one
+    EXPECT_EQ(after({5, 5, 5}).width(options), 1);
+    EXPECT_NEAR(after({0.2, 0.2, 0.2}).width(options), 0.6, 1e-12);
+    options.last_kernel = 0.5;  // as wide as check() allows
+    EXPECT_EQ(after({0.2, 0.2, 0.2}).width(options), 1);
+}
+
+TEST(AdaptiveKernel, RemembersTwentyPredictions) {
+    std::vector<double> errors(20, 0.1);
+    errors.insert(errors.begin(), 7);
+    EXPECT_NEAR(after(errors).width(wide()), 0.3, 1e-12);
+    errors.pop_back();
+    EXPECT_NEAR(after(errors).width(wide()), 3 * std::sqrt((49 + 19 * 0.01) / 20), 1e-12);
+}
+}  // namespace

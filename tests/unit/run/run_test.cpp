@@ -1,0 +1,124 @@
+#include "delio/run/run.h"
+
+#include "delio/core/error.h"
+#include "toy_run.h"
+
+namespace {
+using namespace delio;
+using test::ToyRun;
+
+TEST_F(ToyRun, NotesEachScan) {
+    run::Run run(Options(), {});
+    for (const auto& scan : scans()) {
+        const auto& row = run.process(scan, 1.5);
+        EXPECT_EQ(row.scan, scan.index);
+        EXPECT_EQ(row.stamp_s, scan.stamp_s);
+        EXPECT_GT(row.points, 20000U);
+        EXPECT_LE(row.points, scan.points->size());
+        EXPECT_GT(row.total_ms(), 1.5);
+        EXPECT_EQ(row.report.listeners_ms.size(), 2U);  // graph and map
+    }
+    const auto& record = run.record();
+    EXPECT_EQ(record.rows.size(), kScans);
+    run.finish(true);
+    EXPECT_TRUE(record.complete);
+    EXPECT_TRUE(record.warnings.empty());
+    EXPECT_EQ(record.predicted(), 0U);
+    EXPECT_NEAR(record.path_m(), kScans - 1, 0.1);
+    EXPECT_EQ(record.final.stamps_s, record.odometry.stamps_s);
+    EXPECT_FALSE(record.optimised());
+    EXPECT_FALSE(record.metrics);  // no truth
+    EXPECT_GT(run.map()->points(record.final.poses).size(), 1000U);
+}
+
+TEST_F(ToyRun, ContradictingOptionsAreRefused) {
+    Options options;
+    options.planes.scan.min_range = 50;
+    options.planes.scan.max_range = 10;
+    EXPECT_THROW(run::Run(options, {}), Error);
+}
+
+TEST_F(ToyRun, AGraphThatIsNotWantedIsTheChainAlone) {
+    auto options = Options::ofProfile("paper");
+    options.paper.lineRegistration.search_radius = 1;
+    run::RunSettings settings;
+    settings.map = settings.graph = false;
+    run::Run run(options, settings);
+    process(run);
+    run.finish(true);
+    EXPECT_EQ(run.record().graph.edges().size(), kScans - 1);
+    for (std::size_t i = 0; i < kScans; ++i)
+        EXPECT_EQ(run.record().final.poses[i].matrix(), run.record().odometry.poses[i].matrix());
+}
+
+TEST_F(ToyRun, ScoresBesideTheTruthOfTheScansThatWereUsed) {
+    writeSideFiles();
+    run::Run run(Options(), {});
+    run.readSideFiles(drive_);
+    process(run);
+    run.finish(true);
+    const auto& record = run.record();
+    ASSERT_TRUE(record.metrics);
+    EXPECT_NEAR(record.metrics->row.length_m, kScans - 1, 1e-6);
+    EXPECT_LT(record.metrics->end_error_m, 0.1);
+    EXPECT_FALSE(record.metricsBefore);  // there was nothing to optimise
+    ASSERT_EQ(record.truth.size(), kScans);
+    // In the vehicle's frame, for pictures.
+    EXPECT_NEAR(record.truth.back().translation().x(), kScans - 1, 1e-6);
+}
+
+TEST_F(ToyRun, SideFilesThatCannotBeUsed) {
+    writeSideFiles();
+    std::vector<std::string> told;
+    run::RunSettings settings;
+    settings.map = false;
+    settings.onWarning = [&](const std::string& text) { told.push_back(text); };
+    {
+        run::Run run(Options(), settings);
+        EXPECT_THROW(run.readSideFiles(drive_, folder_ / "none.txt"), Error);
+    }
+    test::writeText(folder_ / "d.calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\n");
+    run::Run run(Options(), settings);
+    run.readSideFiles(drive_);
+    EXPECT_EQ(told.size(), 2U);  // no Tr, and so no evaluation
+    EXPECT_EQ(told, run.record().warnings);
+    EXPECT_THROW(run.readSideFiles(drive_, folder_ / "d.poses.txt"), Error);  // asked for
+    process(run);
+    run.finish(true);
+    EXPECT_FALSE(run.record().metrics);
+    EXPECT_EQ(run.record().fault, "");
+}
+
+// Asked for, a truth that has not all scans is a fault; found beside the drive, a warning.
+TEST_F(ToyRun, ATruthThatIsTooShort) {
+    writeSideFiles();
+    const std::string first = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+    test::writeText(folder_ / "d.poses.txt", first);
+    run::RunSettings settings;
+    settings.map = false;
+    for (const bool asked : {false, true}) {
+        run::Run run(Options(), settings);
+        run.readSideFiles(drive_, asked ? std::string(folder_ / "d.poses.txt") : "");
+        process(run);
+        run.finish(true);
+        EXPECT_EQ(run.record().fault.empty(), !asked);
+        EXPECT_EQ(run.record().warnings.size(), asked ? 0U : 1U);
+        EXPECT_FALSE(run.record().metrics);
+        EXPECT_EQ(run.record().final.poses.size(), kScans);
+    }
+}
+
+TEST_F(ToyRun, TimesThatDoNotRise) {
+    run::RunSettings settings;
+    settings.map = false;
+    run::Run run(Options(), settings);
+    auto drive = scans();
+    drive[2].stamp_s = drive[1].stamp_s;
+    for (const auto& scan : drive) run.process(scan);
+    run.finish(true);
+    EXPECT_FALSE(run.record().stampsRise);
+    EXPECT_EQ(run.record().warnings.size(), 1U);
+    EXPECT_TRUE(run.record().final.stamps_s.empty());
+    EXPECT_EQ(run.record().odometry.stamps_s.size(), kScans);
+}
+}  // namespace
