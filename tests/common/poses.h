@@ -35,9 +35,7 @@ inline double degreesBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d
 }
 
 /** Rotation about z of a pose, radians. */
-inline double yawOf(const Eigen::Isometry3d& pose) {
-    return std::atan2(pose(1, 0), pose(0, 0));
-}
+inline double yawOf(const Eigen::Isometry3d& pose) { return std::atan2(pose(1, 0), pose(0, 0)); }
 
 /** Each as seen from the first. */
 inline std::vector<Eigen::Isometry3d> fromFirst(const std::vector<Eigen::Isometry3d>& poses) {

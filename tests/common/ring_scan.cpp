@@ -60,7 +60,8 @@ Scene corridor() {
             {{-1e4, 5, -2}, {1e4, 6, 30}}};
 }
 
-RingScan ringScan(const Scene& scene, const Eigen::Isometry3d& pose, const Sensor& sensor, Noise& noise) {
+RingScan ringScan(const Scene& scene, const Eigen::Isometry3d& pose, const Sensor& sensor,
+                  Noise& noise) {
     const Eigen::Matrix3d R = pose.linear();
     const Eigen::Vector3d at = pose.translation();
     RingScan scan;

@@ -8,8 +8,8 @@
 namespace delio::test {
 using Floats = std::vector<float>;
 
-/** What a LiDAR of 64 rings, looking along x, sees at `position` (metres) in a street of blocks: x y z intensity, ring by ring as
- *  KITTI has it. About 30 000 points, quick to make. */
+/** What a LiDAR of 64 rings, looking along x, sees at `position` (metres) in a street of blocks: x
+ * y z intensity, ring by ring as KITTI has it. About 30 000 points, quick to make. */
 Floats toyScan(const Eigen::Vector3d& position);
 
 /** The `count` scans of a straight drive along x. */
