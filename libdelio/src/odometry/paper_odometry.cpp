@@ -93,25 +93,29 @@ void PaperOdometry::takeIncrement(const PaperRegistration& registration, double 
     step.increment = registration.increment;
     step.increment.pose = normalised(sinceReference_.inverse() * sinceReference);
     step.quality = qualityOf(registration.rotation, registration.translation);
-    if (registration.predictedReason.empty())
+    // How fast it goes is not known after an interruption.
+    if (!step.interrupted && registration.predictedReason.empty())
         prediction_.observe(sinceReference, sinceReference_s_);
-    else if (prediction_.hasMotion())
+    else if (!step.interrupted && prediction_.hasMotion())
         prediction_.observe(step.increment.pose, duration_s);
     sinceReference_ = sinceReference_ * step.increment.pose;
-    lost_ = step.predicted;
+    lost_ = step.predicted || step.interrupted;
 }
 
 Step PaperOdometry::process(const Scan& scan) {
     Step step;
-    const double duration_s = timeline_.advance(scan.stamp_s);
-    sinceReference_s_ += duration_s;
-    const Eigen::Isometry3d predicted = prediction_.predict(duration_s);
+    const Interval interval = timeline_.advance(scan.stamp_s);
+    step.interrupted = !interval.believed;
+    if (step.interrupted) prediction_.forget();  // whether it went on meanwhile is not known
+    lost_ = lost_ || step.interrupted;
+    sinceReference_s_ += interval.duration_s;
+    const Eigen::Isometry3d predicted = prediction_.predict(interval.duration_s);
     auto cloud = stage("preprocess", step, [&] {
         auto made = scan::preprocess(scan, options_->scan);
         step.deskewed = !made.times_s.empty();
         if (step.deskewed)
             made.points =
-                scan::deskew(made.points, made.times_s, Motion::of(predicted, duration_s));
+                scan::deskew(made.points, made.times_s, Motion::of(predicted, interval.duration_s));
         return made;
     });
     const auto features = extract(cloud, step);
@@ -134,7 +138,7 @@ Step PaperOdometry::process(const Scan& scan) {
     step.times_ms.emplace_back("rotation", registration.rotation_ms);
     step.times_ms.emplace_back("translation", registration.translation_ms);
     if (reference_)
-        takeIncrement(registration, duration_s, step);
+        takeIncrement(registration, interval.duration_s, step);
     else  // nothing was measured
         step.quality.unobservedRotation = step.quality.unobservedTranslation =
             Eigen::Matrix3d::Identity();

@@ -79,7 +79,9 @@ PlaneEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d
     }
     step.searched = true;
     const auto surfaces = surfacesOf(view.points);
-    const double radius = std::min(registration.search_speed * since_s, registration.search_radius);
+    const double radius = step.interrupted ? registration.search_radius
+                                           : std::min(registration.search_speed * since_s,
+                                                      registration.search_radius);
     const auto relocalised =
         relocalise(map_, surfacesOf(reference_.points), reference_.pose, view.thinned, surfaces,
                    predicted, radius, registration, options_.pattern);
@@ -156,12 +158,18 @@ void PlaneOdometry::processFirstOfMap(const scan::PointCloud& cloud, Step& step)
 }
 
 /** Every other scan: undistort, leave out what moves, register, insert. */
-void PlaneOdometry::processNext(const scan::PointCloud& cloud, double duration_s, Step& step) {
+void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& interval,
+                                Step& step) {
+    step.interrupted = !interval.believed;
+    if (step.interrupted) prediction_.forget();  // whether it went on meanwhile is not known
+    lost_ = lost_ || step.interrupted;
     // Where scans were missed in between, what was driven since then was driven in all this time.
     const double since_s = timeline_.sinceStart_s() - reference_.time_s;
-    const Eigen::Isometry3d motion = prediction_.predict(duration_s), predicted = pose_ * motion;
-    ScanView view = timed(timeOf(step, "undistort"),
-                          [&] { return undistorted(cloud, Motion::of(motion, duration_s)); });
+    const Eigen::Isometry3d motion = prediction_.predict(interval.duration_s),
+                            predicted = pose_ * motion;
+    ScanView view = timed(timeOf(step, "undistort"), [&] {
+        return undistorted(cloud, Motion::of(motion, interval.duration_s));
+    });
     const bool detecting = options_.dynamics.enabled && !lost_;
     if (detecting)
         detectDynamicObjects(view, predicted, step);
@@ -175,10 +183,10 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, double duration_s
     });
     const Eigen::Isometry3d before = pose_;
     pose_ = estimate.valid ? estimate.pose() : predicted;
-    lost_ = !estimate.valid;
+    lost_ = !estimate.valid || step.interrupted;  // how fast it goes is not known
     timed(timeOf(step, "plane_map"), [&] {
         if (estimate.valid) {
-            learn(estimate, predicted, since_s);
+            if (!step.interrupted) learn(estimate, predicted, since_s);
             if (detecting) dynamics_.remember(pose_);
             insert(view, pose_);
             misses_ = 0;
@@ -216,13 +224,13 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3
 Step PlaneOdometry::process(const Scan& scan) {
     Step step;
     step.times_ms = noTimes();
-    const double duration_s = timeline_.advance(scan.stamp_s);
+    const Interval interval = timeline_.advance(scan.stamp_s);
     auto cloud =
         timed(timeOf(step, "preprocess"), [&] { return scan::preprocess(scan, options_.scan); });
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
     if (started_)
-        processNext(cloud, duration_s, step);
+        processNext(cloud, interval, step);
     else
         processFirstOfMap(cloud, step);
     step.used.indices = std::move(cloud.indices);

@@ -7,6 +7,7 @@
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/io/drive_meta.h"
+#include "delio/run/doubts.h"
 
 namespace delio::run {
 namespace fs = std::filesystem;
@@ -142,6 +143,10 @@ void Run::score() {
 }
 
 void Run::finish(bool complete) {
+    const Doubts doubts = doubtsOf(record_.rows);
+    for (const auto& warning : warningsOf(doubts)) warn(warning);
+    if (doubts.pairs > 0 && doubts.predicted.scans == doubts.pairs)
+        fail("no scan could be registered: " + record_.rows[1].report.step.reason);
     record_.complete = complete;
     optimise();
     if (truth_) score();

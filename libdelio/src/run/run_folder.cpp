@@ -53,6 +53,7 @@ io::ScanRow rowOf(const RunRow& row) {
     put("rotation_unobserved", axesText(quality.unobservedRotation));
     put("translation_unobserved", axesText(quality.unobservedTranslation));
     put("searched", step.searched ? "1" : "0");
+    put("interrupted", step.interrupted ? "1" : "0");
     return cells;
 }
 

@@ -12,6 +12,7 @@
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/io/output_file.h"
+#include "delio/run/doubts.h"
 #include "delio/version.h"
 
 namespace delio::run {
@@ -110,7 +111,12 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.complete = record.complete;
     summary.fault = record.fault;
     summary.scans = record.rows.empty() ? record.final.poses.size() : record.rows.size();
+    const Doubts doubts = doubtsOf(record.rows);
     summary.predicted = countOf(record, &Step::predicted);
+    summary.longest_predicted = doubts.predicted.longest;
+    summary.weakly_observed = doubts.weak.scans;
+    summary.longest_weakly_observed = doubts.weak.longest;
+    summary.interrupted = doubts.interrupted.scans;
     summary.searched = countOf(record, &Step::searched);
     summary.deskewed = countOf(record, &Step::deskewed);
     summary.path_m = record.path_m();
@@ -144,6 +150,10 @@ void writeSummary(const Summary& s, const std::string& path) {
     if (!s.fault.empty()) write(yaml, "fault", s.fault);
     write(yaml, "scans", s.scans);
     write(yaml, "predicted", s.predicted);
+    write(yaml, "longest_predicted", s.longest_predicted);
+    write(yaml, "weakly_observed", s.weakly_observed);
+    write(yaml, "longest_weakly_observed", s.longest_weakly_observed);
+    write(yaml, "interrupted", s.interrupted);
     write(yaml, "searched", s.searched);
     write(yaml, "path_m", s.path_m);
     write(yaml, "vertical_correction_deg", s.vertical_correction_deg);
@@ -180,6 +190,10 @@ Summary readSummary(const std::string& path) {
         s.fault = node["fault"].as<std::string>("");
         s.scans = node["scans"].as<std::size_t>();
         s.predicted = node["predicted"].as<std::size_t>();
+        s.longest_predicted = node["longest_predicted"].as<std::size_t>(0);
+        s.weakly_observed = node["weakly_observed"].as<std::size_t>(0);
+        s.longest_weakly_observed = node["longest_weakly_observed"].as<std::size_t>(0);
+        s.interrupted = node["interrupted"].as<std::size_t>(0);
         s.searched = node["searched"].as<std::size_t>(0);
         s.deskewed = node["deskewed"].as<std::size_t>();
         s.path_m = node["path_m"].as<double>();

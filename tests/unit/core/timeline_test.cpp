@@ -13,7 +13,7 @@ TEST(Timeline, BeforeTheFirstScanIsWhatIsUsual) {
     for (const double stamp_s : {0.0, -5.0, 1317354879.5}) {
         Timeline timeline;
         EXPECT_EQ(timeline.sinceStart_s(), 0);
-        EXPECT_EQ(timeline.advance(stamp_s), kUsual_s);
+        EXPECT_EQ(timeline.advance(stamp_s).duration_s, kUsual_s);
         EXPECT_EQ(timeline.sinceStart_s(), 0);  // the first scan is the start
     }
 }
@@ -21,20 +21,41 @@ TEST(Timeline, BeforeTheFirstScanIsWhatIsUsual) {
 TEST(Timeline, StampsThatRiseAreBelieved) {
     Timeline timeline;
     timeline.advance(1000);
-    EXPECT_EQ(timeline.advance(1000.25), 0.25);
-    EXPECT_EQ(timeline.advance(1000.5), 0.25);
-    EXPECT_EQ(timeline.advance(1060.5), 60);  // a pause
-    EXPECT_EQ(timeline.sinceStart_s(), 60.5);
+    EXPECT_EQ(timeline.advance(1000.25).duration_s, 0.25);
+    EXPECT_EQ(timeline.advance(1000.5).duration_s, 0.25);
+    EXPECT_EQ(timeline.advance(1001.5).duration_s, 1);  // scans are missing
+    EXPECT_EQ(timeline.sinceStart_s(), 1.5);
+}
+
+TEST(Timeline, APauseOrAClockThatIsSetForwardIsNot) {
+    for (const double jump_s : {1.6, 60.0, 1.3e9}) {
+        Timeline timeline;
+        for (int i = 0; i < 5; ++i) EXPECT_TRUE(timeline.advance(0.25 * i).believed);
+        const auto interval = timeline.advance(1 + jump_s);
+        EXPECT_FALSE(interval.believed) << jump_s;
+        EXPECT_EQ(interval.duration_s, 0.25);
+        EXPECT_EQ(timeline.sinceStart_s(), 1.25);
+        EXPECT_TRUE(timeline.advance(1.25 + jump_s).believed);
+    }
+}
+
+// A recording of one scan in three seconds is no row of pauses.
+TEST(Timeline, WhatIsUsualIsLearnt) {
+    Timeline timeline;
+    int believed = 0;
+    for (int i = 0; i < 4; ++i) believed += timeline.advance(0.9 * i).believed;
+    EXPECT_EQ(believed, 4);
+    EXPECT_TRUE(timeline.advance(0.9 * 3 + 4).believed);
 }
 
 TEST(Timeline, StampsThatStandStillAreNot) {
     Timeline timeline;
     timeline.advance(7);
     for (int i = 1; i < 5; ++i) {
-        EXPECT_EQ(timeline.advance(7), kUsual_s);
+        EXPECT_EQ(timeline.advance(7).duration_s, kUsual_s);
         EXPECT_NEAR(timeline.sinceStart_s(), i * kUsual_s, 1e-12);
     }
-    EXPECT_EQ(timeline.advance(7.5), 0.5);
+    EXPECT_EQ(timeline.advance(7.5).duration_s, 0.5);
     EXPECT_NEAR(timeline.sinceStart_s(), 4 * kUsual_s + 0.5, 1e-12);
 }
 
@@ -42,8 +63,8 @@ TEST(Timeline, AClockThatIsSetBackCountsOnFromThere) {
     Timeline timeline;
     timeline.advance(1000);
     timeline.advance(1000.5);
-    EXPECT_EQ(timeline.advance(3), kUsual_s);
-    EXPECT_EQ(timeline.advance(3.25), 0.25);
+    EXPECT_EQ(timeline.advance(3).duration_s, kUsual_s);
+    EXPECT_EQ(timeline.advance(3.25).duration_s, 0.25);
     EXPECT_NEAR(timeline.sinceStart_s(), 0.5 + kUsual_s + 0.25, 1e-12);
 }
 
@@ -52,7 +73,7 @@ TEST(Timeline, TimeGoesOnWhateverTheStampsAre) {
     const double nan = std::nan("");
     double before_s = -1;
     for (const double stamp_s : {5.0, 5.0, 4.0, nan, nan, 4.0, 4.5, -1e9, 0.0}) {
-        EXPECT_GT(timeline.advance(stamp_s), 0);
+        EXPECT_GT(timeline.advance(stamp_s).duration_s, 0);
         EXPECT_GT(timeline.sinceStart_s(), before_s);
         before_s = timeline.sinceStart_s();
     }

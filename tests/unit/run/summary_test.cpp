@@ -20,6 +20,10 @@ Summary anySummary() {
     s.fault = "scan 7: 'a.bin'\nis cut off\t- or so";
     s.scans = 100000;  // as a double its shortest form is 1e+05
     s.predicted = 3000000;
+    s.longest_predicted = 1000000;
+    s.weakly_observed = 400000;
+    s.longest_weakly_observed = 12;
+    s.interrupted = 3;
     s.searched = 11;
     s.deskewed = 200000;
     s.path_m = 0.1 + 0.2;
@@ -47,6 +51,10 @@ void expectSame(const Summary& a, const Summary& b) {
     EXPECT_EQ(a.fault, b.fault);
     EXPECT_EQ(a.scans, b.scans);
     EXPECT_EQ(a.predicted, b.predicted);
+    EXPECT_EQ(a.longest_predicted, b.longest_predicted);
+    EXPECT_EQ(a.weakly_observed, b.weakly_observed);
+    EXPECT_EQ(a.longest_weakly_observed, b.longest_weakly_observed);
+    EXPECT_EQ(a.interrupted, b.interrupted);
     EXPECT_EQ(a.searched, b.searched);
     EXPECT_EQ(a.deskewed, b.deskewed);
     EXPECT_EQ(a.path_m, b.path_m);

@@ -1,26 +1,31 @@
 #pragma once
+#include <deque>
 
 namespace delio {
+/** The time between a scan and the one before it. */
+struct Interval {
+    double duration_s = 0;  //!< more than 0
+    /** False after a pause, or where a clock was set: `duration_s` is the usual one then, and the
+     *  motion in between is not known. */
+    bool believed = true;
+};
+
 /** The only reader of stamps: what durations are believed between scans. */
 class Timeline {
  public:
-    /** Takes the stamp (seconds) of the next scan. Returns the seconds since the scan before; where
-     *  there is none, or stamps do not rise, what is usual for a spinning LiDAR. */
-    double advance(double stamp_s) {
-        constexpr double kUsual_s = 0.1;
-        const double elapsed_s = stamp_s - stamp_s_;
-        const double duration_s = started_ && elapsed_s > 0 ? elapsed_s : kUsual_s;
-        if (started_) sinceStart_s_ += duration_s;
-        started_ = true;
-        stamp_s_ = stamp_s;
-        return duration_s;
-    }
+    /** Takes the stamp (seconds) of the next scan. Where there is none before it, or stamps do not
+     *  rise, the interval is what is usual; likewise, and not believed, where the stamps are more
+     *  than a second and more than five times the usual interval apart. */
+    Interval advance(double stamp_s);
 
-    /** Sum of the believed durations: rises with every scan, whatever the stamps do. */
+    /** Sum of the durations: rises with every scan, whatever the stamps do. */
     double sinceStart_s() const { return sinceStart_s_; }
 
  private:
+    double usual_s() const;
+
     bool started_ = false;
     double stamp_s_ = 0, sinceStart_s_ = 0;
+    std::deque<double> latest_s_;  //!< intervals that were believed
 };
 }  // namespace delio

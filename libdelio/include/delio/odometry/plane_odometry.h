@@ -58,7 +58,7 @@ class PlaneOdometry : public Odometry {
     };
 
     void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
-    void processNext(const scan::PointCloud& cloud, double duration_s, Step& step);
+    void processNext(const scan::PointCloud& cloud, const Interval& interval, Step& step);
     void detectDynamicObjects(ScanView& view, const Eigen::Isometry3d& predicted, Step& step);
     planes::PlaneEstimate place(const ScanView& view, const Eigen::Isometry3d& predicted,
                                 double since_s, Step& step) const;

@@ -26,6 +26,9 @@ class LinearPrediction {
     /** False until an increment was observed: the prediction is a mere guess then. */
     bool hasMotion() const { return !latestFirst_.empty(); }
 
+    /** Back to "no motion": after an interruption. */
+    void forget() { latestFirst_.clear(); }
+
     /** Tells what the increment turned out to be, and how long (more than 0) it took. */
     void observe(const Eigen::Isometry3d& increment, double duration_s = 1);
 

@@ -60,9 +60,10 @@ struct Step {
     /** Maps the sensor's frame at this scan to that at the scan before; identity for the first.
      *  The covariance of a predicted one is the motion model's. */
     Increment increment;
-    bool predicted = false;  //!< the scan could not be registered: `increment` is the prediction
-    std::string reason;      //!< why; empty where it was registered
-    bool searched = false;   //!< not only from the prediction: all about it
+    bool predicted = false;    //!< the scan could not be registered: `increment` is the prediction
+    std::string reason;        //!< why; empty where it was registered
+    bool searched = false;     //!< not only from the prediction: all about it
+    bool interrupted = false;  //!< a pause or a clock that was set: the time before it is not known
     Quality quality;
     UsedPoints used;
     std::size_t notFinite = 0;  //!< points dropped: a coordinate was NaN or infinite

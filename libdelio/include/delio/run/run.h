@@ -45,7 +45,8 @@ class Run {
     /** What ended the run, or is missing in it; of several the first is kept. */
     void fail(const std::string& fault);
 
-    /** Optimises, and scores where the truth is known. `complete`: every scan was processed. */
+    /** Optimises, scores where the truth is known, and warns of what was not measured: a run in
+     *  which no scan was registered has failed. `complete`: every scan was processed. */
     void finish(bool complete);
 
     const RunRecord& record() const { return record_; }

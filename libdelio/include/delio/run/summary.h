@@ -14,7 +14,10 @@ struct Summary {
     std::string version, command, profile;
     bool complete = false;
     std::string fault;  //!< empty: none
-    std::size_t scans = 0, predicted = 0, searched = 0, deskewed = 0;
+    std::size_t scans = 0, searched = 0, deskewed = 0;
+    std::size_t predicted = 0, longest_predicted = 0;  //!< scans; of them in a row
+    std::size_t weakly_observed = 0, longest_weakly_observed = 0;
+    std::size_t interrupted = 0;
     double path_m = 0;
     double vertical_correction_deg = 0;
     double ms_per_scan = 0;         //!< reading, odometry and the graph's window

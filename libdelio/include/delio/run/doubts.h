@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "delio/run/run_record.h"
+
+namespace delio::run {
+/** Scans of one kind in a run. */
+struct Stretches {
+    std::size_t scans = 0;    //!< of the kind
+    std::size_t longest = 0;  //!< of them in a row
+    std::size_t from = 0;     //!< number of the scan that this row begins with
+};
+
+/** What of a run is not measured, or barely. The first scan, which has nothing before it, does not
+ *  count. */
+struct Doubts {
+    std::size_t pairs = 0;  //!< scans that have one before them
+    Stretches predicted;    //!< not registered: the motion model's
+    Stretches weak;         //!< registered, but an axis was not observed
+    Stretches interrupted;  //!< a pause or a set clock before them
+};
+
+Doubts doubtsOf(const std::vector<RunRow>& rows);
+
+/** A line each of what a user has to know of them: nothing for a few scans. */
+std::vector<std::string> warningsOf(const Doubts& doubts);
+}  // namespace delio::run

@@ -1,0 +1,59 @@
+#include "delio/run/doubts.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+using namespace delio;
+using run::RunRow;
+
+/** Scans 5, 6, 7 ...: '.' registered, 'p' predicted, 'w' an axis not observed, 'i' interrupted. */
+std::vector<RunRow> rowsOf(const std::string& kinds) {
+    std::vector<RunRow> rows;
+    for (const char kind : kinds) {
+        RunRow row;
+        row.scan = 5 + rows.size();
+        Step& step = row.report.step;
+        step.predicted = kind == 'p';
+        step.interrupted = kind == 'i';
+        if (kind == 'w' || kind == 'p') step.quality.unobservedTranslation.setIdentity(3, 1);
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+TEST(Doubts, AreCountedWithTheirLongestStretch) {
+    const auto doubts = run::doubtsOf(rowsOf(".pp.ppp..ww.wi"));
+    EXPECT_EQ(doubts.pairs, 13U);
+    EXPECT_EQ(doubts.predicted.scans, 5U);
+    EXPECT_EQ(doubts.predicted.longest, 3U);
+    EXPECT_EQ(doubts.predicted.from, 9U);
+    EXPECT_EQ(doubts.weak.scans, 3U);  // a predicted scan is no weak one
+    EXPECT_EQ(doubts.weak.longest, 2U);
+    EXPECT_EQ(doubts.weak.from, 14U);
+    EXPECT_EQ(doubts.interrupted.scans, 1U);
+    EXPECT_EQ(doubts.interrupted.from, 18U);
+}
+
+TEST(Doubts, TheFirstScanHasNothingBeforeIt) {
+    EXPECT_EQ(run::doubtsOf({}).pairs, 0U);
+    const auto doubts = run::doubtsOf(rowsOf("w"));
+    EXPECT_EQ(doubts.pairs, 0U);
+    EXPECT_EQ(doubts.weak.scans, 0U);
+    EXPECT_TRUE(run::warningsOf(doubts).empty());
+}
+
+TEST(Doubts, AFewScansAreNoWarningManyAre) {
+    const std::string good(40, '.');
+    EXPECT_TRUE(run::warningsOf(run::doubtsOf(rowsOf(good + "pp"))).empty());  // 2 of 41
+    const auto many = run::warningsOf(run::doubtsOf(rowsOf(good + "ppp" + good.substr(0, 10))));
+    ASSERT_EQ(many.size(), 1U);
+    EXPECT_EQ(many[0].rfind("3 of 52 scans (at most 3 in a row, from scan 45)", 0), 0U) << many[0];
+    EXPECT_EQ(run::warningsOf(run::doubtsOf(rowsOf("..w.p."))).size(), 2U);
+}
+
+TEST(Doubts, EveryInterruptionIsToldOf) {
+    const auto warnings = run::warningsOf(run::doubtsOf(rowsOf(std::string(90, '.') + "i...")));
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("from scan 95"), std::string::npos) << warnings[0];
+}
+}  // namespace
