@@ -89,6 +89,20 @@ Options optionsFor(CommandLine& line, const std::optional<io::DriveMeta>& meta) 
     return options;
 }
 
+/** Every option with its meaning. What follows from the drive unless it is set is a comment: a file
+ *  made of this leaves it to the drive. */
+void printConfig(CommandLine& line) {
+    io::DriveMeta other;  // than a drive that says nothing, in all that options follow
+    other.verticalCorrectionDeg = 1;
+    other.motionCompensated = true;
+    other.source = "kitti-raw";
+    std::stringstream own, ofOther;
+    optionsFor(line, {}).write(own);
+    optionsFor(line, other).write(ofOther);
+    for (std::string text, otherText; std::getline(own, text) && std::getline(ofOther, otherText);)
+        std::cout << (text == otherText ? "" : "# ") << text << "\n";
+}
+
 run::RunSettings settingsFor(CommandLine& line, int argc, char** argv) {
     run::RunSettings settings;
     settings.profile = line.profile.getValue();
@@ -199,10 +213,10 @@ int optimiseGraph(CommandLine& line, const run::RunSettings& settings) {
 int slam(CommandLine& line, int argc, char** argv) {
     cli::catchInterrupts();
     try {
-        const Options options = optionsFor(line, {});
+        optionsFor(line, {});
         if (line.every.getValue() == 0) throw Error("--every has to be 1 or more");
         if (line.printConfig.getValue()) {
-            options.write(std::cout);
+            printConfig(line);
             return cli::kExitSuccess;
         }
     } catch (const Error& e) {
