@@ -101,6 +101,7 @@ TEST_F(DelioSlam, ColumnsAndStagesAreThoseOfTheMethod) {
                            "rotation_unobserved",
                            "translation_unobserved",
                            "searched",
+                           "interrupted",
                            "predicted",
                            "reason"};
     const std::map<std::string, std::pair<Words, Words>> own = {
