@@ -23,16 +23,24 @@ std::optional<SensorModel> findSensor(const std::string& option) {
     return std::nullopt;
 }
 
-std::string sensorOptions() {
-    std::string names;
-    for (const auto& model : sensorModels()) names += (names.empty() ? "" : ", ") + model.option;
-    return names;
+std::string listed(const std::vector<std::string>& names) {
+    std::string list;
+    for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
+    return list;
 }
 
-std::string sceneOptions() {
-    std::string names;
-    for (const auto& name : sceneNames()) names += (names.empty() ? "" : ", ") + name;
-    return names;
+std::string sensorOptions() {
+    std::vector<std::string> names;
+    for (const auto& model : sensorModels()) names.push_back(model.option);
+    return listed(names);
+}
+
+std::string sceneOptions() { return listed(sceneNames()); }
+
+const std::vector<std::string> kMotions = {"vehicle", "handheld"};
+
+Gait gaitOf(const std::string& motion) {
+    return motion == "handheld" ? Gait::kHandheld : Gait::kVehicle;
 }
 
 /** A distance that has to be 0 or more. */
@@ -60,6 +68,16 @@ struct Arguments {
         "",
         "POSES.txt",
         cmd};
+    TCLAP::ValueArg<std::string> motion{
+        "",
+        "motion",
+        "Motion: " + listed(kMotions) +
+            ". handheld: carried at walking speed, 1.3 m/s at most (along --trajectory at the "
+            "speed of its poses), and swinging by 15 deg at 1.5 Hz about each axis",
+        false,
+        "vehicle",
+        "NAME",
+        cmd};
     TCLAP::ValueArg<std::string> sensor{
         "", "sensor", "Sensor: " + sensorOptions(), false, "hdl64e", "NAME", cmd};
     TCLAP::ValueArg<double> noise{
@@ -68,8 +86,14 @@ struct Arguments {
         "",    "ring-bias", "Constant range error of each laser, standard deviation in metres",
         false, 0,           "M",
         cmd};
-    TCLAP::ValueArg<int> movers{
-        "", "movers", "Cars, cyclists and pedestrians near the vehicle", false, 0, "N", cmd};
+    TCLAP::ValueArg<int> movers{"",
+                                "movers",
+                                "Cars, cyclists and pedestrians near the vehicle; people only "
+                                "in forest, and indoor, where they walk along with the sensor",
+                                false,
+                                0,
+                                "N",
+                                cmd};
     TCLAP::SwitchArg distort{"", "distort",
                              "Leave the vehicle's motion in the scans; OUT_Images/*.time: when "
                              "each point was measured, float32 seconds from the scan's stamp",
@@ -106,6 +130,8 @@ std::string faultInScene(Arguments& args) {
 std::string faultInDrive(Arguments& args) {
     if (!findSensor(args.sensor.getValue()))
         return "there is no sensor '" + args.sensor.getValue() + "'; there is: " + sensorOptions();
+    if (std::find(kMotions.begin(), kMotions.end(), args.motion.getValue()) == kMotions.end())
+        return "there is no motion '" + args.motion.getValue() + "'; there is: " + listed(kMotions);
     if (args.scans.getValue() < 1) return "--scans has to be 1 or more";
     if (args.seed.getValue() < 0) return "--seed has to be 0 or more";
     if (!isMetres(args.noise.getValue())) return "--noise has to be 0 or more metres";
@@ -138,6 +164,12 @@ DriveRequest requestOf(Arguments& args) {
     return request;
 }
 
+/** What is carried by hand has no roof under it, and tells what is near. */
+void suit(DriveRequest& request, const Carrier& carrier) {
+    request.scanner.onVehicle = carrier.isVehicle;
+    request.sensor.minRange_m = std::min(request.sensor.minRange_m, carrier.nearest_m);
+}
+
 int makeDrive(Arguments& args) {
     std::string fault = faultInScene(args);
     if (fault.empty()) fault = faultInDrive(args);
@@ -146,11 +178,12 @@ int makeDrive(Arguments& args) {
         return cli::kExitBadCommandLine;
     }
     cli::catchInterrupts();
-    const DriveRequest request = requestOf(args);
+    DriveRequest request = requestOf(args);
     const auto count = static_cast<std::size_t>(args.scans.getValue());
     const auto world = makeScene({args.scene.getValue(), request.scanner.seed, count,
                                   args.trajectory.getValue(), lidarToCam0()});
-    const Drive drive(world->road(), count, request.scanner.seed);
+    const Drive drive(world->road(), count, request.scanner.seed, gaitOf(args.motion.getValue()));
+    suit(request, drive.carrier());
     if (drive.scans() < count)
         cli::warn("the trajectory ends after " + std::to_string(drive.scans()) + " of " +
                   std::to_string(count) + " scans; so does the drive");

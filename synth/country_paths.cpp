@@ -51,6 +51,22 @@ Path highwayPath(std::uint64_t seed, double length_m) {
     return Path(-kPathMargin_m, pieces);
 }
 
+Path forestPath(std::uint64_t seed, double length_m) {
+    Random random{seed, 0xF03};
+    double heading = 0;
+    std::vector<CurvaturePiece> pieces = {{kPathMargin_m + random.uniform(4, 12), 0}};
+    while (lengthOf(pieces) < length_m + 3 * kPathMargin_m) {
+        const double radius = random.uniform(8, 22), bend = random.uniform(20, 65) * kDegree;
+        const bool left = std::abs(heading) > 35 * kDegree ? heading < 0 : random.chance(0.5);
+        const double angle = left ? bend : -bend;
+        appendTurn(pieces, angle, radius, std::min(radius * bend, random.uniform(3, 6)));
+        heading += angle;
+        pieces.push_back({random.uniform(1, 10), 0});
+    }
+    pieces.push_back({kPathMargin_m, 0});
+    return Path(-kPathMargin_m, pieces);
+}
+
 Path straightPath(double length_m) {
     return Path(-kPathMargin_m, {{length_m + 4 * kPathMargin_m, 0}});
 }

@@ -3,7 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
+#include "carrier.h"
+#include "handheld.h"
 #include "motion.h"
 #include "road.h"
 
@@ -11,13 +14,12 @@ namespace delio::synth {
 constexpr double kScanPeriod_s = 0.1;
 
 /** Where the vehicle is at every scan: it moves as the road's style or a given trajectory has it,
- *  and pitches and rolls with the ground under its wheels. */
+ *  and pitches and rolls with the ground under its wheels. A sensor in a hand moves at walking
+ *  speed, if no trajectory says otherwise, and swings. */
 class Drive {
  public:
-    static constexpr double kSensorHeight_m = 1.73;
-
     /** Fewer scans than asked for where a given trajectory ends before. */
-    Drive(const Road& road, std::size_t scans, std::uint64_t seed);
+    Drive(const Road& road, std::size_t scans, std::uint64_t seed, Gait gait = Gait::kVehicle);
 
     std::size_t scans() const { return scans_; }
     /** Metres along the path at scan `scan`. */
@@ -27,11 +29,16 @@ class Drive {
     /** LiDAR to world: x forward, y left, z up. */
     Eigen::Isometry3d lidarPose(std::size_t scan) const { return lidarPoseAt(timeOf(scan)); }
     Eigen::Isometry3d lidarPoseAt(double time_s) const;
+    const Carrier& carrier() const { return carrier_; }
 
  private:
     static double timeOf(std::size_t scan) { return kScanPeriod_s * static_cast<double>(scan); }
 
+    Eigen::Isometry3d steadyPoseAt(double time_s) const;
+
     const Road& road_;
+    Carrier carrier_;
+    std::optional<Handheld> hand_;
     std::shared_ptr<const Motion> own_;  //!< where none is given
     const Motion* motion_;
     std::size_t scans_;

@@ -9,7 +9,9 @@
 #include "country_paths.h"
 #include "delio/core/error.h"
 #include "drive.h"
+#include "forest_scene.h"
 #include "highway_scene.h"
+#include "indoor_scene.h"
 #include "recording.h"
 #include "rural_scene.h"
 #include "tunnel_scene.h"
@@ -20,9 +22,10 @@ namespace {
 struct Kind {
     std::string name;
     RoadProfile profile;
-    std::function<Path(std::uint64_t seed, double length_m)> path;
+    /** Along a path of its own. */
+    std::function<std::unique_ptr<Scene>(std::uint64_t seed, double length_m)> make;
+    /** Along a given one; none: it cannot. */
     std::function<std::unique_ptr<Scene>(Road road, std::uint64_t seed)> build;
-    bool takesTrajectory;
 };
 
 template <typename Built>
@@ -30,16 +33,36 @@ std::unique_ptr<Scene> build(Road road, std::uint64_t seed) {
     return std::make_unique<Built>(std::move(road), seed);
 }
 
+/** A scene that can be built along any road. */
+template <typename Built, typename PathOf>
+Kind roadKind(const std::string& name, const RoadProfile& profile, PathOf pathOf) {
+    const auto make = [=](std::uint64_t seed, double length_m) {
+        return build<Built>(Road(pathOf(seed, length_m), seed, profile), seed);
+    };
+    return {name, profile, make, build<Built>};
+}
+
+/** One that has a path of its own. */
+Kind withoutTrajectory(Kind kind) {
+    kind.build = nullptr;
+    return kind;
+}
+
 std::vector<Kind> kinds() {
     const auto straight = [](std::uint64_t, double length_m) { return straightPath(length_m); };
     const auto block = [](std::uint64_t seed, double length_m) {
         return blockPath(seed, length_m, blockProfile().lanes.front().side_m);
     };
-    return {{"urban", urbanProfile(), urbanPath, build<UrbanScene>, true},
-            {"rural", ruralProfile(), ruralPath, build<RuralScene>, true},
-            {"highway", highwayProfile(), highwayPath, build<HighwayScene>, true},
-            {"loop", blockProfile(), block, build<UrbanScene>, false},
-            {"tunnel", tunnelProfile(), straight, build<TunnelScene>, false}};
+    const auto house = [](std::uint64_t seed, double length_m) {
+        return std::make_unique<IndoorScene>(seed, length_m);
+    };
+    return {roadKind<UrbanScene>("urban", urbanProfile(), urbanPath),
+            roadKind<RuralScene>("rural", ruralProfile(), ruralPath),
+            roadKind<HighwayScene>("highway", highwayProfile(), highwayPath),
+            withoutTrajectory(roadKind<UrbanScene>("loop", blockProfile(), block)),
+            withoutTrajectory(roadKind<TunnelScene>("tunnel", tunnelProfile(), straight)),
+            {"indoor", indoorProfile(), house, nullptr},
+            withoutTrajectory(roadKind<ForestScene>("forest", forestProfile(), forestPath))};
 }
 
 Kind kindOf(const std::string& name) {
@@ -64,7 +87,7 @@ std::vector<std::string> sceneNames() {
     return names;
 }
 
-bool takesTrajectory(const std::string& sceneName) { return kindOf(sceneName).takesTrajectory; }
+bool takesTrajectory(const std::string& sceneName) { return kindOf(sceneName).build != nullptr; }
 
 std::unique_ptr<Scene> makeScene(const SceneRequest& request) {
     const Kind kind = kindOf(request.name);
@@ -77,7 +100,6 @@ std::unique_ptr<Scene> makeScene(const SceneRequest& request) {
     }
     const double longest_m =
         kind.profile.style.fastest_m_s * kScanPeriod_s * static_cast<double>(request.scans);
-    return kind.build(Road(kind.path(request.seed, longest_m), request.seed, kind.profile),
-                      request.seed);
+    return kind.make(request.seed, longest_m);
 }
 }  // namespace delio::synth

@@ -123,4 +123,38 @@ RoadProfile tunnelProfile() {
     p.style = {17, 21, 0.4, 1, 0};
     return p;
 }
+
+RoadProfile forestProfile() {
+    RoadProfile p{};
+    p.lanes = {{0, 1, 4}};
+    p.section = {{0, 0}, {0.5, 0}, {0.75, -0.06}, {1, 0}, {1.4, 0.03}, {1.8, 0.02}};
+    p.bands = {{1.1, 0.3}, {1e3, 0.4}};
+    p.half_m = 2.2;
+    p.landReach_m = 56;
+    p.landStep_m = 0.5;
+    p.waves = {{1.8, 150},  {0.5, 47},   {0.06, 13},  {0.045, 8.5},
+               {0.03, 6.3}, {0.02, 4.8}, {0.015, 3.9}};
+    p.bank_m = 0.7;
+    p.bankFrom_m = 2.5;
+    p.bankTo_m = 9;
+    p.roughness_m = 0.07;
+    p.style = {2.5, 5, 0.5, 0.5, 0};
+    p.carrier = {{0.95, 0.75}, 1.6, true};
+    p.footways = {-2.1, 2.1};
+    return p;
+}
+
+RoadProfile indoorProfile() {
+    RoadProfile p{};
+    p.lanes = {{0, 1, 1}};
+    p.section = {{0, 0}};
+    p.bands = {{1e3, 0.4}};
+    p.half_m = 1;
+    p.bankFrom_m = 1;
+    p.bankTo_m = 2;
+    p.style = {0.9, 1.15, 0.9, 0.5, 0};
+    p.carrier = onFoot();
+    p.footways = {0};
+    return p;
+}
 }  // namespace delio::synth

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "carrier.h"
 #include "lane.h"
 
 namespace delio::synth {
@@ -28,6 +29,10 @@ struct RoadProfile {
     struct Wave {
         double amplitude_m, length_m;
     };
+    /** The whole world rises between two places on the x axis: floors of a house. */
+    struct Ramp {
+        double fromX_m, toX_m, rise_m;
+    };
 
     std::vector<Lane> lanes;      //!< the vehicle's own is the first
     std::vector<Corner> section;  //!< from the centre line outwards; level beyond the last
@@ -42,6 +47,11 @@ struct RoadProfile {
     double bankFrom_m, bankTo_m;  //!< ... between these
     double roughness_m;           //!< of the land, at the distance between the points of a scan
     DrivingStyle style;
+    Carrier carrier;          //!< what bears the sensor if nobody holds it in the hand
+    std::vector<Ramp> ramps;  //!< the one after the other along x
+    /** Where no cars drive people walk, at these sides of the centre line; at 0: along with the
+     *  sensor, before and behind it. */
+    std::vector<double> footways;
 
     double height(double away_m) const;
     double reflectivity(double s, double away_m) const;
@@ -60,4 +70,8 @@ RoadProfile ruralProfile();
 RoadProfile highwayProfile();
 /** Two lanes and walkways on an even grade. */
 RoadProfile tunnelProfile();
+/** A track of two ruts over uneven ground. */
+RoadProfile forestProfile();
+/** Level floors; their ramps are the floor plan's. */
+RoadProfile indoorProfile();
 }  // namespace delio::synth

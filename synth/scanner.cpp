@@ -89,7 +89,9 @@ ScanPoints Scanner::scanRing(const Sweep& sweep, const Views& views, std::size_t
     ScanPoints points;
     for (std::size_t c = 0; c < ring.hits.size(); ++c) {
         const Hit& hit = ring.hits[c];
-        if (hit.range <= 0 || behindOwnVehicle(sweep.azimuth_rad[c], ring.elevation_rad)) continue;
+        if (hit.range <= 0) continue;
+        if (options_.onVehicle && behindOwnVehicle(sweep.azimuth_rad[c], ring.elevation_rad))
+            continue;
         Random random{options_.seed, kRayKey, scan, number, c};
         if (!isNoticed(ring, c, scan, random)) continue;
         const double range = measuredRange(ring, c, random);

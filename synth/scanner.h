@@ -15,6 +15,7 @@ struct ScannerOptions {
      *  mixes the echoes of two surfaces. */
     double noise_m = 0.01;
     double ringBias_m = 0;  //!< of the lasers' own constant errors, standard deviation
+    bool onVehicle = true;  //!< whose roof hides what is below
     std::uint64_t seed = 1;
     int threads = 1;
 };

@@ -23,7 +23,8 @@ Terrain::Terrain(const RoadProfile& profile, std::uint64_t seed)
       bank_m_(profile.bank_m),
       bankFrom_m_(profile.bankFrom_m),
       bankTo_m_(profile.bankTo_m),
-      roughness_m_(profile.roughness_m) {
+      roughness_m_(profile.roughness_m),
+      ramps_(profile.ramps) {
     const auto wave = [](double amplitude, double length, Random& random) {
         const double direction = random.uniform(0, 2 * kPi);
         const double number = 2 * kPi / (length * random.uniform(0.9, 1.1));
@@ -39,6 +40,8 @@ Terrain::Terrain(const RoadProfile& profile, std::uint64_t seed)
 double Terrain::height(const Eigen::Vector2d& place) const {
     double z = grade_ * place.x();
     for (const auto& w : waves_) z += w.amplitude * std::sin(w.number.dot(place) + w.phase);
+    for (const auto& r : ramps_)
+        z += r.rise_m * std::clamp((place.x() - r.fromX_m) / (r.toX_m - r.fromX_m), 0.0, 1.0);
     return z;
 }
 

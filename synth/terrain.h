@@ -12,7 +12,7 @@ class Terrain {
  public:
     Terrain(const RoadProfile& profile, std::uint64_t seed);
 
-    /** Hills, and the unevenness of what is built on them. */
+    /** Hills, floors, and the unevenness of what is built on them. */
     double height(const Eigen::Vector2d& place) const;
     /** What is added `away_m` from a road: banks, and roughness at the scale of a decimetre. */
     double besideRoad(const Eigen::Vector2d& place, double away_m) const;
@@ -28,5 +28,6 @@ class Terrain {
     std::uint64_t seed_;
     double grade_, half_m_, bank_m_, bankFrom_m_, bankTo_m_, roughness_m_;
     std::vector<Wave> waves_, banks_;
+    std::vector<RoadProfile::Ramp> ramps_;
 };
 }  // namespace delio::synth

@@ -10,10 +10,17 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint64_t kStripeKey = 0x57A1, kMemberKey = 0x3E3B;
 constexpr double kNearest_m = 8.5;       // middle of the car before or behind the vehicle's
 constexpr double kQueue_m = 13.5;        // from car to car in the vehicle's lane
+constexpr double kNearestWalker_m = 3;   // of those who walk along with the sensor
+constexpr double kWalkers_m = 2.3;       // from one of them to the next
 constexpr double kSlowTraffic_m_s = 14;  // there people walk and cycle beside it
 
 /** Room from the middle of one to the middle of the next. */
 double spacing(RoadUserKind kind) { return longest_m(kind) + (kind == RoadUserKind::kCar ? 7 : 2); }
+
+bool isOnFoot(RoadUserKind kind) { return kind == RoadUserKind::kPedestrian; }
+
+/** From one that goes along with the vehicle to the next. */
+double queue(RoadUserKind kind) { return isOnFoot(kind) ? kWalkers_m : kQueue_m; }
 
 /** Into [-reach, reach). */
 double wrapped(double value, double reach) {
@@ -32,7 +39,17 @@ double reachOn(const Road& road) {
 }
 }  // namespace
 
+std::vector<Traffic::Stripe> Traffic::footwaysOf(const Road& road, Random random) {
+    std::vector<Stripe> stripes;
+    for (const double side : road.profile().footways) {
+        const double speed = random.uniform(1.1, 1.6), wave = side == 0 ? 23 : 0;
+        stripes.push_back({RoadUserKind::kPedestrian, side, side > 0 ? -1 : 1, speed, wave});
+    }
+    return stripes;
+}
+
 std::vector<Traffic::Stripe> Traffic::stripesOf(const Road& road, Random random) {
+    if (!road.profile().footways.empty()) return footwaysOf(road, random);
     const auto& lanes = road.lanes();
     std::vector<Stripe> stripes = {{RoadUserKind::kCar, lanes[0].side_m, 1, 0, 80, 4}};
     bool beside = false;
@@ -80,7 +97,7 @@ std::size_t Traffic::nextStripe() const {
     double fewest = 0;
     for (std::size_t i = 0; i < stripes_.size(); ++i) {
         const Stripe& stripe = stripes_[i];
-        const double gap = stripe.wave_m > 0 ? kQueue_m : spacing(stripe.kind);
+        const double gap = stripe.wave_m > 0 ? queue(stripe.kind) : spacing(stripe.kind);
         if (static_cast<double>(stripe.members + 2) * gap > 2 * (reach_m_ - kNearest_m)) continue;
         const double load = static_cast<double>(stripe.members + 1) / stripe.share;
         if (best < stripes_.size() && load >= fewest) continue;
@@ -101,7 +118,10 @@ Traffic::Member Traffic::makeMember(std::size_t stripeNumber, std::size_t number
     member.sway_m = random.uniform(-1, 1) * (stripe.kind == RoadUserKind::kPedestrian ? 0.1 : 0.04);
     const std::size_t pair = number / 2;  // one before, one behind
     const double end = number % 2 == 0 ? 1 : -1;
-    if (stripe.wave_m > 0 && stripeNumber == 0) {
+    if (stripe.wave_m > 0 && isOnFoot(stripe.kind)) {
+        member.ahead_m = end * (kNearestWalker_m + kWalkers_m * static_cast<double>(pair));
+        member.swing_m = 0.5;
+    } else if (stripe.wave_m > 0 && stripeNumber == 0) {
         member.ahead_m = end * (kNearest_m + kQueue_m * static_cast<double>(pair));
         member.swing_m = number < 2 ? 0.8 : 2;
     } else if (stripe.wave_m > 0) {

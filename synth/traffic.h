@@ -9,12 +9,12 @@
 #include "road_user.h"
 
 namespace delio::synth {
-/** Who else is on the road. In the vehicle's own lane others accompany it, the nearest ones at 4 to
- *  10 m for the whole drive (for a scan-to-scan method such a car stands still); in every other
- *  lane traffic flows freely; where traffic is slow there are cyclists at the edge and pedestrians
- *  on the sidewalk. Whoever falls behind or gets ahead by more than reach() comes again from the
- *  other end. A place is a closed formula of time (and of the vehicle's own place): it depends on
- *  nothing that was asked before.
+/** Who else is on the road. On a road for cars: in the vehicle's own lane others accompany it, the
+ * nearest ones at 4 to 10 m for the whole drive (for a scan-to-scan method such a car stands
+ * still); in every other lane traffic flows freely; where traffic is slow there are cyclists at the
+ * edge and pedestrians on the sidewalk. Elsewhere there are pedestrians only. Whoever falls behind
+ * or gets ahead by more than reach() comes again from the other end. A place is a closed formula of
+ * time (and of the vehicle's own place): it depends on nothing that was asked before.
  *
  *  Nobody collides: all in a lane go at one speed, or keep to the vehicle's own station, with room
  *  between them. */
@@ -61,6 +61,7 @@ class Traffic {
         RoadUser looks;
     };
 
+    static std::vector<Stripe> footwaysOf(const Road& road, Random random);
     static std::vector<Stripe> stripesOf(const Road& road, Random random);
     std::size_t nextStripe() const;
     Member makeMember(std::size_t stripe, std::size_t number) const;
