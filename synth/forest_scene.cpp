@@ -12,43 +12,70 @@ namespace delio::synth {
 namespace {
 using Eigen::Vector2d;
 constexpr std::uint64_t kTreeKey = 0x73EE, kUnderKey = 0x0DE3;
-constexpr double kTrunkCell_m = 3.5, kTrunksApart_m = 2;
-constexpr double kUnderCell_m = 2.2, kUnderApart_m = 0.6;
+constexpr double kTrunksApart_m = 2.1, kUnderApart_m = 1.3;
 // From the middle of the track: trunks leave room for who walks beside the vehicle.
 constexpr double kTrunk_m = 2.9, kVehicle_m = 1.4, kBush_m = 3.9, kFern_m = 2.9;
 constexpr double kDense_m = 20;  // farther away, half of the leaves do
 
-/** A whole number as a key. */
-std::uint64_t keyOf(int number) { return static_cast<std::uint64_t>(number + 1000000); }
+struct Seedling {
+    Vector2d place;
+    double strength;
+    Random random;  //!< for what it becomes
+};
+
+/** One seedling in every cell of a lattice over the land; where two are too near to each other, the
+ *  stronger one stands. So nothing tells the lattice. */
+struct Thicket {
+    std::uint64_t seed, key;
+    double apart_m;
+
+    double cell_m() const { return 0.7 * apart_m; }
+    int cellOf(double metres) const { return static_cast<int>(std::floor(metres / cell_m())); }
+    Seedling at(int column, int row) const {
+        const auto keyOf = [](int number) { return static_cast<std::uint64_t>(number + 1000000); };
+        Random random{seed, key, keyOf(column), keyOf(row)};
+        const double u = random.uniform(), v = random.uniform(), strength = random.uniform();
+        return {{cell_m() * (column + u), cell_m() * (row + v)}, strength, random};
+    }
+    bool stands(int column, int row) const {
+        const Seedling own = at(column, row);
+        for (int i = -2; i <= 2; ++i)
+            for (int j = -2; j <= 2; ++j) {
+                if (i == 0 && j == 0) continue;
+                const Seedling other = at(column + i, row + j);
+                if (other.strength > own.strength && (other.place - own.place).norm() < apart_m)
+                    return false;
+            }
+        return true;
+    }
+};
 }  // namespace
 
-std::vector<ForestScene::Spot> ForestScene::spots(int index, std::uint64_t key, double cell_m,
+std::vector<ForestScene::Spot> ForestScene::spots(int index, std::uint64_t key,
                                                   double apart_m) const {
     Eigen::AlignedBox2d around;
     for (double s = 0; s <= kTileLength_m; s += 2)
         around.extend(road().point(index * kTileLength_m + s, 0));
-    const auto cellOf = [&](double metres) {
-        return static_cast<int>(std::floor(metres / cell_m));
-    };
-    const Vector2d low = around.min().array() - kDeep_m, high = around.max().array() + kDeep_m;
+    const Thicket thicket{seed_, key, apart_m};
+    const int columns = thicket.cellOf(around.max().x() + kDeep_m);
+    const int rows = thicket.cellOf(around.max().y() + kDeep_m);
     std::vector<Spot> found;
-    for (int column = cellOf(low.x()); column <= cellOf(high.x()); ++column)
-        for (int row = cellOf(low.y()); row <= cellOf(high.y()); ++row) {
-            Random random{seed_, key, keyOf(column), keyOf(row)};
-            const double play = (cell_m - apart_m) / 2;
-            const Vector2d place(cell_m * (column + 0.5) + play * random.uniform(-1, 1),
-                                 cell_m * (row + 0.5) + play * random.uniform(-1, 1));
-            const auto nearest = road().nearest(place);
+    for (int column = thicket.cellOf(around.min().x() - kDeep_m); column <= columns; ++column)
+        for (int row = thicket.cellOf(around.min().y() - kDeep_m); row <= rows; ++row) {
+            if (!thicket.stands(column, row)) continue;
+            const Seedling seedling = thicket.at(column, row);
+            const auto nearest = road().nearest(seedling.place);
             if (!nearest.segment || tileAt(nearest.segment->s) != index) continue;
-            if (nearest.distance < kDeep_m) found.push_back({place, nearest.distance, random});
+            if (nearest.distance < kDeep_m)
+                found.push_back({seedling.place, nearest.distance, seedling.random});
         }
     return found;
 }
 
 std::vector<std::pair<ForestScene::Trunk, ForestScene::Spot>> ForestScene::trees(int index) const {
     std::vector<std::pair<Trunk, Spot>> found;
-    for (auto& spot : spots(index, kTreeKey, kTrunkCell_m, kTrunksApart_m)) {
-        const bool clearing = spot.random.chance(0.07);
+    for (auto& spot : spots(index, kTreeKey, kTrunksApart_m)) {
+        const bool clearing = spot.random.chance(0.04);
         const double thick = spot.random.uniform();
         const Trunk trunk{spot.place, 0.15 + 0.35 * thick * thick};
         if (!clearing && spot.away_m > kTrunk_m) found.emplace_back(trunk, spot);
@@ -79,7 +106,7 @@ Mesh ForestScene::tile(int index) const {
                               spot.away_m < kDense_m};
         addForestTree(mesh, frame, tree, random);
     }
-    for (const auto& spot : spots(index, kUnderKey, kUnderCell_m, kUnderApart_m))
+    for (const auto& spot : spots(index, kUnderKey, kUnderApart_m))
         if (spot.away_m < 0.75 * kDeep_m) addUndergrowth(mesh, spot);
     return mesh;
 }

@@ -25,13 +25,13 @@ class ForestScene : public Scene {
     std::vector<Trunk> trunks(int index) const;
 
  private:
-    /** A place that is drawn in a cell of a lattice over the land. */
+    /** Where something grows. */
     struct Spot {
         Eigen::Vector2d place;
         double away_m;  //!< from the middle of the track
         Random random;
     };
-    std::vector<Spot> spots(int index, std::uint64_t key, double cell_m, double apart_m) const;
+    std::vector<Spot> spots(int index, std::uint64_t key, double apart_m) const;
     std::vector<std::pair<Trunk, Spot>> trees(int index) const;
     void addUndergrowth(Mesh& mesh, const Spot& spot) const;
     Frame frameAt(const Spot& spot, Random& random) const;

@@ -123,7 +123,7 @@ void expectOnTime(const Drive& drive, const std::string& file, double place_m, d
         const auto made = drive.lidarPose(i);
         // The sensor stands on a ground that leans: its head is not above the wheels' middle.
         const Eigen::Vector2d foot =
-            (made * Eigen::Vector3d(0, 0, -Drive::kSensorHeight_m)).head<2>();
+            (made * Eigen::Vector3d(0, 0, -drive.carrier().sensorHeight_m)).head<2>();
         ASSERT_LT((foot - given.translation().head<2>()).norm(), place_m) << i;
         ASSERT_LT(std::abs(std::remainder(test::yawOf(made) - test::yawOf(given), 2 * M_PI)),
                   yaw_deg * M_PI / 180)
@@ -174,7 +174,8 @@ TEST_F(SynthRecording, LeavesTheRoadToTheVehicle) {
                     ASSERT_EQ(hits[0].range, 0) << name << ", scan " << i << ", " << side;
                 }
             caster.cast(pose.translation(), {-pose.linear().col(2)}, 3, hits);
-            ASSERT_NEAR(hits[0].range, Drive::kSensorHeight_m, 0.05) << name << ", scan " << i;
+            ASSERT_NEAR(hits[0].range, drive.carrier().sensorHeight_m, 0.05)
+                << name << ", scan " << i;
         }
     }
 }

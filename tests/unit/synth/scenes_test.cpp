@@ -34,7 +34,7 @@ void expectFreeWay(const Scene& scene, const Drive& drive, std::size_t every) {
                 ASSERT_EQ(hits[0].range, 0) << "scan " << i << ", " << side << " m beside";
             }
         caster.cast(pose.translation(), {-pose.linear().col(2)}, 3, hits);
-        ASSERT_NEAR(hits[0].range, Drive::kSensorHeight_m, 0.05) << "scan " << i;
+        ASSERT_NEAR(hits[0].range, drive.carrier().sensorHeight_m, 0.05) << "scan " << i;
     }
 }
 
@@ -60,6 +60,7 @@ void expectOneGround(const Scene& scene, const Drive& drive, std::size_t every) 
 }
 
 struct SceneOf : testing::TestWithParam<std::string> {};
+struct AnySceneOf : testing::TestWithParam<std::string> {};
 
 TEST_P(SceneOf, LeavesTheRoadToTheVehicle) {
     const bool loop = GetParam() == "loop";
@@ -75,7 +76,7 @@ TEST_P(SceneOf, HasOneGround) {
     expectOneGround(*scene, Drive(scene->road(), 200, 3), 8);
 }
 
-TEST_P(SceneOf, BeginsAlikeHoweverLongTheDrive) {
+TEST_P(AnySceneOf, BeginsAlikeHoweverLongTheDrive) {
     const auto brief = test::sceneOf(GetParam(), 5, 50),
                lengthy = test::sceneOf(GetParam(), 5, 900);
     const Drive a(brief->road(), 50, 5), b(lengthy->road(), 900, 5);
@@ -115,6 +116,13 @@ TEST_P(SceneOf, MovesLikeACar) {
 INSTANTIATE_TEST_SUITE_P(Synth, SceneOf,
                          testing::Values("urban", "rural", "highway", "loop", "tunnel"),
                          [](const auto& param) { return param.param; });
+INSTANTIATE_TEST_SUITE_P(Synth, AnySceneOf, testing::ValuesIn(sceneNames()),
+                         [](const auto& param) { return param.param; });
+
+TEST(SynthForest, HasOneGround) {
+    const auto scene = test::sceneOf("forest", 3, 200);
+    expectOneGround(*scene, Drive(scene->road(), 200, 3), 4);
+}
 
 TEST(SynthHighway, IsDrivenFastFromTheStart) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) {

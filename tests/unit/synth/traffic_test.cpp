@@ -52,8 +52,7 @@ double distanceTo(const Eigen::Isometry3d& pose, const Eigen::AlignedBox3d& box,
 using SceneAndSeed = std::tuple<std::string, std::uint64_t>;
 class SynthTrafficOf : public testing::TestWithParam<SceneAndSeed> {};
 INSTANTIATE_TEST_SUITE_P(Synth, SynthTrafficOf,
-                         testing::Combine(testing::Values("urban", "rural", "highway", "loop",
-                                                          "tunnel"),
+                         testing::Combine(testing::ValuesIn(sceneNames()),
                                           testing::Values(1, 2, 3, 4)));
 
 TEST_P(SynthTrafficOf, NobodyCollidesOnALongDrive) {
@@ -62,7 +61,9 @@ TEST_P(SynthTrafficOf, NobodyCollidesOnALongDrive) {
     Way way(scene->road(), 900, seed);
     const Traffic traffic(way.road, way.drive, 30, seed);
     ASSERT_EQ(traffic.size(), 30U);
-    const Eigen::AlignedBox3d own(Eigen::Vector3d(-2.3, -0.9, 0), Eigen::Vector3d(2.3, 0.9, 1.5));
+    const Eigen::Vector3d half = way.drive.carrier().isVehicle ? Eigen::Vector3d(2.3, 0.9, 1.5)
+                                                               : Eigen::Vector3d(0.35, 0.3, 1.5);
+    const Eigen::AlignedBox3d own(-half, half);
     for (std::size_t scan = 0; scan < way.drive.scans(); scan += 3) {
         const double t = kScanPeriod_s * static_cast<double>(scan);
         std::vector<Outline> outlines = {outline(way.drive.lidarPose(scan), own)};
@@ -126,6 +127,26 @@ TEST(SynthTraffic, MovesSmoothlyOnTheGround) {
         EXPECT_NEAR(traffic.looks(m).box.min().z(), 0, 1e-6);  // wheels and feet touch the ground
         EXPECT_LE(traffic.looks(m).box.sizes().x(), longest_m(traffic.kind(m)) + 1e-6);
         EXPECT_LE(traffic.looks(m).box.sizes().y(), widest_m(traffic.kind(m)) + 1e-6);
+    }
+}
+
+TEST(SynthTraffic, WhereNoCarsDrivePeopleWalk) {
+    for (const std::string name : {"indoor", "forest"}) {
+        const auto scene = delio::test::sceneOf(name, 3, 300);
+        const Drive drive(scene->road(), 300, 3);
+        const Traffic traffic(scene->road(), drive, 6, 3);
+        ASSERT_EQ(traffic.size(), 6U);
+        for (std::size_t m = 0; m < traffic.size(); ++m) {
+            EXPECT_EQ(traffic.kind(m), RoadUserKind::kPedestrian);
+            EXPECT_EQ(traffic.accompanies(m), name == "indoor");
+            for (double t = 1; t < 29; t += 0.5) {
+                const Eigen::Vector3d feet = traffic.pose(m, t).translation();
+                EXPECT_NEAR(feet.z(), scene->road().height(feet.head<2>()), 0.06) << name;
+                if (name != "indoor") continue;
+                EXPECT_GT(std::abs(traffic.ahead(m, t)), 2.4);
+                EXPECT_LT(std::abs(traffic.ahead(m, t)), 9);
+            }
+        }
     }
 }
 
