@@ -17,7 +17,7 @@ Road roadOf(const FloorPlan& plan, std::uint64_t seed) {
 }  // namespace
 
 IndoorScene::IndoorScene(std::uint64_t seed, double length_m)
-    : IndoorScene(seed, FloorPlan(seed, length_m + kPathMargin_m)) {}
+    : IndoorScene(seed, FloorPlan(seed, length_m + 2 * kPathMargin_m)) {}
 
 IndoorScene::IndoorScene(std::uint64_t seed, FloorPlan plan)
     : Scene(roadOf(plan, seed)), seed_(seed), plan_(std::move(plan)) {}

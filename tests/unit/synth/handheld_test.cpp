@@ -88,7 +88,7 @@ TEST(SynthHandheld, TheSeedDecidesAndNothingElse) {
     EXPECT_TRUE(vehicle.lidarPose(30).matrix() == same.lidarPose(30).matrix());
 }
 
-/** How far points on the floor of the first room are off it, at most. */
+/** How far points on the floor are off it, at most, where nothing stands: along the walk. */
 double offTheFloor(const ScanPoints& points, const Drive& drive, std::size_t scan, bool ownTime) {
     double most = 0;
     std::size_t used = 0;
@@ -98,11 +98,12 @@ double offTheFloor(const ScanPoints& points, const Drive& drive, std::size_t sca
         const double time = ownTime ? static_cast<double>(points.time_s[i]) : 0;
         const double stamp = kScanPeriod_s * static_cast<double>(scan);
         const Eigen::Vector3d world = drive.lidarPoseAt(stamp + time) * point;
-        if (point.norm() > 5 || world.x() > 1.5 || std::abs(world.z()) > 0.03) continue;
+        if (std::abs(world.y()) > 0.4 || std::abs(world.z()) > 0.1) continue;
+        if (world.x() < -20 || world.x() > 1.5) continue;
         most = std::max(most, std::abs(world.z()));
         ++used;
     }
-    EXPECT_GT(used, 300U);
+    EXPECT_GT(used, 100U);
     return most;
 }
 
@@ -111,7 +112,7 @@ TEST(SynthHandheld, EachPointIsSeenFromThePoseAtItsOwnTimeIfTheScanIsDistorted) 
     const Drive drive(scene.road(), 20, 1, Gait::kHandheld);
     RayCaster caster;
     TileWindow(scene, caster).moveTo(0);
-    SensorModel sensor = sensorModels()[3];
+    const SensorModel sensor = sensorModels()[1];
     const Scanner scanner(caster, nullptr, sensor, {0, 0, false, 1, 1});
     const auto distorted = scanner.scan(sweepOf(drive, 3, sensor, true, 1), 3);
     EXPECT_LT(offTheFloor(distorted, drive, 3, true), 1e-5);

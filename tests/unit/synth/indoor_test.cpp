@@ -31,8 +31,9 @@ const Space* spaceAt(const FloorPlan& plan, const Vector2d& place) {
 
 TEST(SynthFloorPlan, RoomsAndCorridorsAreAsLargeAsTheyAreSaidToBe) {
     std::set<SpaceKind> kinds;
-    for (std::uint64_t seed = 0; seed < 20; ++seed)
-        for (const auto& space : FloorPlan(seed, 1000).spaces()) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const FloorPlan plan(seed, 1000);
+        for (const auto& space : plan.spaces()) {
             kinds.insert(space.kind);
             const Vector2d size = space.area.sizes();
             EXPECT_GE(space.height_m, 2.5);
@@ -45,6 +46,7 @@ TEST(SynthFloorPlan, RoomsAndCorridorsAreAsLargeAsTheyAreSaidToBe) {
                 EXPECT_LE(size.minCoeff(), 2.6);
             }
         }
+    }
     EXPECT_EQ(kinds.size(), 4U);
 }
 
