@@ -43,11 +43,6 @@ Gait gaitOf(const std::string& motion) {
     return motion == "handheld" ? Gait::kHandheld : Gait::kVehicle;
 }
 
-/** A distance that has to be 0 or more. */
-bool isMetres(double value) { return value >= 0 && std::isfinite(value); }
-
-bool isRate(double value) { return value >= 0 && value < 1; }
-
 /** The command line. */
 struct Arguments {
     TCLAP::CmdLine cmd{"synth2rawlog: a drive through a made-up world, with ground truth", ' ',
@@ -112,6 +107,11 @@ struct Arguments {
     TCLAP::SwitchArg force{"", "force", "Overwrite what exists", cmd};
     TCLAP::SwitchArg verbose{"", "verbose", "Say more", cmd};
 };
+
+/** A distance that has to be 0 or more. */
+bool isMetres(double value) { return value >= 0 && std::isfinite(value); }
+
+bool isRate(double value) { return value >= 0 && value < 1; }
 
 /** Why a scene cannot be made as asked; empty: it can. */
 std::string faultInScene(Arguments& args) {

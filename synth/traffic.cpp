@@ -26,6 +26,13 @@ double queue(RoadUserKind kind) { return isOnFoot(kind) ? kWalkers_m : kQueue_m;
 double wrapped(double value, double reach) {
     return value - 2 * reach * std::floor((value + reach) / (2 * reach));
 }
+
+Eigen::Isometry3d uprightAt(Eigen::Isometry3d pose) {
+    const double yaw = std::atan2(pose(1, 0), pose(0, 0));
+    pose.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    return pose;
+}
+
 /** How far ahead and behind there is traffic. */
 double reachOn(const Road& road) {
     constexpr double kJustLeft_m = 40;  // that is still the same stretch
@@ -163,6 +170,8 @@ Eigen::Isometry3d Traffic::pose(std::size_t index, double time_s) const {
     const double s = drive_.stationAt(time_s) + ahead(index, time_s);
     Eigen::Isometry3d along =
         poseOnRoad(road_, s, stripe.side_m + member.sway_m, member.looks.footprint);
+    // Sidewalks are level enough for it not to matter; on stairs nobody leans back.
+    if (!road_.profile().footways.empty()) along = uprightAt(along);
     if (stripe.direction > 0) return along;
     return along * Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitZ());
 }

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "command.h"
 #include "delio/io/trajectory.h"
@@ -40,6 +44,83 @@ TEST(SynthScenes, EachHasAsManyPointsAsARealScan) {
     }
 }
 
+/** Of the points of a scan: metres. */
+std::vector<double> rangesOf(const fs::path& file) {
+    const std::string bytes = test::readText(file);
+    std::vector<float> xyzi(bytes.size() / sizeof(float));
+    std::memcpy(xyzi.data(), bytes.data(), bytes.size());
+    std::vector<double> ranges;
+    for (std::size_t i = 0; i + 3 < xyzi.size(); i += 4)
+        ranges.push_back(std::hypot(xyzi[i], xyzi[i + 1], xyzi[i + 2]));
+    return ranges;
+}
+
+TEST(SynthScenes, EverySensorSeesHouseAndForestFromVehicleAndHand) {
+    const test::TemporaryFolder folder;
+    const std::map<std::string, std::size_t> beams = {
+        {"hdl64e", 133312}, {"hdl32e", 69440}, {"vlp16", 28928}, {"os1-64", 65536}};
+    for (const std::string scene : {"indoor", "forest"})
+        for (const std::string motion : {"vehicle", "handheld"})
+            for (const auto& [sensor, most] : beams) {
+                const auto run = synth(folder / "d.rawlog",
+                                       {"--scene", scene, "--motion", motion, "--scans", "1",
+                                        "--sensor", sensor, "--movers", "4", "--force"});
+                ASSERT_EQ(run.exitCode, 0) << run.err;
+                const auto ranges = rangesOf(folder / "d_Images/000000.bin");
+                const std::size_t least = scene == "indoor" ? most * 19 / 20 : most / 2;
+                EXPECT_GT(ranges.size(), least) << scene << motion << sensor;
+                EXPECT_LE(ranges.size(), most);
+            }
+}
+
+TEST(SynthScenes, IndoorsASensorTellsWhatIsHalfAMetreAway) {
+    const test::TemporaryFolder folder;
+    for (const std::string scene : {"indoor", "forest"}) {
+        ASSERT_EQ(synth(folder / "d.rawlog",
+                        {"--scene", scene, "--scans", "60", "--sensor", "vlp16", "--force"})
+                      .exitCode,
+                  0);
+        double nearest = 10;
+        for (int scan = 10; scan < 60; ++scan) {
+            const std::string name = "d_Images/0000" + std::to_string(scan) + ".bin";
+            for (const double range : rangesOf(folder / name)) nearest = std::min(nearest, range);
+        }
+        EXPECT_GE(nearest, scene == "indoor" ? 0.4999 : 0.8999);
+        if (scene == "indoor") {
+            EXPECT_LT(nearest, 0.7);
+        }
+    }
+}
+
+TEST(SynthScenes, AHandheldDriveIsTheSameForAnyNumberOfThreads) {
+    const test::TemporaryFolder folder;
+    for (const std::string threads : {"1", "3"}) {
+        const auto run =
+            synth(folder / ("d" + threads + ".rawlog"),
+                  {"--scene", "indoor", "--motion", "handheld", "--scans", "3", "--distort",
+                   "--labels", "--movers", "3", "--sensor", "vlp16", "--threads", threads});
+        ASSERT_EQ(run.exitCode, 0) << run.err;
+    }
+    EXPECT_EQ(test::readText(folder / "d1.poses.txt"), test::readText(folder / "d3.poses.txt"));
+    for (const std::string ending : {".bin", ".time", ".label"})
+        EXPECT_EQ(test::readText(folder / ("d1_Images/000002" + ending)),
+                  test::readText(folder / ("d3_Images/000002" + ending)));
+}
+
+TEST(SynthScenes, AHandSwingsAlongGivenPosesToo) {
+    const test::TemporaryFolder folder;
+    test::writeText(folder / "given.txt", straightPoses(9));
+    const auto run = synth(folder / "d.rawlog",
+                           {"--scene", "rural", "--scans", "9", "--motion", "handheld", "--sensor",
+                            "vlp16", "--trajectory", (folder / "given.txt").string()});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    double turned = 0;
+    const auto poses = io::readTrajectory(folder / "d.poses.txt").poses;
+    for (const auto& pose : poses)
+        turned = std::max(turned, Eigen::AngleAxisd(pose.linear()).angle());
+    EXPECT_GT(turned, 0.2);
+}
+
 TEST(SynthScenes, ADriveAlongGivenPosesEndsWithThem) {
     const test::TemporaryFolder folder;
     test::writeText(folder / "given.txt", straightPoses(4));
@@ -72,12 +153,18 @@ TEST(SynthScenes, ABadCommandLineIsOneLineAndExit2) {
         EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
         EXPECT_FALSE(fs::exists(folder / "d.rawlog"));
     };
-    expectRefused({"--scene", "moon", "--scans", "3"}, "urban, rural, highway, loop, tunnel");
+    expectRefused({"--scene", "moon", "--scans", "3"},
+                  "urban, rural, highway, loop, tunnel, indoor, forest");
     expectRefused({"--scene", "", "--scans", "3"}, "urban");
     expectRefused({"--scene", "rural", "--scans", "0"}, "--scans");
     expectRefused({"--scene", "tunnel", "--scans", "3", "--trajectory", given}, "tunnel");
     expectRefused({"--scene", "loop", "--scans", "3", "--trajectory", given}, "loop");
     expectRefused({"--scene", "rural", "--scans", "3", "--trajectory", ""}, "--trajectory");
+    for (const std::string scene : {"indoor", "forest"})
+        expectRefused({"--scene", scene, "--scans", "3", "--trajectory", given}, scene);
+    for (const std::string motion : {"hand", ""})
+        expectRefused({"--scene", "urban", "--scans", "3", "--motion", motion},
+                      "there is: vehicle, handheld");
 }
 
 TEST(SynthScenes, ATrajectoryThatCannotBeDrivenIsOneLineAndExit1) {
