@@ -83,8 +83,8 @@ struct Arguments {
         cmd};
     TCLAP::ValueArg<int> movers{"",
                                 "movers",
-                                "Cars, cyclists and pedestrians near the vehicle; people only "
-                                "in forest, and indoor, where they walk along with the sensor",
+                                "Cars, cyclists and pedestrians near the vehicle; in forest and "
+                                "indoor: people, who indoors walk along with the sensor",
                                 false,
                                 0,
                                 "N",

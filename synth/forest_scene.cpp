@@ -32,7 +32,9 @@ struct Thicket {
     double cell_m() const { return 0.7 * apart_m; }
     int cellOf(double metres) const { return static_cast<int>(std::floor(metres / cell_m())); }
     Seedling at(int column, int row) const {
-        const auto keyOf = [](int number) { return static_cast<std::uint64_t>(number + 1000000); };
+        const auto keyOf = [](int number) {
+            return std::uint64_t{1000000} + static_cast<std::uint64_t>(number);
+        };
         Random random{seed, key, keyOf(column), keyOf(row)};
         const double u = random.uniform(), v = random.uniform(), strength = random.uniform();
         return {{cell_m() * (column + u), cell_m() * (row + v)}, strength, random};

@@ -131,6 +131,7 @@ TEST(SynthIndoor, TheWayIsFreeAndWallsAreAllAround) {
                     ASSERT_EQ(hits[0].range, 0) << "seed " << seed << ", scan " << i;
                 }
             std::vector<Vector3d> all;
+            all.reserve(200);
             for (int k = 0; k < 200; ++k)
                 all.push_back(
                     Vector3d(random.normal(), random.normal(), random.normal()).normalized());
