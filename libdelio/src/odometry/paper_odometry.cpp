@@ -76,9 +76,8 @@ std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const scan::PointClo
     // nearly the same lines, each of which then pairs with itself and holds the vehicle at rest.
     auto lineOptions = options_->lines;
     lineOptions.seed += scans_;
-    features->lines = stage("lines", step, [&] {
-        return paper::drawLines(cloud.points, scan::neighbouringRings(cloud), lineOptions);
-    });
+    features->lines = stage(
+        "lines", step, [&] { return paper::drawLines(cloud.points, cloud.rings, lineOptions); });
     step.details = {{"normals", static_cast<double>(normals.directions.cols())},
                     {"pattern", static_cast<double>(features->pattern.directions.cols())},
                     {"modes", static_cast<double>(modes)},
@@ -112,6 +111,7 @@ Step PaperOdometry::process(const Scan& scan) {
     const Eigen::Isometry3d predicted = prediction_.predict(interval.duration_s);
     auto cloud = stage("preprocess", step, [&] {
         auto made = scan::preprocess(scan, options_->scan);
+        made.rings = scan::neighbouringRings(made);  // before points move
         step.deskewed = !made.times_s.empty();
         if (step.deskewed)
             made.points =
