@@ -14,6 +14,24 @@ auto stage(const char* name, Step& step, const Work& work) {
     step.times_ms.emplace_back(name, 0);
     return timed(step.times_ms.back().second, work);
 }
+
+/** Rotation and translation again, now that it is known which normals were found at one place. */
+void refineInPlace(const PaperFeatures& from, const PaperFeatures& to,
+                   const PaperOdometryOptions& options, PaperRegistration& found) {
+    for (unsigned round = 0; round < options.inPlace.rounds; ++round) {
+        if (!found.rotation.valid || !found.translation.valid) return;
+        const Eigen::Vector3d t = found.translation.translation;
+        found.rotation = timed(found.rotation_ms, [&] {
+            return paper::registerInPlace(from.pattern, to.pattern, found.rotation, t,
+                                          options.inPlace);
+        });
+        found.translation = timed(found.translation_ms, [&] {
+            return paper::registerLines(from.lines,
+                                        paper::rotated(to.lines, found.rotation.rotation), t,
+                                        options.lineRegistration);
+        });
+    }
+}
 }  // namespace
 
 std::optional<Link> PaperFeatures::linkTo(const ScanFeatures& earlier,
@@ -39,6 +57,7 @@ PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeature
                                               options.lineRegistration)
                    : paper::registerLines(from.lines, unrotated, t, options.lineRegistration);
     });
+    refineInPlace(from, to, options, result);
     // From another place other parts of the surfaces are seen, whose normals differ a little.
     const double growth = 1 + result.translation.translation.norm() / options.pattern.view_distance;
     result.rotation.covariance *= growth * growth;
