@@ -13,6 +13,9 @@ constexpr double kBin = 0.02 * kDegree;
 constexpr std::size_t kBins = 9000;  // half a turn
 constexpr std::size_t kMostBeams = 256;
 
+/** A few modes of anything have little blur, far from each other as they are. */
+constexpr double kLargestDeviation = 0.5 * kDegree;
+
 using Histogram = std::vector<double>;
 
 Histogram histogramOf(const Eigen::Matrix3Xf& points, float height) {
@@ -67,9 +70,10 @@ std::vector<double> modesOf(const Histogram& counts, std::size_t reach) {
     return modes;
 }
 
-double blurOf(const Histogram& counts, const std::vector<double>& modes) {
-    if (modes.empty()) return 1;
-    double sum = 0, blur = 0;
+/** Blur and deviation. */
+std::pair<double, double> fitOf(const Histogram& counts, const std::vector<double>& modes) {
+    if (modes.empty()) return {1, M_PI};
+    double sum = 0, blur = 0, deviation = 0;
     std::size_t next = 0;  // the first mode above the bin
     for (std::size_t i = 0; i < kBins; ++i) {
         const auto at = static_cast<double>(i);
@@ -78,15 +82,15 @@ double blurOf(const Histogram& counts, const std::vector<double>& modes) {
         const std::size_t upper =
             std::clamp<std::size_t>(next, 1, std::max<std::size_t>(modes.size() - 1, 1));
         const double gap = modes.size() > 1 ? modes[upper] - modes[upper - 1] : kDegree / kBin;
-        double distance = gap;
+        double distance = kBins;
         if (next > 0) distance = std::min(distance, at - modes[next - 1]);
         if (next < modes.size()) distance = std::min(distance, modes[next] - at);
         sum += counts[i];
-        blur += counts[i] * distance / gap;
+        blur += counts[i] * std::min(distance / gap, 1.0);
+        deviation += counts[i] * distance * kBin;
     }
-    return blur / std::max(sum, 1.0);
+    return {blur / std::max(sum, 1.0), deviation / std::max(sum, 1.0)};
 }
-
 }  // namespace
 
 float elevationFrom(float height, const Eigen::Vector3f& point) {
@@ -100,8 +104,9 @@ Beams beamsFrom(const Eigen::Matrix3Xf& points, float height) {
     // Wide enough for the noise, but not so wide that neighbours become one: what blurs least.
     for (const std::size_t reach : {1, 2, 4, 8, 16}) {
         const auto modes = modesOf(counts, reach);
-        const double blur = blurOf(counts, modes);
-        if (blur >= best.blur || modes.size() > kMostBeams) continue;
+        const auto [blur, deviation] = fitOf(counts, modes);
+        if (blur >= best.blur || modes.size() > kMostBeams || deviation > kLargestDeviation)
+            continue;
         best.blur = blur;
         best.elevations.clear();
         for (auto mode = modes.rbegin(); mode != modes.rend(); ++mode)

@@ -196,6 +196,17 @@ TEST(Rings, BeamsMayMeetAboveTheOrigin) {
     }
 }
 
+// In the axes of a vehicle whose sensor is mounted on its side no ring has an elevation of its own.
+// Two or three modes of such a cloud are no beams.
+TEST(Rings, LyingOnItsSideLeavesMoreThanAFewRings) {
+    for (const auto& model : models()) {
+        auto scan = scanBy(model);
+        scan.points = delio::test::rotationAbout({1, 0, 0}, 90).cast<float>() * scan.points;
+        const Rings found = ringsOf(scan.points);
+        EXPECT_GE(*std::max_element(found.begin(), found.end()), 15) << model.name;
+    }
+}
+
 TEST(Rings, OneRingIsOne) {
     Noise noise;
     Eigen::Matrix3Xf points(3, 2000);
