@@ -16,6 +16,11 @@ double distanceTo(const Block& block, const Eigen::Vector3d& from, const Eigen::
     if (leaves < enters || leaves <= 0) return std::numeric_limits<double>::infinity();
     return enters > 0 ? enters : leaves;
 }
+double elevationOf(const Sensor& sensor, unsigned ring) {
+    if (!sensor.elevations_deg.empty()) return sensor.elevations_deg[ring] * M_PI / 180;
+    const double step = (sensor.highest_deg - sensor.lowest_deg) / (sensor.rings - 1);
+    return (sensor.highest_deg - ring * step) * M_PI / 180;
+}
 }  // namespace
 
 double Noise::normal() {
@@ -69,8 +74,7 @@ RingScan ringScan(const Scene& scene, const Eigen::Isometry3d& pose, const Senso
     Eigen::Index count = 0;
     for (unsigned ring = 0; ring < sensor.rings; ++ring)
         for (unsigned column = 0; column < sensor.columns; ++column) {
-            const double step = (sensor.highest_deg - sensor.lowest_deg) / (sensor.rings - 1);
-            const double elevation = (sensor.highest_deg - ring * step) * M_PI / 180;
+            const double elevation = elevationOf(sensor, ring);
             // Half a step on, so that noise does not carry a point over the seam.
             const double azimuth = (column + 0.5) * 2 * M_PI / sensor.columns;
             const Eigen::Vector3d ray(std::cos(elevation) * std::cos(azimuth),

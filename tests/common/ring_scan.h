@@ -43,6 +43,8 @@ struct Sensor {
     double lowest_deg = -24;
     double highest_deg = 8;
     double noise_m = 0;  //!< of the range
+    /** From the top; where given, the beams in place of those that are evenly spread. */
+    std::vector<double> elevations_deg = {};
 };
 
 /** What the sensor sees at `pose`: ring after ring, the uppermost first, each once round

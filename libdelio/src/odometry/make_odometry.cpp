@@ -24,6 +24,7 @@ List paperStages(Options& o) {
             {"outlier_removal", &o.outliers},
             {"mean_shift", &o.meanShift},
             {"pattern_registration", &o.pattern},
+            {"rotation_in_place", &o.inPlace},
             {"line_cloud", &o.lines},
             {"line_registration", &o.lineRegistration},
             {"prediction", &o.prediction}};

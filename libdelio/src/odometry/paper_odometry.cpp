@@ -14,6 +14,24 @@ auto stage(const char* name, Step& step, const Work& work) {
     step.times_ms.emplace_back(name, 0);
     return timed(step.times_ms.back().second, work);
 }
+
+/** Rotation and translation again, now that it is known which normals were found at one place. */
+void refineInPlace(const PaperFeatures& from, const PaperFeatures& to,
+                   const PaperOdometryOptions& options, PaperRegistration& found) {
+    for (unsigned round = 0; round < options.inPlace.rounds; ++round) {
+        if (!found.rotation.valid || !found.translation.valid) return;
+        const Eigen::Vector3d t = found.translation.translation;
+        found.rotation = timed(found.rotation_ms, [&] {
+            return paper::registerInPlace(from.pattern, to.pattern, found.rotation, t,
+                                          options.inPlace);
+        });
+        found.translation = timed(found.translation_ms, [&] {
+            return paper::registerLines(from.lines,
+                                        paper::rotated(to.lines, found.rotation.rotation), t,
+                                        options.lineRegistration);
+        });
+    }
+}
 }  // namespace
 
 std::optional<Link> PaperFeatures::linkTo(const ScanFeatures& earlier,
@@ -39,6 +57,7 @@ PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeature
                                               options.lineRegistration)
                    : paper::registerLines(from.lines, unrotated, t, options.lineRegistration);
     });
+    refineInPlace(from, to, options, result);
     // From another place other parts of the surfaces are seen, whose normals differ a little.
     const double growth = 1 + result.translation.translation.norm() / options.pattern.view_distance;
     result.rotation.covariance *= growth * growth;
@@ -76,9 +95,8 @@ std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const scan::PointClo
     // nearly the same lines, each of which then pairs with itself and holds the vehicle at rest.
     auto lineOptions = options_->lines;
     lineOptions.seed += scans_;
-    features->lines = stage("lines", step, [&] {
-        return paper::drawLines(cloud.points, scan::neighbouringRings(cloud), lineOptions);
-    });
+    features->lines = stage(
+        "lines", step, [&] { return paper::drawLines(cloud.points, cloud.rings, lineOptions); });
     step.details = {{"normals", static_cast<double>(normals.directions.cols())},
                     {"pattern", static_cast<double>(features->pattern.directions.cols())},
                     {"modes", static_cast<double>(modes)},
@@ -112,6 +130,7 @@ Step PaperOdometry::process(const Scan& scan) {
     const Eigen::Isometry3d predicted = prediction_.predict(interval.duration_s);
     auto cloud = stage("preprocess", step, [&] {
         auto made = scan::preprocess(scan, options_->scan);
+        made.rings = scan::neighbouringRings(made);  // before points move
         step.deskewed = !made.times_s.empty();
         if (step.deskewed)
             made.points =

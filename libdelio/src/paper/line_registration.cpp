@@ -23,8 +23,21 @@ struct Sums {
     Eigen::Matrix3d seen = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d lever = Eigen::Matrix3d::Zero();  //!< sum of seen * [midpoint]x
     double squared = 0;
+    double weight = 0;
     std::size_t pairs = 0;
 };
+
+/** How far the common normal of two lines can be trusted, 0 to 1. It is off by the noise of the
+ *  lines' ends over their lengths, and the more the smaller the angle between them. Without that,
+ *  pairs of short lines see every direction, and best where the sensor stands still: there the
+ *  rings draw nearly the same lines again. */
+double trustIn(double firstLength, double secondLength, double sineOfAngle,
+               const LineRegistrationOptions& options) {
+    if (options.centroids) return 1;
+    const double error = options.short_length * std::hypot(1 / firstLength, 1 / secondLength) /
+                         std::max(sineOfAngle, 1e-6);
+    return 1 / (1 + std::pow(error, 4));
+}
 
 Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d& t,
               const std::vector<Match>& matches, const LineRegistrationOptions& options) {
@@ -47,10 +60,13 @@ Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d&
         const Eigen::Matrix3d seen =
             closest.parallel ? Eigen::Matrix3d(Eigen::Matrix3d::Identity() - ut * ut.transpose())
                              : Eigen::Matrix3d(normal * normal.transpose() / normal.squaredNorm());
-        sums.seen += seen;
-        sums.lever += seen * hat(to.midpoints.col(s).cast<double>());
-        sums.d += d;
-        sums.squared += d.squaredNorm();
+        const double weight = trustIn(static_cast<double>(to.lengths[s]),
+                                      static_cast<double>(from.lengths[f]), normal.norm(), options);
+        sums.seen += weight * seen;
+        sums.lever += weight * seen * hat(to.midpoints.col(s).cast<double>());
+        sums.d += weight * d;
+        sums.squared += weight * d.squaredNorm();
+        sums.weight += weight;
         ++sums.pairs;
     }
     return sums;
@@ -58,14 +74,12 @@ Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d&
 
 /** (sum seen)^-1 d without the directions that are not seen. */
 Eigen::Vector3d solveSeen(const Sums& sums, double min_observability) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(sums.seen /
-                                                              static_cast<double>(sums.pairs));
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(sums.seen / sums.weight);
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = axes.eigenvectors().col(k);
         if (axes.eigenvalues()[k] >= min_observability)
-            step +=
-                axis * axis.dot(sums.d) / (axes.eigenvalues()[k] * static_cast<double>(sums.pairs));
+            step += axis * axis.dot(sums.d) / (axes.eigenvalues()[k] * sums.weight);
     }
     return step;
 }
@@ -74,12 +88,11 @@ Eigen::Vector3d solveSeen(const Sums& sums, double min_observability) {
  *  the motion model's variance. */
 void settle(const Sums& sums, const Eigen::Vector3d& predicted,
             const LineRegistrationOptions& options, TranslationEstimate& estimate) {
-    const auto pairs = static_cast<double>(sums.pairs);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(sums.seen / pairs);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(sums.seen / sums.weight);
     estimate.observability = axes.eigenvalues();
-    estimate.residual_m = std::sqrt(sums.squared / pairs);
+    estimate.residual_m = std::sqrt(sums.squared / sums.weight);
     const double residual = std::max(estimate.residual_m, kLeastResidual_m);
-    const double noise = residual * residual / (options.independent_share * pairs);
+    const double noise = residual * residual / (options.independent_share * sums.weight);
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = axes.eigenvectors().col(k);
         const bool observed = axes.eigenvalues()[k] >= options.min_observability;
@@ -91,7 +104,7 @@ void settle(const Sums& sums, const Eigen::Vector3d& predicted,
         // A point p moves by w x p where the rotation is off by w; the translation undoes that.
         if (observed)
             estimate.lever +=
-                axis * axis.transpose() * sums.lever / (axes.eigenvalues()[k] * pairs);
+                axis * axis.transpose() * sums.lever / (axes.eigenvalues()[k] * sums.weight);
         estimate.covariance +=
             (observed ? noise / axes.eigenvalues()[k] : options.prior_sigma * options.prior_sigma) *
             axis * axis.transpose();
@@ -112,17 +125,22 @@ double meanLineDistance(const LineCloud& from, const KdTree& tree, const LineClo
                         const Eigen::Vector3d& t, const LineRegistrationOptions& options) {
     constexpr double kFar = 0.3;
     const auto matches = nearestMidpoints(tree, to, t, options.max_distance);
-    double sum = 0;
+    double sum = 0, weights = 0;
     for (std::size_t i = 0; i < matches.size(); ++i) {
         const auto s = static_cast<Eigen::Index>(i), f = static_cast<Eigen::Index>(matches[i].from);
+        const double sine =
+            static_cast<double>(to.directions.col(s).cross(from.directions.col(f)).norm());
+        const double weight = trustIn(static_cast<double>(to.lengths[s]),
+                                      static_cast<double>(from.lengths[f]), sine, options);
         const auto closest =
             closestPoints(to.midpoints.col(s).cast<double>() + t,
                           to.directions.col(s).cast<double>(), from.midpoints.col(f).cast<double>(),
                           from.directions.col(f).cast<double>(), options.min_angle_deg);
         const double distance = (closest.onTarget - closest.onSource).norm();
-        sum += matches[i].distance < 0 ? kFar : std::min(distance, kFar);
+        sum += weight * (matches[i].distance < 0 ? kFar : std::min(distance, kFar));
+        weights += weight;
     }
-    return sum / static_cast<double>(std::max<std::size_t>(matches.size(), 1));
+    return weights > 0 ? sum / weights : kFar;
 }
 
 /** The search looks at every fourth line: enough to tell where the basin is. */
@@ -145,6 +163,10 @@ std::vector<OptionField> LineRegistrationOptions::fields() const {
          "those steps end"},
         {"min_angle_deg", &LineRegistrationOptions::min_angle_deg,
          "deg; lines at a smaller angle count as parallel", 0.01, 90},
+        {"short_length", &LineRegistrationOptions::short_length,
+         "m; pairs of lines much shorter than this (centroids = false) hardly count: noise turns "
+         "their common normal",
+         0, 10},
         {"max_distance", &LineRegistrationOptions::max_distance,
          "m; midpoints farther apart are never a pair", 0.01, 1000},
         {"max_iterations", &LineRegistrationOptions::max_iterations, "pairings at most", 1, 10000},
@@ -197,7 +219,7 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
         if (sums.pairs < options.min_matches) break;
         ++estimate.iterations;
         const Eigen::Vector3d step = options.centroids
-                                         ? Eigen::Vector3d(sums.d / static_cast<double>(sums.pairs))
+                                         ? Eigen::Vector3d(sums.d / sums.weight)
                                          : solveSeen(sums, options.min_observability / kPatience);
         estimate.translation += step;
         if (step.norm() < options.converged) break;

@@ -35,6 +35,7 @@ void keepOnly(const std::vector<Eigen::Index>& kept, Pattern& pattern) {
     pattern.normals = kept.size();
     pattern.directions = pattern.directions(Eigen::all, kept).eval();
     pattern.weights = pattern.weights(kept).eval();
+    if (pattern.points.cols() > 0) pattern.points = pattern.points(Eigen::all, kept).eval();
 }
 }  // namespace
 
@@ -64,7 +65,7 @@ OutlierRemovalOptions OutlierRemovalOptions::firstRounds(unsigned count) const {
 
 Pattern patternOf(const surfaces::SurfaceNormals& normals) {
     return {normals.directions, normals.planarity,
-            static_cast<std::size_t>(normals.directions.cols()), 0};
+            static_cast<std::size_t>(normals.directions.cols()), 0, normals.points};
 }
 
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Pattern& pattern) {

@@ -9,6 +9,7 @@
 
 #include "../surfaces/kd_tree.h"
 #include "delio/scan/voxel_grid.h"
+#include "kabsch.h"
 
 namespace delio::paper {
 namespace {
@@ -91,14 +92,6 @@ Pairing pairDensities(const Pattern& from, const KdTree& tree, const Pattern& to
         ++sum.matches;
         sum.matched += own;
     });
-}
-
-/** argmin over rotations of sum w |n_from - R n_to|^2 (Arun, Kabsch). */
-Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& moment) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Vector3d sign(1, 1, 1);
-    sign[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-    return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
 }
 
 /** Fewer directions that stand for the pattern: the weighted centroid of each cell. Cells a quarter

@@ -5,12 +5,20 @@
 #include <functional>
 #include <map>
 
+#include "beams.h"
+
 namespace delio::scan {
 namespace {
 constexpr std::size_t kMostRings = 256;
 constexpr int kElevationSteps = 64;
 
-float elevationOf(const Eigen::Vector3f& p) { return std::atan2(p.z(), p.head<2>().norm()); }
+/** With less blur than that every point is taken to lie next to its own beam. */
+constexpr double kSharp = 0.05;
+/** With more, points at random are as likely as beams. Of a normal distribution so wide, 1 % lies
+ *  nearer to another beam. */
+constexpr double kMostBlur = 0.2;
+
+float elevationOf(const Eigen::Vector3f& p) { return elevationFrom(0, p); }
 
 std::vector<std::uint16_t> ringsByOrder(const Eigen::Matrix3Xf& points) {
     std::vector<std::uint16_t> rings;
@@ -48,7 +56,7 @@ bool areRings(const Eigen::Matrix3Xf& points, const std::vector<std::uint16_t>& 
     return deviation < kLargestDeviation * static_cast<double>(rings.size());
 }
 
-std::vector<std::uint16_t> ringsByElevation(const Eigen::Matrix3Xf& points) {
+std::vector<std::uint16_t> equalSteps(const Eigen::Matrix3Xf& points) {
     std::vector<float> elevations;
     for (Eigen::Index i = 0; i < points.cols(); ++i)
         elevations.push_back(elevationOf(points.col(i)));
@@ -86,7 +94,11 @@ std::vector<std::uint16_t> ringsFromTop(const Eigen::Matrix3Xf& points,
 }
 
 std::vector<std::uint16_t> ringsOf(const Eigen::Matrix3Xf& points) {
+    auto beams = beamsFrom(points, 0);
+    if (beams.blur <= kSharp) return nearestBeams(points, beams);
     auto rings = ringsByOrder(points);
-    return areRings(points, rings) ? rings : ringsByElevation(points);
+    if (areRings(points, rings)) return rings;
+    beams = beamsFromAnyHeight(points);
+    return beams.blur <= kMostBlur ? nearestBeams(points, beams) : equalSteps(points);
 }
 }  // namespace delio::scan

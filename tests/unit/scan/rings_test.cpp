@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numeric>
 
 #include "ring_scan.h"
@@ -57,8 +58,19 @@ TEST(Rings, TheSensorMayTurnClockwise) {
     EXPECT_EQ(ringsOf(scan.points), scan.rings);
 }
 
-TEST(Rings, TheLowestRingMayComeFirst) {
+TEST(Rings, AreNumberedFromTheTopIfTheLowestComesFirst) {
     const auto scan = hdl64();
+    auto order = upTo(scan.points.cols());
+    std::reverse(order.begin(), order.end());
+    const auto expected = reordered(scan, order);
+    EXPECT_EQ(ringsOf(expected.points), expected.rings);
+}
+
+// Beams that meet elsewhere leave no ring its elevation.
+TEST(Rings, AreToldByTheOrderWhereElevationsAreBlurred) {
+    auto scan = hdl64();
+    scan.points.row(2).array() += 0.5F;
+    EXPECT_EQ(ringsOf(scan.points), scan.rings);
     auto order = upTo(scan.points.cols());
     std::reverse(order.begin(), order.end());
     auto expected = reordered(scan, order);
@@ -66,19 +78,163 @@ TEST(Rings, TheLowestRingMayComeFirst) {
     EXPECT_EQ(ringsOf(expected.points), expected.rings);
 }
 
-TEST(Rings, AnotherOrderFallsBackToElevation) {
-    const auto scan = hdl64();
-    auto order = upTo(scan.points.cols());
+/** Beams of real sensors, from the top, and how they are spread. */
+std::vector<double> evenly(unsigned beams, double highest, double lowest) {
+    std::vector<double> elevations;
+    for (unsigned i = 0; i < beams; ++i)
+        elevations.push_back(highest - i * (highest - lowest) / (beams - 1));
+    return elevations;
+}
+
+std::vector<double> blocksOf(std::initializer_list<std::vector<double>> blocks) {
+    std::vector<double> all;
+    for (const auto& block : blocks) all.insert(all.end(), block.begin(), block.end());
+    return all;
+}
+
+struct Model {
+    const char* name;
+    std::vector<double> elevations_deg;
+};
+
+std::vector<Model> models() {
+    return {{"VLP-16", evenly(16, 15, -15)},
+            {"HDL-32E", evenly(32, 10.67, -30.67)},
+            {"VLP-32C", {15,     10.333, 7,      4.667,  3.333,  2.333,  1.667,   1.333,
+                         1,      0.667,  0.333,  0,      -0.333, -0.667, -1,      -1.333,
+                         -1.667, -2,     -2.333, -2.667, -3,     -3.333, -3.667,  -4,
+                         -4.667, -5.333, -6.148, -7.254, -8.843, -11.31, -15.639, -25}},
+            {"HDL-64E", blocksOf({evenly(32, 2, -8.33), evenly(32, -8.83, -24.33)})},
+            {"OS1-128", evenly(128, 22.5, -22.5)},
+            {"VLS-128", blocksOf({{15, 12, 9, 7, 6, 5, 4.3, 3.6, 3},
+                                  evenly(80, 2.5, -6.19),
+                                  evenly(39, -6.5, -25)})}};
+}
+
+double smallestStep(const Model& model) {
+    double step = 90;
+    for (std::size_t i = 1; i < model.elevations_deg.size(); ++i)
+        step = std::min(step, model.elevations_deg[i - 1] - model.elevations_deg[i]);
+    return step;
+}
+
+delio::test::RingScan scanBy(const Model& model) {
+    Noise noise;
+    const auto beams = static_cast<unsigned>(model.elevations_deg.size());
+    return delio::test::ringScan(delio::test::yard(), Eigen::Isometry3d::Identity(),
+                                 {beams, 720, 0, 0, 0.02, model.elevations_deg}, noise);
+}
+
+std::vector<Eigen::Index> shuffled(Eigen::Index count) {
+    auto order = upTo(count);
     std::shuffle(order.begin(), order.end(), std::mt19937(1));  // any order will do
-    const auto shuffled = reordered(scan, order);
-    const Rings found = ringsOf(shuffled.points);
-    ASSERT_EQ(found.size(), shuffled.rings.size());
-    // 64 equal steps over the field of view: rings that are 26.8/63 deg apart get their own step
-    // each but for those at a step's border, so no point is off by more than one.
-    for (std::size_t i = 0; i < found.size(); ++i)
-        EXPECT_LE(std::abs(found[i] - shuffled.rings[i]), 1);
-    EXPECT_EQ(*std::max_element(found.begin(), found.end()), kRings - 1);
+    return order;
+}
+
+/** Column after column, as the lasers fire. */
+std::vector<Eigen::Index> asFired(const Eigen::Matrix3Xf& points) {
+    auto order = upTo(points.cols());
+    std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+        const auto column = [&](Eigen::Index i) {
+            return std::floor(std::atan2(points(1, i), points(0, i)) * 360 / M_PI);
+        };
+        return column(a) < column(b);
+    });
+    return order;
+}
+
+double shareOfEqual(const Rings& a, const Rings& b) {
+    double equal = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) equal += a[i] == b[i];
+    return equal / static_cast<double>(a.size());
+}
+
+TEST(Rings, OfAnySensorInAnyOrder) {
+    for (const auto& model : models()) {
+        const auto scan = scanBy(model);
+        ASSERT_EQ(scan.rings.back() + 1U, model.elevations_deg.size()) << model.name;
+        EXPECT_EQ(ringsOf(scan.points), scan.rings) << model.name;
+        const auto fired = reordered(scan, asFired(scan.points));
+        EXPECT_EQ(ringsOf(fired.points), fired.rings) << model.name;
+        const auto mixed = reordered(scan, shuffled(scan.points.cols()));
+        EXPECT_EQ(ringsOf(mixed.points), mixed.rings) << model.name;
+    }
+}
+
+TEST(Rings, OfPartOfThePoints) {
+    for (const auto& model : models()) {
+        const auto scan = scanBy(model);
+        std::vector<Eigen::Index> some;  // a sector at the back, and two thirds of the others
+        for (const auto i : shuffled(scan.points.cols()))
+            if (scan.points(0, i) > 0 && i % 3 != 0) some.push_back(i);
+        const auto part = reordered(scan, some);
+        EXPECT_EQ(ringsOf(part.points), part.rings) << model.name;
+    }
+}
+
+TEST(Rings, MayBeBlurred) {
+    for (const auto& model : models()) {
+        auto scan = reordered(scanBy(model), shuffled(scanBy(model).points.cols()));
+        Noise noise;
+        const double sigma = smallestStep(model) / 6 * M_PI / 180;
+        for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
+            const Eigen::Vector3f p = scan.points.col(i);
+            const Eigen::Vector3f up(-p.z() * p.x() / p.head<2>().norm(),
+                                     -p.z() * p.y() / p.head<2>().norm(), p.head<2>().norm());
+            scan.points.col(i) += static_cast<float>(sigma * noise.normal()) * up;
+        }
+        EXPECT_GT(shareOfEqual(ringsOf(scan.points), scan.rings), 0.99) << model.name;
+    }
+}
+
+// 0.2 m at 10 m are three steps of an HDL-64E.
+TEST(Rings, BeamsMayMeetAboveTheOrigin) {
+    for (const auto& model : models()) {
+        auto scan = reordered(scanBy(model), shuffled(scanBy(model).points.cols()));
+        scan.points.row(2).array() += 0.207F;
+        EXPECT_GT(shareOfEqual(ringsOf(scan.points), scan.rings), 0.99) << model.name;
+    }
+}
+
+// In the axes of a vehicle whose sensor is mounted on its side no ring has an elevation of its own.
+// Two or three modes of such a cloud are no beams.
+TEST(Rings, LyingOnItsSideLeavesMoreThanAFewRings) {
+    for (const auto& model : models()) {
+        auto scan = scanBy(model);
+        scan.points = delio::test::rotationAbout({1, 0, 0}, 90).cast<float>() * scan.points;
+        const Rings found = ringsOf(scan.points);
+        EXPECT_GE(*std::max_element(found.begin(), found.end()), 15) << model.name;
+    }
+}
+
+TEST(Rings, OneRingIsOne) {
+    Noise noise;
+    Eigen::Matrix3Xf points(3, 2000);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const double azimuth = M_PI * noise.uniform();
+        points.col(i) << static_cast<float>(10 * std::cos(azimuth)),
+            static_cast<float>(10 * std::sin(azimuth)), -1;
+    }
+    EXPECT_EQ(ringsOf(points), Rings(2000, 0));
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        points(2, i) += static_cast<float>(0.005 * noise.normal());
+    EXPECT_EQ(ringsOf(points), Rings(2000, 0));
+    points.colwise() = Eigen::Vector3f(0, 0, 4);  // straight up, where no azimuth is
+    EXPECT_EQ(ringsOf(points), Rings(2000, 0));
+}
+
+TEST(Rings, PointsAnywhereGoIntoEqualSteps) {
+    Noise noise;
+    Eigen::Matrix3Xf points(3, 20000);
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        points.col(i) = (20 * noise.direction()).cast<float>();
+    const Rings found = ringsOf(points);
     EXPECT_EQ(*std::min_element(found.begin(), found.end()), 0);
+    EXPECT_EQ(*std::max_element(found.begin(), found.end()), 63);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const double elevation = std::asin(points(2, i) / points.col(i).norm()) / M_PI * 180;
+        EXPECT_NEAR(found[static_cast<std::size_t>(i)], (90 - elevation) / 180 * 64 - 0.5, 1);
+    }
 }
 
 // 16 bits would run over, and what counts the points of a ring would have too few places.

@@ -9,6 +9,7 @@
 #include "delio/paper/mean_shift.h"
 #include "delio/paper/outlier_removal.h"
 #include "delio/paper/pattern_registration.h"
+#include "delio/paper/rotation_in_place.h"
 #include "delio/scan/preprocess.h"
 #include "delio/surfaces/bilateral_filter.h"
 #include "delio/surfaces/normals.h"
@@ -22,6 +23,7 @@ struct PaperOdometryOptions {
     paper::OutlierRemovalOptions outliers;
     paper::MeanShiftOptions meanShift;
     paper::PatternRegistrationOptions pattern;
+    paper::RotationInPlaceOptions inPlace;
     paper::LineCloudOptions lines;
     paper::LineRegistrationOptions lineRegistration;
     PredictionOptions prediction;

@@ -13,15 +13,17 @@ namespace delio::paper {
  *  hand: the least squares solution over the pairs' common normals; and pairs of nearly parallel
  *  lines are left out. Those have no common normal, so that they would hold the estimate within
  *  their surface too; the rings on the ground look the same wherever the sensor stands, and with
- *  them slow drives stood still. */
+ *  them slow drives stood still. Pairs count by how far the noise of their ends leaves them a
+ * common normal (`short_length`). */
 struct LineRegistrationOptions : public StageOptions {
     bool centroids = false;
     double min_angle_deg = 15;
+    double short_length = 0.06;
     double max_distance = 5;
     unsigned max_iterations = 40;
     double converged = 0.001;
     unsigned min_matches = 100;
-    double min_observability = 0.06;
+    double min_observability = 0.03;
     double independent_share = 0.25;
     double overlap_distance = 0.5;
     double prior_sigma = 0.5;

@@ -24,10 +24,11 @@ struct OutlierRemovalOptions : public StageOptions {
 
 /** The pattern that normals draw on the unit sphere. */
 struct Pattern {
-    Eigen::Matrix3Xf directions;  //!< unit vectors
-    Eigen::VectorXf weights;      //!< one per direction, from the planarity
-    std::size_t normals = 0;      //!< that the directions stand for
-    std::size_t removed = 0;      //!< normals that were outliers
+    Eigen::Matrix3Xf directions;   //!< unit vectors
+    Eigen::VectorXf weights;       //!< one per direction, from the planarity
+    std::size_t normals = 0;       //!< that the directions stand for
+    std::size_t removed = 0;       //!< normals that were outliers
+    Eigen::Matrix3Xf points = {};  //!< m; where each was found; none where directions are modes
 };
 
 /** All of the normals, weighted by their planarity. */

@@ -1,0 +1,144 @@
+#include "delio/paper/rotation_in_place.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../surfaces/kd_tree.h"
+#include "kabsch.h"
+
+namespace delio::paper {
+namespace {
+constexpr double kDeg = M_PI / 180;
+
+struct Pair {
+    Eigen::Index from, to;
+    float weight;
+};
+
+/** Pairs of normals within two standard deviations of each other's place. */
+std::vector<Pair> pairsInPlace(const Pattern& from, const Pattern& to,
+                               const Eigen::Isometry3d& pose, double sigma) {
+    const KdTree tree(from.points);
+    const auto reach = static_cast<float>(4 * sigma * sigma);
+    const auto scale = static_cast<float>(-0.5 / (sigma * sigma));
+    const Eigen::Isometry3f moved = pose.cast<float>();
+    std::vector<std::vector<Pair>> found(static_cast<std::size_t>(to.points.cols()));
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        std::vector<std::pair<std::uint32_t, float>> partners;
+        tree.within(moved * to.points.col(i), reach, partners);
+        for (const auto& [index, squared] : partners)
+            found[k].push_back(
+                {index, i, from.weights[index] * to.weights[i] * std::exp(scale * squared)});
+    });
+    std::vector<Pair> pairs;
+    for (const auto& some : found) pairs.insert(pairs.end(), some.begin(), some.end());
+    return pairs;
+}
+
+struct Moment {
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+    double weight = 0, squaredAngles = 0;
+};
+
+Moment operator+(const Moment& a, const Moment& b) {
+    return {a.moment + b.moment, a.weight + b.weight, a.squaredAngles + b.squaredAngles};
+}
+
+/** Of all pairs, weighted by how well they agree. */
+Moment momentOf(const Pattern& from, const Pattern& to, const std::vector<Pair>& pairs,
+                const Eigen::Matrix3d& R, double kernel_rad) {
+    const auto scale = static_cast<float>(-0.5 / (kernel_rad * kernel_rad));
+    const Eigen::Matrix3Xf turned = R.cast<float>() * to.directions;
+    // The same bytes for any number of threads: this way of splitting and adding is a fixed one.
+    return tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::size_t>(0, pairs.size(), 2048), Moment(),
+        [&](const tbb::blocked_range<std::size_t>& range, Moment sum) {
+            for (std::size_t k = range.begin(); k != range.end(); ++k) {
+                const Pair& pair = pairs[k];
+                const float squared =
+                    (from.directions.col(pair.from) - turned.col(pair.to)).squaredNorm();
+                const auto weight = static_cast<double>(pair.weight * std::exp(scale * squared));
+                sum.moment += weight * from.directions.col(pair.from).cast<double>() *
+                              to.directions.col(pair.to).cast<double>().transpose();
+                sum.weight += weight;
+                sum.squaredAngles += weight * static_cast<double>(squared);
+            }
+            return sum;
+        },
+        [](const Moment& a, const Moment& b) { return a + b; });
+}
+
+/** `rotation` without what it turned about the axes that the pattern leaves open. */
+Eigen::Matrix3d keepOpenAxes(const RotationEstimate& found, const Eigen::Matrix3d& rotation) {
+    if (found.unobservedAxes.cols() == 0) return rotation;
+    const Eigen::AngleAxisd turn(found.rotation.transpose() * rotation);
+    Eigen::Vector3d correction = turn.angle() * turn.axis();
+    for (Eigen::Index k = 0; k < found.unobservedAxes.cols(); ++k)
+        correction -= found.unobservedAxes.col(k) * found.unobservedAxes.col(k).dot(correction);
+    const double angle = correction.norm();
+    if (!(angle > 0)) return found.rotation;
+    return found.rotation * Eigen::AngleAxisd(angle, correction / angle).matrix();
+}
+}  // namespace
+
+std::vector<OptionField> RotationInPlaceOptions::fields() const {
+    return {{"rounds", &RotationInPlaceOptions::rounds,
+             "times that the rotation is found again from the normals at the same places, and the "
+             "translation after it; 0: not at all",
+             0, 100},
+            {"place_sigma", &RotationInPlaceOptions::place_sigma,
+             "m; width of the kernel over the distance of two normals' places", 0.01, 100},
+            {"kernel_deg", &RotationInPlaceOptions::kernel_deg,
+             "deg; first width of the kernel over the angle of two normals", 0.01, 90},
+            {"last_kernel_deg", &RotationInPlaceOptions::last_kernel_deg,
+             "deg; width to which that kernel is halved", 0.01, 90},
+            {"min_pairs", &RotationInPlaceOptions::min_pairs,
+             "pairs that are needed; fewer: the pattern's rotation stays", 3, 1e6},
+            {"max_iterations", &RotationInPlaceOptions::max_iterations,
+             "weightings of the pairs at most", 1, 10000},
+            {"converged_deg", &RotationInPlaceOptions::converged_deg,
+             "deg; a smaller step ends the iteration", 0, 10}};
+}
+
+void RotationInPlaceOptions::check(const std::string& section) const {
+    requireOrder(section + ".last_kernel_deg", last_kernel_deg, section + ".kernel_deg",
+                 kernel_deg);
+}
+
+RotationEstimate registerInPlace(const Pattern& from, const Pattern& to,
+                                 const RotationEstimate& found, const Eigen::Vector3d& translation,
+                                 const RotationInPlaceOptions& options) {
+    if (from.points.cols() == 0 || to.points.cols() == 0) return found;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = found.rotation;
+    pose.translation() = translation;
+    const auto pairs = pairsInPlace(from, to, pose, options.place_sigma);
+    if (pairs.size() < options.min_pairs) return found;
+    RotationEstimate estimate = found;
+    unsigned iterations = 0;
+    for (double kernel_deg = options.kernel_deg;; kernel_deg /= 2) {
+        kernel_deg = std::max(kernel_deg, options.last_kernel_deg);
+        for (double step = M_PI;
+             iterations < options.max_iterations && step > options.converged_deg * kDeg;) {
+            const Moment sum = momentOf(from, to, pairs, estimate.rotation, kernel_deg * kDeg);
+            if (!(sum.weight > 0)) return found;
+            const Eigen::Matrix3d next = rotationOf(sum.moment);
+            step = Eigen::AngleAxisd(estimate.rotation.transpose() * next).angle();
+            estimate.rotation = next;
+            estimate.residual_rad = std::sqrt(sum.squaredAngles / sum.weight);
+            ++iterations;
+        }
+        if (kernel_deg <= options.last_kernel_deg) break;
+    }
+    estimate.iterations += iterations;
+    estimate.matches = pairs.size();
+    estimate.rotation = keepOpenAxes(found, estimate.rotation);
+    return estimate;
+}
+}  // namespace delio::paper
