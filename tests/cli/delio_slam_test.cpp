@@ -106,8 +106,9 @@ TEST_F(DelioSlam, ColumnsAndStagesAreThoseOfTheMethod) {
                            "reason"};
     const std::map<std::string, std::pair<Words, Words>> own = {
         {"accurate",
-         {{"preprocess", "undistort", "thinning", "dynamic", "registration", "plane_map"},
-          {"dynamic", "inlier_ratio", "iterations"}}},
+         {{"preprocess", "undistort", "thinning", "points", "dynamic", "planes", "map_update"},
+          {"dynamic", "inlier_ratio", "iterations", "plane_inlier_ratio", "plane_iterations",
+           "scale"}}},
         {"paper",
          {{"preprocess", "normals", "bilateral", "outliers", "mean_shift", "lines", "rotation",
            "translation"},

@@ -15,12 +15,12 @@ void AdaptiveKernel::observe(const Eigen::Isometry3d& found, const Eigen::Isomet
     if (errors_m_.size() > kMemory) errors_m_.pop_front();
 }
 
-double AdaptiveKernel::width(const planes::PlaneRegistrationOptions& options) const {
+double AdaptiveKernel::width(double least, double most) const {
     constexpr std::size_t kEnough = 3;
-    if (errors_m_.size() < kEnough) return options.first_kernel;
+    if (errors_m_.size() < kEnough) return most;
     double squares = 0;
     for (const double error : errors_m_) squares += error * error;
     const double sigma = std::sqrt(squares / static_cast<double>(errors_m_.size()));
-    return std::clamp(3 * sigma, 2 * options.last_kernel, options.first_kernel);
+    return std::clamp(3 * sigma, least, most);
 }
 }  // namespace delio

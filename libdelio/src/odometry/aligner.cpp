@@ -80,8 +80,9 @@ class Alignment {
     }
 
     PlaneEstimate fromEstimate(const Eigen::Isometry3d& guess) const {
-        return planes::registerToPlanes(map_, points_, inMap(guess), options_.planes.first_kernel,
-                                        options_.planes);
+        return planes::registerToPlanes(map_, points_,
+                                        planes::priorOf(inMap(guess), options_.planes),
+                                        options_.planes.first_kernel, options_.planes);
     }
 
     PlaneEstimate searched(const Eigen::Isometry3d& guess) const {

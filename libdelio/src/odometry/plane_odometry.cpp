@@ -5,22 +5,33 @@
 
 #include "delio/core/stopwatch.h"
 #include "delio/odometry/relocalisation.h"
+#include "delio/odometry/scale.h"
 #include "delio/scan/voxel_grid.h"
 #include "delio/surfaces/surfaces.h"
 
 namespace delio {
 using planes::PlaneEstimate;
+using points::PointEstimate;
 
 namespace {
 /** What every scan's step has, whether the stage was gone through or not. */
 std::vector<Named> noTimes() {
-    return {{"preprocess", 0}, {"undistort", 0},    {"thinning", 0},
-            {"dynamic", 0},    {"registration", 0}, {"plane_map", 0}};
+    return {{"preprocess", 0}, {"undistort", 0}, {"thinning", 0},  {"points", 0},
+            {"dynamic", 0},    {"planes", 0},    {"map_update", 0}};
 }
 double& timeOf(Step& step, std::string_view stage) {
     return std::find_if(step.times_ms.begin(), step.times_ms.end(),
                         [&](const Named& time) { return time.first == stage; })
         ->second;
+}
+
+/** The figures of both registrations. */
+std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate& placed) {
+    const bool byPlanes = estimate.valid && estimate.rotation.observability[2] > 0;
+    return {{"inlier_ratio", placed.share},
+            {"iterations", static_cast<double>(placed.iterations)},
+            {"plane_inlier_ratio", byPlanes ? estimate.share : 0},
+            {"plane_iterations", byPlanes ? static_cast<double>(estimate.rotation.iterations) : 0}};
 }
 }  // namespace
 
@@ -28,18 +39,45 @@ std::vector<OptionField> PlaneTrackerOptions::fields() const {
     using Me = PlaneTrackerOptions;
     return {{"map_spacing", &Me::map_spacing,
              "m; points of a scan that go into the map are so far apart", 0.01, 10},
-            {"scan_spacing", &Me::scan_spacing, "m; points that are registered are so far apart",
-             0.01, 10},
+            {"scan_spacing", &Me::scan_spacing,
+             "m; points that are registered against planes are so far apart", 0.01, 10},
+            {"point_spacing", &Me::point_spacing,
+             "m; points that are registered against points are so far apart", 0.01, 10},
+            {"first_reach", &Me::first_reach,
+             "m; a motion of which nothing is known is looked for up to this", 0, 50},
+            {"scale", &Me::scale,
+             "size of the place, by which all lengths that depend on it are multiplied: 1 for "
+             "streets, less for rooms; 0: from the scan",
+             0, 1},
             {"lost_share", &Me::lost_share,
-             "share of the usual share of points on their planes; with less a scan is searched for",
+             "share of the usual share of points on those of the map; with less it is searched for",
              0, 1}};
 }
 
 PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
-    : options_(options),
+    : given_(options),
+      options_(options),
       prediction_(options.prediction),
-      map_(options.map),
+      map_(options.scanToMap, options.map, options.registration, options.pointMap, options.points),
       dynamics_(options.dynamics, options.segments) {}
+
+void PlaneOdometry::takeScale(double scale) {
+    scale_ = scale;
+    otherScale_ = 0;
+    options_ = atScale(given_, scale);
+    map_ = ScanToMap(options_.scanToMap, options_.map, options_.registration, options_.pointMap,
+                     options_.points);
+}
+
+/** True where scans in a row show a place of another size than the map was made for: out of a house
+ *  into the street. */
+bool PlaneOdometry::isOtherScale(const Scan& scan) {
+    constexpr double kOther = 2;
+    constexpr unsigned kPatience = 10;
+    const double ratio = given_.tracker.scale > 0 ? 1 : scaleOf(scan) / scale_;
+    otherScale_ = ratio >= kOther || ratio <= 1 / kOther ? otherScale_ + 1 : 0;
+    return otherScale_ >= kPatience;
+}
 
 surfaces::SurfaceNormals PlaneOdometry::surfacesOf(const Eigen::Matrix3Xf& points) const {
     return surfaces::surfacesOf(points, options_.normals, options_.bilateral);
@@ -49,53 +87,59 @@ void PlaneOdometry::thinned(ScanView& view) const {
     thin(view, options_.tracker.map_spacing, options_.tracker.scan_spacing);
 }
 
-/** Thins the scan, and leaves out what moves at the predicted pose. */
-void PlaneOdometry::detectDynamicObjects(ScanView& view, const Eigen::Isometry3d& predicted,
-                                         Step& step) {
-    Stopwatch watch;
-    const auto voxels = scan::numberVoxels(view.points, options_.tracker.map_spacing);
-    const auto centroids = scan::centroidsOf(view.points, voxels);
-    timeOf(step, "thinning") += watch.lap_ms();
-    const auto dynamic =
-        dynamics_.detect(centroids, view.points, predicted, timeline_.sinceStart_s());
-    timeOf(step, "dynamic") += watch.lap_ms();
-    for (std::size_t i = 0; i < view.dynamic.size(); ++i)
-        view.dynamic[i] = dynamic[static_cast<std::size_t>(voxels.ofPoint[i])];
-    view.fine = unmarked(centroids, dynamic);
-    view.thinned = scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
-    timeOf(step, "thinning") += watch.lap_ms();
+/** Thins the whole scan; says which points became which. */
+scan::VoxelNumbers PlaneOdometry::thinAll(ScanView& view) const {
+    auto voxels = scan::numberVoxels(view.points, options_.tracker.map_spacing);
+    view.fine = scan::centroidsOf(view.points, voxels);
+    view.coarse = scan::firstOfVoxels(view.fine, options_.tracker.point_spacing).cast<double>();
+    return voxels;
 }
 
-/** Registers the scan from the prediction; where that is lost, or fits worse than usual, searches
- *  for it too. */
-PlaneEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d& predicted,
-                                   double since_s, Step& step) const {
+/** Takes what moves out of the thinned scan, whose pose is known by points. */
+void PlaneOdometry::leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
+                                           const Eigen::Isometry3d& pose, ScanView& view) {
+    const auto dynamic = dynamics_.detect(view.fine, view.points, pose, timeline_.sinceStart_s());
+    for (std::size_t i = 0; i < view.dynamic.size(); ++i)
+        view.dynamic[i] = dynamic[static_cast<std::size_t>(voxels.ofPoint[i])];
+    view.fine = unmarked(view.fine, dynamic);
+}
+
+/** Where the prediction is off by metres: found by surfaces, then placed by points. */
+PointEstimate PlaneOdometry::relocalised(const ScanView& view, const Eigen::Isometry3d& guess,
+                                         double reach_m) const {
     const auto& registration = options_.registration;
-    PlaneEstimate found;
-    if (!lost_) {
-        found = planes::registerToPlanes(map_, view.thinned, predicted, kernel_.width(registration),
-                                         registration);
-        if (found.valid && found.share >= options_.tracker.lost_share * usualShare_) return found;
-    }
+    const Eigen::Matrix3Xd thinned =
+        scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
+    const auto found =
+        relocalise(map_.planes(), surfacesOf(reference_.points), reference_.pose, thinned,
+                   surfacesOf(view.points), guess, reach_m, registration, options_.pattern);
+    return map_.place(view.coarse, found.pose(), registration.search_step);
+}
+
+/** By points, from the prediction; where that is lost, or fits worse than usual, from other starts
+ *  too, and the one is taken where most points fit. */
+PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d& predicted,
+                                   double reach_m, Step& step) const {
+    const auto& options = options_.points;
+    step.searched = lost_ || !prediction_.hasMotion();
+    auto best = step.searched
+                    ? map_.placeAnywhere(view.coarse, pose_,
+                                         std::min(reach_m, options_.tracker.first_reach))
+                    : map_.place(view.coarse, predicted,
+                                 kernel_.width(options.least_kernel, options.first_kernel));
+    const bool isUsual = best.valid && best.share >= options_.tracker.lost_share * usualShare_;
+    if (view.coarse.cols() == 0 || isUsual) return best;
     step.searched = true;
-    const auto surfaces = surfacesOf(view.points);
-    const double radius = step.interrupted ? registration.search_radius
-                                           : std::min(registration.search_speed * since_s,
-                                                      registration.search_radius);
-    const auto relocalised =
-        relocalise(map_, surfacesOf(reference_.points), reference_.pose, view.thinned, surfaces,
-                   predicted, radius, registration, options_.pattern);
-    if (lost_) return relocalised;
-    const auto agreed = [&](const PlaneEstimate& estimate) {
-        return planes::agreement(map_, surfaces, estimate.pose(), 2 * registration.last_kernel);
-    };
-    return agreed(relocalised) > agreed(found) ? relocalised : found;
+    for (const auto& other : {relocalised(view, predicted, reach_m),
+                              map_.place(view.coarse, predicted, options.first_kernel)})
+        if (other.valid && (!best.valid || other.share > best.share)) best = other;
+    return best;
 }
 
 /** Once more, with the points where the motion that was found puts them. (It is the mean since the
  *  latest scan that was registered. Extrapolated to this one it did worse: vehicles shake.) */
-void PlaneOdometry::refine(const scan::PointCloud& cloud, double since_s, ScanView& view,
-                           PlaneEstimate& estimate) {
+void PlaneOdometry::undistortAgain(const scan::PointCloud& cloud, double since_s, ScanView& view,
+                                   PlaneEstimate& estimate) {
     const auto motion = Motion::of(reference_.pose.inverse() * estimate.pose(), since_s);
     if (skewed_) {
         ScanView first = undistorted(*skewed_, motion);
@@ -107,57 +151,57 @@ void PlaneOdometry::refine(const scan::PointCloud& cloud, double since_s, ScanVi
     ScanView again = undistorted(cloud, motion);
     again.dynamic = view.dynamic;
     thinned(again);
-    const auto better =
-        planes::registerToPlanes(map_, again.thinned, estimate.pose(),
-                                 2 * options_.registration.last_kernel, options_.registration);
-    if (!better.valid) return;
+    again.coarse = scan::firstOfVoxels(again.fine, options_.tracker.point_spacing).cast<double>();
+    const auto placed = map_.place(again.coarse, estimate.pose(), options_.points.least_kernel);
+    if (!placed.valid) return;
+    estimate = map_.refine(again, placed, estimate.pose());
     view = std::move(again);
-    estimate = better;
 }
 
 /** What the next scans are judged by. */
-void PlaneOdometry::learn(const PlaneEstimate& estimate, const Eigen::Isometry3d& predicted,
+void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
                           double since_s) {
-    const Eigen::Isometry3d pose = estimate.pose();
     if (prediction_.hasMotion()) {
         constexpr double kForget = 0.1;
-        kernel_.observe(pose, predicted);
-        usualShare_ = usualShare_ == 0 ? estimate.share
-                                       : (1 - kForget) * usualShare_ + kForget * estimate.share;
+        kernel_.observe(pose_, predicted);
+        usualShare_ =
+            usualShare_ == 0 ? placed.share : (1 - kForget) * usualShare_ + kForget * placed.share;
     }
-    prediction_.observe(reference_.pose.inverse() * pose, since_s);
+    prediction_.observe(reference_.pose.inverse() * pose_, since_s);
 }
 
 void PlaneOdometry::insert(const ScanView& view, const Eigen::Isometry3d& pose) {
-    map_.add((pose.linear() * view.fine.cast<double>()).colwise() + pose.translation());
-    map_.forgetFarFrom(pose.translation());
+    map_.add(view.fine, pose);
     reference_ = {view.points, pose, timeline_.sinceStart_s()};
 }
 
 /** A new map of this scan, at pose_. */
 ScanView PlaneOdometry::beginMap(const scan::PointCloud& cloud) {
+    // The first pair has one scan only to be registered against: it is taken as dense as it came.
+    constexpr double kDense = 0.2;
     ScanView view = undistorted(cloud, {});
-    thinned(view);
+    thin(view, kDense * options_.tracker.map_spacing, options_.tracker.scan_spacing);
     map_.clear();
     dynamics_.clear();
     insert(view, pose_);
     skewed_.reset();
     if (!cloud.times_s.empty()) skewed_ = cloud;
-    started_ = map_.planes() > 0;
+    started_ = map_.isUsable();
     return view;
 }
 
 /** Nothing to register it against. */
 void PlaneOdometry::processFirstOfMap(const scan::PointCloud& cloud, Step& step) {
-    ScanView view = timed(timeOf(step, "plane_map"), [&] { return beginMap(cloud); });
+    ScanView view = timed(timeOf(step, "map_update"), [&] { return beginMap(cloud); });
     // What was driven since scans that could not be used is not known.
     if (!first_) step.reason = "no usable scan before it";
-    if (!started_) step.reason = cloud.points.cols() == 0 ? "no points" : "no surfaces";
+    if (!started_) step.reason = cloud.points.cols() == 0 ? "no points" : "too few points";
     first_ = false;
+    step.details = detailsOf({}, {});
     report(planes::predictedEstimate(pose_, options_.registration), pose_, view, step);
 }
 
-/** Every other scan: undistort, leave out what moves, register, insert. */
+/** Every other scan: undistort, place by points, leave out what moves, refine by planes, insert. */
 void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& interval,
                                 Step& step) {
     step.interrupted = !interval.believed;
@@ -170,30 +214,39 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
     ScanView view = timed(timeOf(step, "undistort"), [&] {
         return undistorted(cloud, Motion::of(motion, interval.duration_s));
     });
-    const bool detecting = options_.dynamics.enabled && !lost_;
+    const auto voxels = timed(timeOf(step, "thinning"), [&] { return thinAll(view); });
+    const auto& registration = options_.registration;
+    const double reach_m = interval.believed ? std::min(registration.search_speed * since_s,
+                                                        registration.search_radius)
+                                             : registration.search_radius;
+    const auto placed =
+        timed(timeOf(step, "points"), [&] { return place(view, predicted, reach_m, step); });
+    const bool detecting = options_.dynamics.enabled && !lost_ && placed.valid;
     if (detecting)
-        detectDynamicObjects(view, predicted, step);
-    else
-        timed(timeOf(step, "thinning"), [&] { thinned(view); });
-
-    PlaneEstimate estimate = timed(timeOf(step, "registration"), [&] {
-        auto found = place(view, predicted, since_s, step);
-        if (found.valid && step.deskewed) refine(cloud, since_s, view, found);
+        timed(timeOf(step, "dynamic"), [&] { leaveOutDynamicObjects(voxels, placed.pose, view); });
+    const auto estimate = timed(timeOf(step, "planes"), [&] {
+        if (!placed.valid) return planes::predictedEstimate(predicted, registration);
+        view.thinned =
+            scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
+        auto found = map_.refine(view, placed, predicted);
+        if (step.deskewed) undistortAgain(cloud, since_s, view, found);
         return found;
     });
     const Eigen::Isometry3d before = pose_;
     pose_ = estimate.valid ? estimate.pose() : predicted;
     lost_ = !estimate.valid || step.interrupted;  // how fast it goes is not known
-    timed(timeOf(step, "plane_map"), [&] {
+    timed(timeOf(step, "map_update"), [&] {
         if (estimate.valid) {
-            if (!step.interrupted) learn(estimate, predicted, since_s);
+            if (!step.interrupted) learn(placed, predicted, since_s);
             if (detecting) dynamics_.remember(pose_);
             insert(view, pose_);
             misses_ = 0;
         } else
             giveUp(cloud);
     });
-    if (!estimate.valid) step.reason = cloud.points.cols() == 0 ? "no points" : "too few planes";
+    if (!estimate.valid)
+        step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";
+    step.details = detailsOf(estimate, placed);
     report(estimate, before, view, step);
 }
 
@@ -214,9 +267,7 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3
     step.increment.pose = normalised(before.inverse() * pose_);
     step.quality = qualityOf(estimate.rotation, estimate.translation);
     step.predicted = !step.reason.empty();
-    step.details = {{"dynamic", static_cast<double>(dynamic)},
-                    {"inlier_ratio", estimate.share},
-                    {"iterations", static_cast<double>(estimate.rotation.iterations)}};
+    step.details.emplace_back("dynamic", static_cast<double>(dynamic));
     step.used.points = std::move(view.points);
     step.used.dynamic = std::move(view.dynamic);
 }
@@ -225,6 +276,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     Step step;
     step.times_ms = noTimes();
     const Interval interval = timeline_.advance(scan.stamp_s);
+    if (!started_) takeScale(given_.tracker.scale > 0 ? given_.tracker.scale : scaleOf(scan));
     auto cloud =
         timed(timeOf(step, "preprocess"), [&] { return scan::preprocess(scan, options_.scan); });
     step.notFinite = cloud.notFinite;
@@ -233,6 +285,11 @@ Step PlaneOdometry::process(const Scan& scan) {
         processNext(cloud, interval, step);
     else
         processFirstOfMap(cloud, step);
+    if (started_ && !lost_ && isOtherScale(scan)) {
+        takeScale(scaleOf(scan));
+        beginMap(cloud);
+    }
+    step.details.emplace_back("scale", scale_);
     step.used.indices = std::move(cloud.indices);
     return step;
 }

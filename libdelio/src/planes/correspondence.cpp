@@ -28,9 +28,9 @@ Correspondences findCorrespondences(const PlaneMap& map, const Eigen::Matrix3Xd&
                 const double r = plane->normal().dot(placed - plane->mean);
                 if (std::abs(r) > kReach * kernel) continue;
                 const double robust = 1 / (1 + r * r / (kernel * kernel));
-                all[i] = {
-                    point, plane->normal(), plane->mean,
-                    robust * robust / (plane->varianceAt(placed) + point_sigma * point_sigma)};
+                all[i] = {point, plane->normal(), plane->mean,
+                          robust * robust / (plane->varianceAt(placed) + point_sigma * point_sigma),
+                          plane->tilt()};
             }
         });
     all.erase(std::remove_if(all.begin(), all.end(),

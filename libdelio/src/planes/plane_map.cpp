@@ -12,16 +12,28 @@
 namespace delio::planes {
 std::vector<OptionField> PlaneMapOptions::fields() const {
     return {{"voxel_size", &PlaneMapOptions::voxel_size,
-             "m; edge of the voxels that hold a plane each", 0.05, 20},
+             "m; edge of the smallest voxels that hold a plane each", 0.05, 20},
+            {"levels", &PlaneMapOptions::levels,
+             "of voxels, each twice as large: where the smaller one holds no plane, the larger may",
+             1, 6},
             {"min_points", &PlaneMapOptions::min_points, "points that a plane needs", 3, 1e6},
             {"max_thickness", &PlaneMapOptions::max_thickness,
              "m; standard deviation of a plane's points across it", 1e-4, 10},
             {"max_flatness", &PlaneMapOptions::max_flatness,
              "largest share of the smallest variance in the middle one; more is no plane", 0, 1},
+            {"min_breadth", &PlaneMapOptions::min_breadth,
+             "voxel edges; standard deviation of a plane's points along its shorter side: rows of "
+             "one ring are no plane, whose normal is known (a voxel's full side has 0.29)",
+             0, 0.28},
             {"max_points", &PlaneMapOptions::max_points, "points after which a voxel takes no more",
              3, 1e9},
             {"radius", &PlaneMapOptions::radius, "m; the map ends at this distance from the sensor",
              1, 1e4}};
+}
+
+PlaneMap::PlaneMap(const PlaneMapOptions& options) : options_(options) {
+    double edge = options_.voxel_size;
+    for (unsigned i = 0; i < options_.levels; ++i, edge *= 2) levels_.push_back({edge, {}});
 }
 
 double Plane::varianceAt(const Eigen::Vector3d& point) const {
@@ -30,7 +42,7 @@ double Plane::varianceAt(const Eigen::Vector3d& point) const {
            (1 + (1 + d[1] * d[1] / variances[1] + d[2] * d[2] / variances[2]) / count);
 }
 
-void PlaneMap::fit(Cell& cell) const {
+void PlaneMap::fit(double edge, Cell& cell) const {
     cell.touched = false;
     if (cell.count < options_.min_points) return;
     const Eigen::Vector3d mean = cell.sum / cell.count;
@@ -38,20 +50,19 @@ void PlaneMap::fit(Cell& cell) const {
     pca.computeDirect(cell.squares / cell.count - mean * mean.transpose());
     // Never thinner than rounding allows.
     const Eigen::Vector3d variances = pca.eigenvalues().cwiseMax(1e-9);
-    // Two rows of points of one ring are a plane; a single row is a line.
-    constexpr double kBreadth = 0.01;
+    const double least = options_.min_breadth * edge;
     cell.isPlane = std::sqrt(variances[0]) < options_.max_thickness &&
                    variances[0] < options_.max_flatness * variances[1] &&
-                   variances[1] > kBreadth * variances[2];
+                   variances[1] > least * least;
     cell.plane = {cell.origin + mean, variances, pca.eigenvectors(),
                   static_cast<double>(cell.count)};
 }
 
-void PlaneMap::add(const Eigen::Matrix3Xd& points) {
+void PlaneMap::add(const Eigen::Matrix3Xd& points, Level& level) const {
     std::vector<Cell*> touched;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const Eigen::Vector3d point = points.col(i);
-        Cell& cell = cells_[scan::voxelKey(point, options_.voxel_size)];
+        Cell& cell = level.cells[scan::voxelKey(point, level.edge)];
         if (cell.count == 0) cell.origin = point;
         if (cell.count >= options_.max_points) continue;
         const Eigen::Vector3d d = point - cell.origin;
@@ -61,21 +72,45 @@ void PlaneMap::add(const Eigen::Matrix3Xd& points) {
         if (!cell.touched) touched.push_back(&cell);
         cell.touched = true;
     }
-    tbb::parallel_for(std::size_t{0}, touched.size(), [&](std::size_t i) { fit(*touched[i]); });
+    tbb::parallel_for(std::size_t{0}, touched.size(),
+                      [&](std::size_t i) { fit(level.edge, *touched[i]); });
+}
+
+void PlaneMap::add(const Eigen::Matrix3Xd& points) {
+    tbb::parallel_for(std::size_t{0}, levels_.size(),
+                      [&](std::size_t i) { add(points, levels_[i]); });
 }
 
 void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
-    for (auto i = cells_.begin(); i != cells_.end();)
-        i = (i->second.origin - centre).norm() > options_.radius ? cells_.erase(i) : std::next(i);
+    for (auto& [edge, cells] : levels_)
+        for (auto i = cells.begin(); i != cells.end();)
+            i = (i->second.origin - centre).norm() > options_.radius ? cells.erase(i)
+                                                                     : std::next(i);
+}
+
+void PlaneMap::clear() {
+    for (auto& level : levels_) level.cells.clear();
+}
+
+std::size_t PlaneMap::voxels() const {
+    std::size_t count = 0;
+    for (const auto& level : levels_) count += level.cells.size();
+    return count;
 }
 
 std::size_t PlaneMap::planes() const {
-    return static_cast<std::size_t>(std::count_if(
-        cells_.begin(), cells_.end(), [](const auto& entry) { return entry.second.isPlane; }));
+    std::ptrdiff_t count = 0;
+    for (const auto& level : levels_)
+        count += std::count_if(level.cells.begin(), level.cells.end(),
+                               [](const auto& entry) { return entry.second.isPlane; });
+    return static_cast<std::size_t>(count);
 }
 
 const Plane* PlaneMap::at(const Eigen::Vector3d& point) const {
-    const auto cell = cells_.find(scan::voxelKey(point, options_.voxel_size));
-    return cell == cells_.end() || !cell->second.isPlane ? nullptr : &cell->second.plane;
+    for (const auto& level : levels_) {
+        const auto cell = level.cells.find(scan::voxelKey(point, level.edge));
+        if (cell != level.cells.end() && cell->second.isPlane) return &cell->second.plane;
+    }
+    return nullptr;
 }
 }  // namespace delio::planes

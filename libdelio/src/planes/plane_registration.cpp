@@ -13,15 +13,31 @@ namespace delio::planes {
 namespace {
 constexpr double kDeg = M_PI / 180;
 
+/** Variance factor of the weights, as it turned out. Points of one surface err together, so that
+ *  only a share of them counts. */
+double varianceFactor(const Correspondences& matches, const Eigen::Isometry3d& pose,
+                      double independent_share) {
+    const Eigen::Matrix3d R = pose.linear();
+    const Eigen::Vector3d t = pose.translation();
+    double weighted = 0;
+    for (const auto& match : matches) {
+        const double r = match.residual(R, t);
+        weighted += match.weight * r * r;
+    }
+    constexpr double kLeast = 0.01;  // of simulated scans without any noise
+    return std::max(weighted / static_cast<double>(matches.size()), kLeast) / independent_share;
+}
+
 /** With one kernel, until both stand still. Returns how often correspondences were sought. */
-unsigned iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, double kernel,
-                 const PlaneRegistrationOptions& options, Eigen::Isometry3d& pose) {
+unsigned iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& known,
+                 double kernel, const PlaneRegistrationOptions& options, Eigen::Isometry3d& pose) {
     for (unsigned i = 0; i < options.max_iterations; ++i) {
         const auto matches = findCorrespondences(map, points, pose, kernel, options.point_sigma);
         if (matches.size() < options.min_matches) return i + 1;
-        const auto turn = rotationFromPlanes(matches, pose, options.min_rotation_share);
+        const Prior prior = known.times(varianceFactor(matches, pose, options.independent_share));
+        const auto turn = rotationFromPlanes(matches, pose, prior);
         pose.linear() = normalised(Eigen::Matrix3d(pose.linear() * rotationExp(turn.step)));
-        const auto move = translationFromPlanes(matches, pose, options.min_translation_share);
+        const auto move = translationFromPlanes(matches, pose, prior);
         pose.translation() += move.step;
         if (turn.step.norm() < options.converged_rad && move.step.norm() < options.converged_m)
             return i + 1;
@@ -45,70 +61,62 @@ double shareOnPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
     return count > 0 ? sum / count : 0;
 }
 
-/** Variances from information on the axes that are seen, the motion model's on the others. */
-template <typename Estimate>
-Eigen::Matrix3d covarianceOf(const Eigen::Matrix3d& information, double least, double noise,
-                             double prior, Estimate& estimate, Eigen::Matrix3d& inverseSeen) {
+/** Unit axes along which `information` is no better than what was known before. */
+Eigen::Matrix3Xd unobservedAxes(const Eigen::Matrix3d& information, double before) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(information);
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    inverseSeen = covariance;
-    for (int k = 0; k < 3; ++k) {
-        const Eigen::Vector3d axis = axes.eigenvectors().col(k);
-        const Eigen::Matrix3d along = axis * axis.transpose();
-        if (axes.eigenvalues()[k] > least) {
-            inverseSeen += along / axes.eigenvalues()[k];
-            covariance += noise / axes.eigenvalues()[k] * along;
-        } else {
-            estimate.unobservedAxes.conservativeResize(3, estimate.unobservedAxes.cols() + 1);
-            estimate.unobservedAxes.rightCols(1) = axis;
-            covariance += prior * along;
-        }
-    }
-    return covariance;
+    // Eigenvalues rise.
+    Eigen::Index count = 0;
+    while (count < 3 && !(axes.eigenvalues()[count] > before)) ++count;
+    return axes.eigenvectors().leftCols(count);
 }
 
+/** Eigenvalues, rising, as shares of the weight. */
+Eigen::Vector3d shares(const Eigen::Matrix3d& information, double weight) {
+    return information.selfadjointView<Eigen::Lower>().eigenvalues() / std::max(weight, 1e-12);
+}
+
+/** Of the prior's information counts so much in covariances: it comes from the same points. */
+constexpr double kPriorShare = 0.01;
+
 /** Covariances and diagnostics of where the iteration ended. */
-void settle(const Correspondences& matches, const Eigen::Isometry3d& pose,
+void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const Prior& known,
             const PlaneRegistrationOptions& options, PlaneEstimate& estimate) {
-    const auto turn = rotationFromPlanes(matches, pose, options.min_rotation_share);
-    const auto move = translationFromPlanes(matches, pose, options.min_translation_share);
-    const Eigen::Matrix3d R = pose.linear();
-    const Eigen::Vector3d t = pose.translation();
-    // The variance factor, as it turned out; points of one surface err together, so that only a
-    // share of them counts.
-    double weighted = 0, squared = 0;
-    for (const auto& match : matches) {
-        const double r = match.residual(R, t);
-        weighted += match.weight * r * r;
-        squared += r * r;
-    }
-    const auto count = static_cast<double>(matches.size());
-    constexpr double kLeastFactor = 0.01;  // of simulated scans without any noise
-    const double noise = std::max(weighted / count, kLeastFactor) / options.independent_share;
-    Eigen::Matrix3d inverseSeen;
+    const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity(), R = pose.linear();
+    const double noise = varianceFactor(matches, pose, options.independent_share);
+    const Prior prior = known.times(noise);
+    const auto turn = rotationFromPlanes(matches, pose, prior);
+    const auto move = translationFromPlanes(matches, pose, prior);
     auto& rotation = estimate.rotation;
     rotation.rotation = R;
     rotation.matches = matches.size();
-    rotation.observability = turn.information.selfadjointView<Eigen::Lower>().eigenvalues() /
-                             std::max(turn.weight, 1e-12);
-    rotation.covariance = covarianceOf(
-        turn.information, options.min_rotation_share * rotation.observability[2] * turn.weight,
-        noise, std::pow(options.prior_sigma_deg * kDeg, 2), rotation, inverseSeen);
+    rotation.observability = shares(turn.information, turn.weight);
+    rotation.unobservedAxes = unobservedAxes(turn.information, prior.rotation);
+    rotation.covariance =
+        noise * (turn.information + kPriorShare * prior.rotation * identity).inverse();
     rotation.valid = true;
     auto& translation = estimate.translation;
-    translation.translation = t;
     translation.matches = matches.size();
-    translation.observability = move.information.selfadjointView<Eigen::Lower>().eigenvalues() /
-                                std::max(move.weight, 1e-12);
-    translation.covariance =
-        covarianceOf(move.information, options.min_translation_share * move.weight, noise,
-                     options.prior_sigma * options.prior_sigma, translation, inverseSeen);
+    translation.observability = shares(move.information, move.weight);
+    // Normals are known from no more independent points than residuals are; and where an edge was
+    // taken for a plane, worse.
+    constexpr double kEdges = 3;
+    const auto& unseen = translation.unobservedAxes = unobservedAxes(
+        move.information - kEdges / options.independent_share * move.pretended, prior.translation);
+    const Eigen::Matrix3d before = unseen * unseen.transpose(), seen = identity - before,
+                          inverse = seen *
+                                    (move.information + kPriorShare * prior.translation * identity)
+                                        .inverse() *
+                                    seen;
+    translation.translation = seen * pose.translation() + before * known.pose.translation();
+    translation.covariance = noise * inverse + before / known.translation;
     // t follows an error w of the rotation by -H_tt^-1 H_tr w, where it is seen at all; here w is
     // about the map's axes.
-    translation.lever = -inverseSeen * move.mixed * R.transpose();
+    translation.lever = -inverse * move.mixed * R.transpose();
     translation.valid = true;
-    translation.residual_m = std::sqrt(squared / count);
-    rotation.residual_rad = 0;
+    double squared = 0;
+    for (const auto& match : matches)
+        squared += std::pow(match.residual(R, translation.translation), 2);
+    translation.residual_m = std::sqrt(squared / static_cast<double>(matches.size()));
     estimate.valid = true;
 }
 }  // namespace
@@ -128,16 +136,12 @@ std::vector<OptionField> PlaneRegistrationOptions::fields() const {
          "m; smaller moves end the iteration", 0, 1},
         {"min_matches", &PlaneRegistrationOptions::min_matches,
          "points on planes that are needed; fewer: predicted", 6, 1e6},
-        {"min_rotation_share", &PlaneRegistrationOptions::min_rotation_share,
-         "share of the best seen axis' information; an axis with less keeps the prediction", 0, 1},
-        {"min_translation_share", &PlaneRegistrationOptions::min_translation_share,
-         "share of the weight; a direction that is seen with less keeps the prediction", 0, 1},
         {"independent_share", &PlaneRegistrationOptions::independent_share,
          "share of the points that count as independent in the covariance", 1e-6, 1},
         {"prior_sigma", &PlaneRegistrationOptions::prior_sigma,
-         "m; the motion model's error along such a direction", 1e-6, 100},
+         "m; the motion model's error along each axis", 1e-6, 100},
         {"prior_sigma_deg", &PlaneRegistrationOptions::prior_sigma_deg,
-         "deg; the same about such an axis", 1e-6, 180},
+         "deg; the same about each axis", 1e-6, 180},
         {"search_speed", &PlaneRegistrationOptions::search_speed,
          "m/s; where the motion is not known, what can be driven at this speed is searched", 0,
          1000},
@@ -167,25 +171,27 @@ PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose,
     return estimate;
 }
 
+Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions& options) {
+    return Prior::of(predicted, options.prior_sigma, options.prior_sigma_deg * kDeg);
+}
+
 PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
-                               const Eigen::Isometry3d& predicted, double kernel,
+                               const Prior& prior, double kernel,
                                const PlaneRegistrationOptions& options) {
-    PlaneEstimate estimate;
-    Eigen::Isometry3d pose = predicted;
+    Eigen::Isometry3d pose = prior.pose;
     unsigned iterations = 0;
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        iterations += iterate(map, points, width, options, pose);
+        iterations += iterate(map, points, prior, width, options, pose);
         if (width <= options.last_kernel) break;
     }
     const auto matches =
         findCorrespondences(map, points, pose, options.last_kernel, options.point_sigma);
-    if (matches.size() >= options.min_matches) {
-        settle(matches, pose, options, estimate);
-        estimate.rotation.iterations = iterations;
-        estimate.share = shareOnPlanes(map, points, pose, options.last_kernel);
-        return estimate;
-    }
-    return predictedEstimate(predicted, options);
+    if (matches.size() < options.min_matches) return predictedEstimate(prior.pose, options);
+    PlaneEstimate estimate;
+    settle(matches, pose, prior, options, estimate);
+    estimate.rotation.iterations = iterations;
+    estimate.share = shareOnPlanes(map, points, pose, options.last_kernel);
+    return estimate;
 }
 }  // namespace delio::planes

@@ -2,9 +2,11 @@
 
 #include <Eigen/Dense>
 
+#include "delio/core/geometry.h"
+
 namespace delio::planes {
 PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Isometry3d& pose,
-                                 double min_share) {
+                                 const Prior& prior) {
     const Eigen::Matrix3d R = pose.linear();
     const Eigen::Vector3d t = pose.translation();
     Eigen::Matrix3d rr = Eigen::Matrix3d::Zero(), rt = rr, tt = rr;
@@ -22,16 +24,15 @@ PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Is
         gt += r * n;
         result.weight += match.weight;
     }
+    tt += prior.translation * Eigen::Matrix3d::Identity();
+    gt += prior.translation * (t - prior.pose.translation());
     // Directions that no normal looks along constrain nothing: the pseudo-inverse leaves them out.
     const Eigen::Matrix3d free = rt * tt.completeOrthogonalDecomposition().pseudoInverse();
     result.information = rr - free * rt.transpose();
-    const Eigen::Vector3d gradient = gr - free * gt;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(result.information);
-    for (int k = 0; k < 3; ++k) {
-        if (!(axes.eigenvalues()[k] > min_share * axes.eigenvalues()[2])) continue;
-        const Eigen::Vector3d axis = axes.eigenvectors().col(k);
-        result.step -= axis * axis.dot(gradient) / axes.eigenvalues()[k];
-    }
+    const Eigen::Vector3d gradient =
+        gr - free * gt + prior.rotation * rotationLog(prior.pose.linear().transpose() * R);
+    const Eigen::Matrix3d all = result.information + prior.rotation * Eigen::Matrix3d::Identity();
+    result.step = -all.completeOrthogonalDecomposition().solve(gradient);
     return result;
 }
 }  // namespace delio::planes

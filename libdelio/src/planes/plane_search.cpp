@@ -51,8 +51,8 @@ PlaneEstimate searchInPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points
     PlaneEstimate best;
     double bestAgreement = -1;
     for (const auto& [rough, t] : starts) {
-        const auto found =
-            registerToPlanes(map, points, isometry(R, t), options.search_step, options);
+        const auto found = registerToPlanes(map, points, priorOf(isometry(R, t), options),
+                                            options.search_step, options);
         const double agreed = agreement(map, surfaces, found.pose(), 2 * options.last_kernel);
         if (agreed <= bestAgreement) continue;
         best = found;

@@ -44,4 +44,13 @@ Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers&
 Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size) {
     return centroidsOf(points, numberVoxels(points, size));
 }
+
+Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size) {
+    const auto numbers = numberVoxels(points, size);
+    Eigen::Matrix3Xf first(3, numbers.voxels);
+    Eigen::Index met = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        if (numbers.ofPoint[static_cast<std::size_t>(i)] == met) first.col(met++) = points.col(i);
+    return first;
+}
 }  // namespace delio::scan

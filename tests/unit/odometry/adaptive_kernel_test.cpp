@@ -11,14 +11,6 @@ using namespace delio;
 using Eigen::Isometry3d;
 using test::poseAt;
 
-/** Kernels from 2 * 0.01 m to 100 m. */
-planes::PlaneRegistrationOptions wide() {
-    planes::PlaneRegistrationOptions options;
-    options.first_kernel = 100;
-    options.last_kernel = 0.01;
-    return options;
-}
-
 /** After predictions that were off by so many metres each. */
 AdaptiveKernel after(const std::vector<double>& errors_m) {
     AdaptiveKernel kernel;
@@ -28,14 +20,14 @@ AdaptiveKernel after(const std::vector<double>& errors_m) {
 
 TEST(AdaptiveKernel, IsTheFirstOneUntilThreePredictionsAreKnown) {
     for (const auto& errors : {std::vector<double>{}, {0.1}, {0.1, 0.1}})
-        EXPECT_EQ(after(errors).width(wide()), 100);
-    EXPECT_NE(after({0.1, 0.1, 0.1}).width(wide()), 100);
+        EXPECT_EQ(after(errors).width(0.02, 100), 100);
+    EXPECT_NE(after({0.1, 0.1, 0.1}).width(0.02, 100), 100);
 }
 
 TEST(AdaptiveKernel, IsThreeTimesTheRootMeanSquare) {
-    EXPECT_NEAR(after({0.1, 0.1, 0.1}).width(wide()), 0.3, 1e-12);
-    EXPECT_NEAR(after({0.1, 0.1, 0.2}).width(wide()), 3 * std::sqrt(0.06 / 3), 1e-12);
-    EXPECT_NEAR(after({0, 0, 0, 0.5}).width(wide()), 0.75, 1e-12);
+    EXPECT_NEAR(after({0.1, 0.1, 0.1}).width(0.02, 100), 0.3, 1e-12);
+    EXPECT_NEAR(after({0.1, 0.1, 0.2}).width(0.02, 100), 3 * std::sqrt(0.06 / 3), 1e-12);
+    EXPECT_NEAR(after({0, 0, 0, 0.5}).width(0.02, 100), 0.75, 1e-12);
 }
 
 TEST(AdaptiveKernel, ATurnCountsAsWhatItMovesAtTwentyMetres) {
@@ -43,7 +35,7 @@ TEST(AdaptiveKernel, ATurnCountsAsWhatItMovesAtTwentyMetres) {
         AdaptiveKernel kernel;
         const Isometry3d predicted = poseAt(100, -20, 3, 2, 0.1, -0.2);  // wherever that is
         for (int i = 0; i < 3; ++i) kernel.observe(predicted * off, predicted);
-        return kernel.width(wide());
+        return kernel.width(0.02, 100);
     };
     for (const double angle : {0.01, -0.2, 1.0}) {
         const double chord = 2 * 20 * std::sin(std::abs(angle) / 2);
@@ -52,22 +44,18 @@ TEST(AdaptiveKernel, ATurnCountsAsWhatItMovesAtTwentyMetres) {
     }
 }
 
-TEST(AdaptiveKernel, StaysWithinTheOptions) {
-    planes::PlaneRegistrationOptions options;
-    options.first_kernel = 1;
-    options.last_kernel = 0.1;
-    EXPECT_EQ(after({0, 0, 0}).width(options), 0.2);  // twice the last one
-    EXPECT_EQ(after({5, 5, 5}).width(options), 1);
-    EXPECT_NEAR(after({0.2, 0.2, 0.2}).width(options), 0.6, 1e-12);
-    options.last_kernel = 0.5;  // as wide as check() allows
-    EXPECT_EQ(after({0.2, 0.2, 0.2}).width(options), 1);
+TEST(AdaptiveKernel, StaysWithinItsLimits) {
+    EXPECT_EQ(after({0, 0, 0}).width(0.2, 1), 0.2);
+    EXPECT_EQ(after({5, 5, 5}).width(0.2, 1), 1);
+    EXPECT_NEAR(after({0.2, 0.2, 0.2}).width(0.2, 1), 0.6, 1e-12);
+    EXPECT_EQ(after({0.2, 0.2, 0.2}).width(1, 1), 1);
 }
 
 TEST(AdaptiveKernel, RemembersTwentyPredictions) {
     std::vector<double> errors(20, 0.1);
     errors.insert(errors.begin(), 7);
-    EXPECT_NEAR(after(errors).width(wide()), 0.3, 1e-12);
+    EXPECT_NEAR(after(errors).width(0.02, 100), 0.3, 1e-12);
     errors.pop_back();
-    EXPECT_NEAR(after(errors).width(wide()), 3 * std::sqrt((49 + 19 * 0.01) / 20), 1e-12);
+    EXPECT_NEAR(after(errors).width(0.02, 100), 3 * std::sqrt((49 + 19 * 0.01) / 20), 1e-12);
 }
 }  // namespace

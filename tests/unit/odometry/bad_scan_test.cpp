@@ -29,10 +29,13 @@ class BadScan : public testing::TestWithParam<std::tuple<std::string, std::strin
     static Scan scan() {
         return kind() == "Empty" ? test::scanOf({}) : kind() == "NaN" ? scanOfNaN() : fewPoints();
     }
-    static std::string reason() { return kind() == "Ten" ? "no surfaces" : "no points"; }
+    static std::string reason() {
+        if (kind() != "Ten") return "no points";
+        return profile() == "paper" ? "no surfaces" : "too few points";
+    }
     /** Where there is a map already. */
     static std::string laterReason() {
-        return kind() == "Ten" && profile() == "accurate" ? "too few planes" : reason();
+        return kind() == "Ten" && profile() == "accurate" ? "not found in the map" : reason();
     }
 };
 

@@ -23,9 +23,18 @@ Eigen::Matrix3Xd patch(const Eigen::Vector3d& q, const Eigen::Vector3d& normal, 
     return points;
 }
 
+/** Voxels of one size, which the patches fill. */
+PlaneMapOptions oneMetre() {
+    PlaneMapOptions options;
+    options.voxel_size = 1;
+    options.levels = 1;
+    options.min_breadth = 0.1;
+    return options;
+}
+
 TEST(PlaneMap, APlaneComesBackWithItsThickness) {
     test::Noise noise;
-    PlaneMap map(PlaneMapOptions{});
+    PlaneMap map(oneMetre());
     // Far from the origin: sums are taken about the voxel's first point.
     const Eigen::Vector3d middle(4000.5, -3000.5, 20.5),
         normal = Eigen::Vector3d(1, 2, 3).normalized();
@@ -45,7 +54,7 @@ TEST(PlaneMap, APlaneComesBackWithItsThickness) {
 TEST(PlaneMap, PointsInTwoCallsAreOnePlane) {
     test::Noise noise;
     const auto points = patch({0.5, 0.5, 0.5}, {0, 0, 1}, 0.01, 100, noise);
-    PlaneMap once(PlaneMapOptions{}), twice(PlaneMapOptions{});
+    PlaneMap once(oneMetre()), twice(oneMetre());
     once.add(points);
     twice.add(points.leftCols(40));
     twice.add(points.rightCols(60));
@@ -57,7 +66,7 @@ TEST(PlaneMap, PointsInTwoCallsAreOnePlane) {
 
 TEST(PlaneMap, WhatIsNoPlaneIsNone) {
     test::Noise noise;
-    PlaneMap map(PlaneMapOptions{});
+    PlaneMap map(oneMetre());
     Eigen::Matrix3Xd ball(3, 100), line(3, 100);
     for (Eigen::Index i = 0; i < 100; ++i) {
         ball.col(i) = Eigen::Vector3d(0.5, 0.5, 0.5) + 0.1 * noise.normals();
@@ -72,9 +81,46 @@ TEST(PlaneMap, WhatIsNoPlaneIsNone) {
     EXPECT_FALSE(map.at({50, 50, 50}));
 }
 
+// Rows that one ring draws on a wall lie in any number of planes.
+TEST(PlaneMap, ARowOfPointsIsNone) {
+    test::Noise noise;
+    PlaneMap map(PlaneMapOptions{});
+    Eigen::Matrix3Xd rows(3, 200);
+    for (Eigen::Index i = 0; i < rows.cols(); ++i)
+        rows.col(i) << 0.05 + 0.0045 * static_cast<double>(i), 0.5 + 0.01 * noise.normal(),
+            i % 2 ? 0.45 : 0.55;
+    map.add(rows);
+    EXPECT_FALSE(map.at({0.5, 0.5, 0.5}));
+}
+
+TEST(PlaneMap, WhereTheSmallVoxelHasNoPlaneTheLargerOneMay) {
+    test::Noise noise;
+    PlaneMap map(PlaneMapOptions{});
+    Eigen::Matrix3Xd sparse(3, 16);  // every 25 cm
+    for (Eigen::Index i = 0; i < sparse.cols(); ++i)
+        sparse.col(i) << 0.125 + 0.25 * static_cast<double>(i % 4),
+            0.125 + 0.25 * static_cast<double>(i / 4), 0.25 + 0.001 * noise.normal();
+    map.add(sparse);
+    EXPECT_EQ(map.planes(), 1U);
+    ASSERT_TRUE(map.at({0.3, 0.3, 0.25}));
+    EXPECT_EQ(map.at({0.3, 0.3, 0.25})->count, 16);
+    const Eigen::Vector3d inside(0.3, 0.3, 0.25), beside(0.8, 0.8, 0.25);
+    EXPECT_EQ(map.at(inside), map.at(beside));
+    PlaneMapOptions narrow;
+    narrow.min_breadth = 0.1;
+    PlaneMap dense(narrow);
+    dense.add(sparse);
+    dense.add(0.5 * patch({0.5, 0.5, 0.5}, {0, 0, 1}, 0.001, 30, noise));  // in one small voxel
+    ASSERT_TRUE(dense.at(inside));
+    EXPECT_NE(dense.at(inside), dense.at(beside));
+    map.clear();
+    EXPECT_EQ(map.planes(), 0U);
+    EXPECT_EQ(map.voxels(), 0U);
+}
+
 TEST(PlaneMap, AFullVoxelStaysAndAFarOneGoes) {
     test::Noise noise;
-    PlaneMapOptions options;
+    PlaneMapOptions options = oneMetre();
     options.max_points = 50;
     options.radius = 20;
     PlaneMap map(options);

@@ -35,14 +35,19 @@ Correspondences matchesSeenFrom(const Eigen::Matrix3d& R, const Eigen::Vector3d&
     return matches;
 }
 
+/** The motion model's. */
+planes::Prior priorAt(const Eigen::Isometry3d& pose) {
+    return planes::priorOf(pose, PlaneRegistrationOptions{});
+}
+
 // What decoupling means here: whatever the translation is, it does not move the rotation.
 TEST(PlaneRotation, DoesNotDependOnTheTranslation) {
     test::Noise noise;
     const Eigen::Matrix3d truth = rotationAbout({1, 2, 3}, 20);
     const auto matches = matchesSeenFrom(truth, {3, -2, 1}, 0.01, noise);
     const Eigen::Matrix3d R = truth * rotationAbout({0, 1, 1}, 0.5);
-    const auto here = planes::rotationFromPlanes(matches, isometry(R, {3, -2, 1}), 0);
-    const auto there = planes::rotationFromPlanes(matches, isometry(R, {-50, 70, 20}), 0);
+    const auto here = planes::rotationFromPlanes(matches, isometry(R, {3, -2, 1}));
+    const auto there = planes::rotationFromPlanes(matches, isometry(R, {-50, 70, 20}));
     EXPECT_LT((here.step - there.step).norm(), 1e-9);
     EXPECT_GT(here.step.norm(), 0.008);
     EXPECT_TRUE(here.information.isApprox(there.information));
@@ -54,8 +59,7 @@ TEST(PlaneRotation, ConvergesToThePlantedRotationFromTenDegrees) {
     const auto matches = matchesSeenFrom(truth, {5, 6, 7}, 0, noise);
     Eigen::Matrix3d R = truth * rotationAbout({1, 1, -1}, 10);
     for (int i = 0; i < 10; ++i) {
-        const Eigen::Vector3d w =
-            planes::rotationFromPlanes(matches, isometry(R, {0, 0, 0}), 0).step;
+        const Eigen::Vector3d w = planes::rotationFromPlanes(matches, isometry(R, {0, 0, 0})).step;
         if (w.norm() > 0) R = R * Eigen::AngleAxisd(w.norm(), w.normalized()).matrix();
     }
     EXPECT_LT(degreesBetween(R, truth), 1e-6);
@@ -63,7 +67,7 @@ TEST(PlaneRotation, ConvergesToThePlantedRotationFromTenDegrees) {
 
 /** Half the weighted squares of the residuals, with the best translation for each rotation. */
 double reducedCost(const Correspondences& matches, const Eigen::Matrix3d& R) {
-    const auto move = planes::translationFromPlanes(matches, isometry(R, {0, 0, 0}), 0);
+    const auto move = planes::translationFromPlanes(matches, isometry(R, {0, 0, 0}));
     double cost = 0;
     for (const auto& match : matches)
         cost += match.weight * std::pow(match.residual(R, move.step), 2) / 2;
@@ -74,7 +78,7 @@ TEST(PlaneRotation, InformationIsTheCurvatureOfTheCostWithoutTranslation) {
     test::Noise noise;
     const Eigen::Matrix3d truth = rotationAbout({0, 0, 1}, 40);
     const auto matches = matchesSeenFrom(truth, {1, 2, 3}, 0, noise);
-    const auto found = planes::rotationFromPlanes(matches, isometry(truth, {1, 2, 3}), 0);
+    const auto found = planes::rotationFromPlanes(matches, isometry(truth, {1, 2, 3}));
     constexpr double h = 1e-4;
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
@@ -91,7 +95,7 @@ TEST(PlaneTranslation, IsTheLeastSquaresSolution) {
     const Eigen::Matrix3d R = rotationAbout({1, 0, 2}, 15);
     const Eigen::Vector3d truth(3, -1, 0.5);
     const auto exact = matchesSeenFrom(R, truth, 0, noise);
-    EXPECT_LT((planes::translationFromPlanes(exact, isometry(R, {0, 0, 0}), 0).step - truth).norm(),
+    EXPECT_LT((planes::translationFromPlanes(exact, isometry(R, {0, 0, 0})).step - truth).norm(),
               1e-9);
     const auto noisy = matchesSeenFrom(R, truth, 0.05, noise);
     const auto cost = [&](const Eigen::Vector3d& t) {
@@ -99,8 +103,7 @@ TEST(PlaneTranslation, IsTheLeastSquaresSolution) {
         for (const auto& match : noisy) sum += match.weight * std::pow(match.residual(R, t), 2);
         return sum;
     };
-    const Eigen::Vector3d best =
-        planes::translationFromPlanes(noisy, isometry(R, {0, 0, 0}), 0).step;
+    const Eigen::Vector3d best = planes::translationFromPlanes(noisy, isometry(R, {0, 0, 0})).step;
     for (int i = 0; i < 50; ++i) EXPECT_GT(cost(best + 1e-3 * noise.direction()), cost(best));
 }
 
@@ -112,8 +115,53 @@ TEST(PlaneTranslation, AnAxisThatNoNormalSeesIsLeftAlone) {
         match.normal.normalize();
         match.point = match.mean - Eigen::Vector3d(1, 1, 1);
     }
-    const auto found = planes::translationFromPlanes(matches, Eigen::Isometry3d::Identity(), 1e-3);
+    const auto found = planes::translationFromPlanes(matches, Eigen::Isometry3d::Identity());
     EXPECT_LT((found.step - Eigen::Vector3d(0, 1, 1)).norm(), 1e-9);
+}
+
+// Information adds: of a pose that is known as well as the planes know it, half is kept.
+TEST(PlanePrior, IsFusedByItsInformation) {
+    test::Noise noise;
+    const Eigen::Vector3d truth(1, 2, 3);
+    const auto matches = matchesSeenFrom(Eigen::Matrix3d::Identity(), truth, 0, noise);
+    const auto alone = planes::translationFromPlanes(matches, Eigen::Isometry3d::Identity());
+    planes::Prior prior;  // at the origin
+    prior.translation = alone.information.trace() / 3;
+    const auto fused = planes::translationFromPlanes(matches, Eigen::Isometry3d::Identity(), prior);
+    const Eigen::Vector3d expected =
+        (alone.information + prior.translation * Eigen::Matrix3d::Identity())
+            .ldlt()
+            .solve(alone.information * truth);
+    EXPECT_LT((fused.step - expected).norm(), 1e-9);
+    EXPECT_LT((fused.step - truth / 2).norm(), 0.2);
+    EXPECT_TRUE(fused.information.isApprox(alone.information));
+}
+
+TEST(PlanePrior, HoldsARotationThatNoPlaneSees) {
+    test::Noise noise;
+    auto matches = matchesSeenFrom(Eigen::Matrix3d::Identity(), {0, 0, 0}, 0, noise);
+    for (auto& match : matches) match.normal = Eigen::Vector3d::UnitZ();  // yaw is not seen
+    planes::Prior prior;
+    prior.rotation = 1e-3;
+    const auto turned = isometry(rotationAbout({0, 0, 1}, 2), {0, 0, 0});
+    EXPECT_LT(planes::rotationFromPlanes(matches, turned).step.z(), 1e-9);
+    EXPECT_NEAR(planes::rotationFromPlanes(matches, turned, prior).step.z(), -2 * M_PI / 180, 1e-6);
+}
+
+// Normals that are known badly see axes that they do not look along.
+TEST(PlaneTranslation, SaysWhatUncertainNormalsPretend) {
+    test::Noise noise;
+    auto matches = matchesSeenFrom(Eigen::Matrix3d::Identity(), {0, 0, 0}, 0, noise);
+    double weight = 0;
+    for (auto& match : matches) {
+        match.normal = Eigen::Vector3d::UnitZ();
+        match.tilt = 0.01;
+        weight += match.weight;
+    }
+    const auto found = planes::translationFromPlanes(matches, Eigen::Isometry3d::Identity());
+    EXPECT_NEAR(found.pretended(0, 0), 0.01 * weight, 1e-9);
+    EXPECT_NEAR(found.pretended(2, 2), 0, 1e-9);
+    EXPECT_NEAR(found.information(2, 2), weight, 1e-9);
 }
 
 const test::Sensor kSensor{64, 1440, -24, 4, 0.01};
@@ -137,9 +185,9 @@ TEST(PlaneRegistration, FindsAScanInTheMap) {
     const Eigen::Isometry3d truth = poseAt(0.8, 0.1, 0.02, 0.03, 0.004, -0.003);
     const Eigen::Matrix3Xd points =
         scan::voxelCentroids(pointsSeenFrom(test::yard(), truth, noise), 0.5).cast<double>();
-    const auto found =
-        planes::registerToPlanes(map, points, isometry(rotationAbout({0, 0, 1}, 0.5), {0.5, 0, 0}),
-                                 1, PlaneRegistrationOptions{});
+    const auto found = planes::registerToPlanes(
+        map, points, priorAt(isometry(rotationAbout({0, 0, 1}, 0.5), {0.5, 0, 0})), 1,
+        PlaneRegistrationOptions{});
     ASSERT_TRUE(found.valid);
     EXPECT_LT(degreesBetween(found.rotation.rotation, truth.linear()), 0.05);
     EXPECT_LT((found.translation.translation - Eigen::Vector3d(0.8, 0.1, 0.02)).norm(), 0.01);
@@ -173,8 +221,8 @@ TEST(PlaneRegistration, AlongACorridorThePredictionStays) {
     const Eigen::Matrix3Xd points =
         scan::voxelCentroids(pointsSeenFrom(test::corridor(), poseAt(1, 0.2, 0.05), noise), 0.5)
             .cast<double>();
-    const auto found =
-        planes::registerToPlanes(map, points, poseAt(0.6, 0, 0), 1, PlaneRegistrationOptions{});
+    const auto found = planes::registerToPlanes(map, points, priorAt(poseAt(0.6, 0, 0)), 1,
+                                                PlaneRegistrationOptions{});
     ASSERT_TRUE(found.valid);
     ASSERT_EQ(found.translation.unobservedAxes.cols(), 1);
     EXPECT_NEAR(std::abs(found.translation.unobservedAxes(0, 0)), 1, 1e-2);
@@ -191,8 +239,8 @@ TEST(PlaneRegistration, WithoutPlanesThePredictionStays) {
         pointsSeenFrom(test::yard(), Eigen::Isometry3d::Identity(), noise).cast<double>();
     const Eigen::Matrix3d R = rotationAbout({0, 0, 1}, 3);
     for (const auto& cloud : {points, Eigen::Matrix3Xd(3, 0)}) {
-        const auto found = planes::registerToPlanes(empty, cloud, isometry(R, {1, 2, 3}), 1,
-                                                    PlaneRegistrationOptions{});
+        const auto found = planes::registerToPlanes(empty, cloud, priorAt(isometry(R, {1, 2, 3})),
+                                                    1, PlaneRegistrationOptions{});
         EXPECT_FALSE(found.valid);
         EXPECT_EQ(found.rotation.rotation, R);
         EXPECT_EQ(found.translation.translation, Eigen::Vector3d(1, 2, 3));

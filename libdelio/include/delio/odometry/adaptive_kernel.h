@@ -2,7 +2,7 @@
 #include <Eigen/Geometry>
 #include <deque>
 
-#include "delio/planes/plane_registration.h"
+#include "delio/core/geometry.h"
 
 namespace delio {
 /** The width of the registration's first kernel, from what the motion model was off lately (Vizzo
@@ -12,8 +12,8 @@ class AdaptiveKernel {
     /** What the pose turned out to be beside its prediction. */
     void observe(const Eigen::Isometry3d& found, const Eigen::Isometry3d& predicted);
 
-    /** Three standard deviations (metres), within the options. */
-    double width(const planes::PlaneRegistrationOptions& options) const;
+    /** Three standard deviations, within these limits; `most` while little is known. Metres. */
+    double width(double least, double most) const;
 
  private:
     std::deque<double> errors_m_;  //!< of the latest predictions

@@ -19,7 +19,8 @@ namespace delio {
 /** Loaded from `section`, and the stages from `section.plane_map`, `section.plane_registration`,
  *  `section.normals`, `section.bilateral_filter` and `section.pattern_registration`, with the keys
  *  that these have in share/config; strictly, as every StageOptions. The defaults are those of the
- *  profile `accurate`, but for a search of 10 m. */
+ *  profile `accurate`, but for a search of 10 m and for planes
+ *  of 1 m that may be narrow. */
 struct AlignerOptions : public StageOptions {
     double map_spacing = 0.25;
     double scan_spacing = 0.5;
@@ -30,7 +31,13 @@ struct AlignerOptions : public StageOptions {
     surfaces::BilateralFilterOptions bilateral;
     paper::PatternRegistrationOptions pattern;
 
-    AlignerOptions() { planes.search_radius = 10; }
+    AlignerOptions() {
+        planes.search_radius = 10;
+        // Dense clouds have no rows that could be taken for planes.
+        planeMap.voxel_size = 1;
+        planeMap.levels = 1;
+        planeMap.min_breadth = 0.1;
+    }
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
     void saveToConfigFile(mrpt::config::CConfigFileBase& target,

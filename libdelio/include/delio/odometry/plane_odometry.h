@@ -6,10 +6,10 @@
 #include "delio/odometry/adaptive_kernel.h"
 #include "delio/odometry/odometry.h"
 #include "delio/odometry/prediction.h"
+#include "delio/odometry/scan_to_map.h"
 #include "delio/odometry/scan_view.h"
 #include "delio/paper/pattern_registration.h"
-#include "delio/planes/plane_map.h"
-#include "delio/planes/plane_registration.h"
+#include "delio/scan/voxel_grid.h"
 #include "delio/surfaces/bilateral_filter.h"
 #include "delio/surfaces/normals.h"
 
@@ -17,7 +17,10 @@ namespace delio {
 struct PlaneTrackerOptions : public StageOptions {
     double map_spacing = 0.25;
     double scan_spacing = 0.5;
-    double lost_share = 0.93;
+    double point_spacing = 1.0;
+    double first_reach = 4;
+    double scale = 0;
+    double lost_share = 0.5;
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -28,6 +31,9 @@ struct PlaneOdometryOptions {
     scan::PreprocessOptions scan;
     PredictionOptions prediction;
     PlaneTrackerOptions tracker;
+    ScanToMapOptions scanToMap;
+    points::PointMapOptions pointMap;
+    points::PointRegistrationOptions points;
     planes::PlaneMapOptions map;
     planes::PlaneRegistrationOptions registration;
     movers::DynamicObjectsOptions dynamics;
@@ -38,11 +44,12 @@ struct PlaneOdometryOptions {
     paper::PatternRegistrationOptions pattern;
 };
 
-/** Scan against map: rotation from translation-free plane residuals, then translation alone,
- * against a map of planes of the scans before, without dynamic objects. Where three scans in a row
- * that are not empty cannot be registered (the recording was interrupted), a new map is begun at
- * the prediction. Scans whose points have times are undistorted twice: by the predicted motion, and
- * by the one that was found. */
+/** Scan against map, rotation and translation decoupled: first against the points of the scans
+ *  before, from the prediction on, then against their planes (ScanToMap). Dynamic objects, found at
+ *  the pose by points, are left out of the planes and of the map. Where three scans in a row that
+ * are not empty cannot be registered (the recording was interrupted), a new map is begun at the
+ *  prediction. Scans whose points have times are undistorted twice: by the predicted motion, and by
+ *  the one that was found. */
 class PlaneOdometry : public Odometry {
  public:
     explicit PlaneOdometry(const PlaneOdometryOptions& options);
@@ -57,14 +64,20 @@ class PlaneOdometry : public Odometry {
         double time_s = 0;
     };
 
+    void takeScale(double scale);
+    bool isOtherScale(const Scan& scan);
     void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
     void processNext(const scan::PointCloud& cloud, const Interval& interval, Step& step);
-    void detectDynamicObjects(ScanView& view, const Eigen::Isometry3d& predicted, Step& step);
-    planes::PlaneEstimate place(const ScanView& view, const Eigen::Isometry3d& predicted,
-                                double since_s, Step& step) const;
-    void refine(const scan::PointCloud& cloud, double since_s, ScanView& view,
-                planes::PlaneEstimate& estimate);
-    void learn(const planes::PlaneEstimate& estimate, const Eigen::Isometry3d& predicted,
+    scan::VoxelNumbers thinAll(ScanView& view) const;
+    void leaveOutDynamicObjects(const scan::VoxelNumbers& voxels, const Eigen::Isometry3d& pose,
+                                ScanView& view);
+    points::PointEstimate place(const ScanView& view, const Eigen::Isometry3d& predicted,
+                                double reach_m, Step& step) const;
+    points::PointEstimate relocalised(const ScanView& view, const Eigen::Isometry3d& guess,
+                                      double reach_m) const;
+    void undistortAgain(const scan::PointCloud& cloud, double since_s, ScanView& view,
+                        planes::PlaneEstimate& estimate);
+    void learn(const points::PointEstimate& placed, const Eigen::Isometry3d& predicted,
                double since_s);
     void insert(const ScanView& view, const Eigen::Isometry3d& pose);
     ScanView beginMap(const scan::PointCloud& cloud);
@@ -74,18 +87,21 @@ class PlaneOdometry : public Odometry {
     surfaces::SurfaceNormals surfacesOf(const Eigen::Matrix3Xf& points) const;
     void thinned(ScanView& view) const;
 
-    PlaneOdometryOptions options_;
+    const PlaneOdometryOptions given_;
+    PlaneOdometryOptions options_;  //!< at the scale of the place
+    double scale_ = 1;
+    unsigned otherScale_ = 0;  //!< scans in a row that show a place of another size
     Timeline timeline_;
     LinearPrediction prediction_;
-    planes::PlaneMap map_;
+    ScanToMap map_;
     movers::DynamicObjects dynamics_;
     AdaptiveKernel kernel_;
     Reference reference_;
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
     bool first_ = true;                                       //!< no scan was seen yet
-    bool started_ = false;                                    //!< the map has planes
+    bool started_ = false;                                    //!< the map can be used
     bool lost_ = true;       //!< where the next scan will be is not known to better than metres
-    double usualShare_ = 0;  //!< of points on planes
+    double usualShare_ = 0;  //!< of points on those of the map
     unsigned misses_ = 0;    //!< scans in a row that were not found in the map
     /** The scan that the map began with, while the motion during it is not known. */
     std::optional<scan::PointCloud> skewed_;

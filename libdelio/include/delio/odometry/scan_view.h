@@ -13,7 +13,8 @@ struct ScanView {
     Eigen::Matrix3Xf points;            //!< all
     std::vector<std::uint8_t> dynamic;  //!< 1 for each of them that belongs to a dynamic object
     Eigen::Matrix3Xf fine;              //!< thinned for the map
-    Eigen::Matrix3Xd thinned;           //!< thinned for registration
+    Eigen::Matrix3Xd thinned;           //!< thinned for registration by planes
+    Eigen::Matrix3Xd coarse;            //!< thinned for registration by points, all of the scan
 };
 
 /** Undistorted by `motion` where the points have times; not thinned yet, nothing dynamic. */

@@ -9,10 +9,12 @@
 
 namespace delio::planes {
 struct PlaneMapOptions : public StageOptions {
-    double voxel_size = 1.0;
+    double voxel_size = 0.5;
+    unsigned levels = 2;
     unsigned min_points = 8;
     double max_thickness = 0.1;
     double max_flatness = 0.05;
+    double min_breadth = 0.25;
     unsigned max_points = 300;
     double radius = 120;
 
@@ -31,13 +33,15 @@ struct Plane {
     /** Variance of the distance between the plane and a point of its surface: the surface's own
      *  thickness, and how well mean and normal are known there. */
     double varianceAt(const Eigen::Vector3d& point) const;
+    /** Variance of the normal's direction where it is known worse, rad^2. */
+    double tilt() const { return variances[0] / (variances[1] * count); }
 };
 
-/** What the last scans saw, as one plane a voxel, with running mean and scatter. Memory is bounded
- *  by `radius`. */
+/** What the last scans saw, as one plane a voxel, with running mean and scatter; on several levels,
+ *  each of voxels twice as large as the one before. Memory is bounded by `radius`. */
 class PlaneMap {
  public:
-    explicit PlaneMap(const PlaneMapOptions& options) : options_(options) {}
+    explicit PlaneMap(const PlaneMapOptions& options);
 
     /** Takes points (metres, the map's frame) in. A voxel that has `max_points` stays as it is: it
      *  is what drift is held against. */
@@ -46,13 +50,15 @@ class PlaneMap {
     /** Drops what lies farther than `radius` from `centre`. */
     void forgetFarFrom(const Eigen::Vector3d& centre);
 
-    /** The plane of the voxel that `point` lies in, or none. Valid until the map changes. */
+    /** The plane of the smallest voxel about `point` that has one, or none. Valid until the map
+     *  changes. */
     const Plane* at(const Eigen::Vector3d& point) const;
 
     /** Drops everything. */
-    void clear() { cells_.clear(); }
+    void clear();
 
-    std::size_t voxels() const { return cells_.size(); }
+    /** Of all levels. */
+    std::size_t voxels() const;
     std::size_t planes() const;
 
  private:
@@ -64,9 +70,14 @@ class PlaneMap {
         bool isPlane = false, touched = false;
         Plane plane;
     };
-    void fit(Cell& cell) const;
+    struct Level {
+        double edge;  //!< of its voxels, metres
+        std::unordered_map<std::uint64_t, Cell> cells;
+    };
+    void add(const Eigen::Matrix3Xd& points, Level& level) const;
+    void fit(double edge, Cell& cell) const;
 
     PlaneMapOptions options_;
-    std::unordered_map<std::uint64_t, Cell> cells_;
+    std::vector<Level> levels_;  //!< the finest first
 };
 }  // namespace delio::planes

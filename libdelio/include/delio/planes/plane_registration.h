@@ -4,6 +4,7 @@
 #include "delio/core/estimates.h"
 #include "delio/core/stage_options.h"
 #include "delio/planes/plane_map.h"
+#include "delio/planes/prior.h"
 
 namespace delio::planes {
 struct PlaneRegistrationOptions : public StageOptions {
@@ -14,8 +15,6 @@ struct PlaneRegistrationOptions : public StageOptions {
     double converged_rad = 2e-5;
     double converged_m = 5e-4;
     unsigned min_matches = 100;
-    double min_rotation_share = 1e-3;
-    double min_translation_share = 2e-3;
     double independent_share = 0.16;
     double prior_sigma = 0.5;
     double prior_sigma_deg = 1.0;
@@ -47,10 +46,15 @@ struct PlaneEstimate {
 PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose,
                                 const PlaneRegistrationOptions& options);
 
+/** What the motion model knows: the prediction (sensor to map), off by prior_sigma. */
+Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions& options);
+
 /** Rotation from translation-free residuals, then translation alone, with new correspondences each
- *  time, while the kernel narrows from `kernel` (metres) to last_kernel: from the prediction
- * (sensor to map) to convergence. An axis that the planes do not see keeps the prediction. */
+ *  time, while the kernel narrows from `kernel` (metres) to last_kernel: from the prior's pose to
+ *  convergence. Planes and prior are fused by their information. An axis is unobserved where the
+ *  planes' standard deviation is no better than the prior's, what errors of the normals alone would
+ *  give taken away. */
 PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
-                               const Eigen::Isometry3d& predicted, double kernel,
+                               const Prior& prior, double kernel,
                                const PlaneRegistrationOptions& options);
 }  // namespace delio::planes

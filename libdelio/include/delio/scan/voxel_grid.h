@@ -40,4 +40,7 @@ Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers&
 
 /** One point a voxel: the centroid of the points in it, in the order of their numbers. */
 Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size);
+
+/** One point a voxel: the first one of them. A centroid lies between a sensor's rings. */
+Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size);
 }  // namespace delio::scan

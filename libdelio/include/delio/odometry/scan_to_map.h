@@ -1,0 +1,76 @@
+#pragma once
+#include <vector>
+
+#include "delio/odometry/scan_view.h"
+#include "delio/planes/plane_map.h"
+#include "delio/planes/plane_registration.h"
+#include "delio/points/point_registration.h"
+
+namespace delio {
+struct ScanToMapOptions : public StageOptions {
+    double point_sigma = 0.02;
+    double point_sigma_deg = 0.1;
+    double believed = 0.1;
+    double believed_deg = 1.0;
+    double min_share = 0.1;
+    double probe = 0.5;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** A scan in a map that is kept twice: as planes, which are precise, and as points, which cannot be
+ *  fooled by what looks like a plane. Points place the scan first; both are fused by their
+ *  information, where planes do not lead too far away. Poses map the sensor's frame to the map's.
+ */
+class ScanToMap {
+ public:
+    ScanToMap(const ScanToMapOptions& options, const planes::PlaneMapOptions& planeMap,
+              const planes::PlaneRegistrationOptions& planes,
+              const points::PointMapOptions& pointMap,
+              const points::PointRegistrationOptions& points)
+        : options_(options),
+          planeOptions_(planes),
+          pointOptions_(points),
+          planes_(planeMap),
+          points_(pointMap) {}
+
+    void add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
+    void clear();
+    const planes::PlaneMap& planes() const { return planes_; }
+    /** False where there are too few points to register anything against. */
+    bool isUsable() const { return points_.size() >= pointOptions_.min_matches; }
+
+    /** By points, from the prediction on; `kernel` (metres): how far that may be off. Not valid
+     *  where fewer than `min_share` of the points come to lie on the map's. */
+    points::PointEstimate place(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+                                double kernel) const;
+
+    /** By points, where the motion since the map's latest scan, at `latest`, is not known: up to
+     *  `reach` metres. The rings that a sensor draws on the ground look the same wherever it stands
+     *  and would hold the scan at rest; so starts all over a disc are compared by those points
+     * alone that would not lie on the map's if it stood still. */
+    points::PointEstimate placeAnywhere(const Eigen::Matrix3Xd& coarse,
+                                        const Eigen::Isometry3d& latest, double reach) const;
+
+    /** By planes, from where the points were placed. An axis that the planes see no better than the
+     *  points stays where these put it, if they see it, else where the prediction does. */
+    planes::PlaneEstimate refine(const ScanView& view, const points::PointEstimate& placed,
+                                 const Eigen::Isometry3d& predicted) const;
+
+ private:
+    std::vector<Eigen::Isometry3d> starts(const Eigen::Matrix3Xd& points,
+                                          const Eigen::Isometry3d& latest, double reach) const;
+    bool pointsSee(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& pose,
+                   const Eigen::Vector3d& axis) const;
+    planes::PlaneEstimate byPoints(const points::PointEstimate& placed) const;
+    void keepPrediction(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+                        planes::PlaneEstimate& found) const;
+
+    ScanToMapOptions options_;
+    planes::PlaneRegistrationOptions planeOptions_;
+    points::PointRegistrationOptions pointOptions_;
+    planes::PlaneMap planes_;
+    points::PointMap points_;
+};
+}  // namespace delio

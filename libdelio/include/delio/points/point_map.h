@@ -1,0 +1,48 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+
+#include "delio/core/stage_options.h"
+
+namespace delio::points {
+struct PointMapOptions : public StageOptions {
+    double voxel_size = 1.0;
+    double spacing = 0.2;
+    double radius = 120;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** What the last scans saw, as points in voxels (Vizzo et al., KISS-ICP): the first ones of a voxel
+ *  that are `spacing` apart. Metres, the map's frame. Memory is bounded by `radius`. */
+class PointMap {
+ public:
+    explicit PointMap(const PointMapOptions& options) : options_(options) {}
+
+    void add(const Eigen::Matrix3Xd& points);
+
+    /** Drops what lies farther than `radius` from `centre`. */
+    void forgetFarFrom(const Eigen::Vector3d& centre);
+
+    void clear();
+
+    std::size_t size() const { return size_; }  //!< points
+
+    /** The nearest point within `reach` metres, which are at most a voxel's edge; none: false. */
+    bool nearest(const Eigen::Vector3d& point, double reach, Eigen::Vector3d& found) const;
+
+ private:
+    struct Cell {
+        static constexpr std::size_t kMost = 20;
+        Eigen::Vector3d origin;  //!< the first point: the others are seen from there
+        std::array<Eigen::Vector3f, kMost> points;
+        std::size_t count = 0;
+    };
+    PointMapOptions options_;
+    std::unordered_map<std::uint64_t, Cell> cells_;
+    std::size_t size_ = 0;
+};
+}  // namespace delio::points

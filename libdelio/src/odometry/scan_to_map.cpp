@@ -1,0 +1,174 @@
+#include "delio/odometry/scan_to_map.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace delio {
+using planes::PlaneEstimate;
+using points::PointEstimate;
+
+namespace {
+constexpr double kDeg = M_PI / 180;
+}  // namespace
+
+std::vector<OptionField> ScanToMapOptions::fields() const {
+    using Me = ScanToMapOptions;
+    return {{"point_sigma", &Me::point_sigma, "m; error of a scan placed by points along each axis",
+             1e-6, 100},
+            {"point_sigma_deg", &Me::point_sigma_deg, "deg; the same about each axis", 1e-6, 180},
+            {"believed", &Me::believed,
+             "m; planes that lead farther than this from where points place the scan are not "
+             "believed",
+             0, 10},
+            {"believed_deg", &Me::believed_deg, "deg; the same of the rotation", 0, 90},
+            {"min_share", &Me::min_share,
+             "share of a scan's points that have to lie on points of the map; with less it is lost",
+             0, 1},
+            {"probe", &Me::probe,
+             "m; points see an axis if they bring the scan back that was moved along it by this",
+             0.05, 10}};
+}
+
+void ScanToMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose) {
+    const Eigen::Matrix3Xd placed =
+        (pose.linear() * points.cast<double>()).colwise() + pose.translation();
+    planes_.add(placed);
+    planes_.forgetFarFrom(pose.translation());
+    points_.add(placed);
+    points_.forgetFarFrom(pose.translation());
+}
+
+void ScanToMap::clear() {
+    planes_.clear();
+    points_.clear();
+}
+
+PointEstimate ScanToMap::place(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+                               double kernel) const {
+    auto found = points::registerToPoints(points_, coarse, predicted, kernel, pointOptions_);
+    found.valid = found.valid && found.share >= options_.min_share;
+    return found;
+}
+
+/** Starts on a disc about `latest`, those first where most of the points come to lie near the
+ * map's. */
+std::vector<Eigen::Isometry3d> ScanToMap::starts(const Eigen::Matrix3Xd& points,
+                                                 const Eigen::Isometry3d& latest,
+                                                 double reach) const {
+    const double step = pointOptions_.first_kernel / 2;
+    const int steps = static_cast<int>(reach / step);
+    std::vector<std::pair<double, Eigen::Isometry3d>> all;
+    for (int x = -steps; x <= steps; ++x)
+        for (int y = -steps; y <= steps; ++y) {
+            const Eigen::Vector3d offset(x * step, y * step, 0);
+            if (offset.norm() <= reach) all.emplace_back(0, latest * Eigen::Translation3d(offset));
+        }
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+        all[i].first = points::shareAt(points_, points, all[i].second, step / 2);
+    });
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<Eigen::Isometry3d> sorted;
+    for (const auto& [share, start] : all) sorted.push_back(start);
+    return sorted;
+}
+
+PointEstimate ScanToMap::placeAnywhere(const Eigen::Matrix3Xd& coarse,
+                                       const Eigen::Isometry3d& latest, double reach) const {
+    constexpr std::size_t kBest = 8;
+    auto best = place(coarse, latest, pointOptions_.least_kernel);
+    const auto moved = points::pointsOff(points_, coarse, latest, pointOptions_.least_kernel);
+    if (moved.cols() < pointOptions_.min_matches) return best;
+    const auto shareOf = [&](const PointEstimate& found) {
+        return points::shareAt(points_, moved, found.pose, pointOptions_.last_kernel);
+    };
+    const auto wide = place(coarse, latest, pointOptions_.first_kernel);
+    if (wide.valid && shareOf(wide) > shareOf(best)) best = wide;
+    // Another start has to explain clearly more.
+    constexpr double kClearly = 0.1;
+    double most = shareOf(best) + kClearly;
+    auto tried = starts(moved, latest, reach);
+    if (tried.size() > kBest) tried.resize(kBest);
+    for (const auto& start : tried) {
+        const auto found = points::registerToPoints(points_, moved, start,
+                                                    pointOptions_.first_kernel / 2, pointOptions_);
+        if (!found.valid || found.share <= most) continue;
+        const auto all = place(coarse, found.pose, pointOptions_.least_kernel);
+        if (!all.valid || shareOf(all) <= most) continue;
+        most = shareOf(all);
+        best = all;
+    }
+    return best;
+}
+
+/** Moved along the axis to either side, the scan comes back. (Rings of a sensor in a tunnel lie on
+ *  those of the scan before wherever it stands: there it stays where it was put.) */
+bool ScanToMap::pointsSee(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& pose,
+                          const Eigen::Vector3d& axis) const {
+    constexpr double kBack = 0.3;
+    for (const double side : {-1.0, 1.0}) {
+        Eigen::Isometry3d start = pose;
+        start.translation() += side * options_.probe * axis;
+        const auto back =
+            points::registerToPoints(points_, coarse, start, options_.probe, pointOptions_);
+        const double off_m = std::abs(axis.dot(back.pose.translation() - pose.translation()));
+        if (!back.valid || off_m > kBack * options_.probe) return false;
+    }
+    return true;
+}
+
+/** What the points say alone. */
+PlaneEstimate ScanToMap::byPoints(const PointEstimate& placed) const {
+    PlaneEstimate estimate;
+    auto& rotation = estimate.rotation;
+    auto& translation = estimate.translation;
+    rotation.rotation = placed.pose.linear();
+    rotation.covariance =
+        std::pow(options_.point_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity();
+    rotation.matches = translation.matches = placed.matches;
+    rotation.iterations = placed.iterations;
+    rotation.valid = translation.valid = estimate.valid = true;
+    translation.translation = placed.pose.translation();
+    translation.covariance = std::pow(options_.point_sigma, 2) * Eigen::Matrix3d::Identity();
+    translation.residual_m = placed.residual_m;
+    translation.unobservedAxes = Eigen::Matrix3d::Identity();
+    estimate.share = placed.share;
+    return estimate;
+}
+
+/** Of the axes that planes do not see: those that the points do not see either go back to the
+ *  prediction. */
+void ScanToMap::keepPrediction(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+                               PlaneEstimate& found) const {
+    auto& translation = found.translation;
+    Eigen::Matrix3Xd unseen(3, 0);
+    for (Eigen::Index i = 0; i < translation.unobservedAxes.cols(); ++i) {
+        const Eigen::Vector3d axis = translation.unobservedAxes.col(i);
+        if (pointsSee(coarse, found.pose(), axis)) continue;
+        const Eigen::Matrix3d along = axis * axis.transpose();
+        translation.translation += along * (predicted.translation() - translation.translation);
+        translation.covariance += std::pow(planeOptions_.prior_sigma, 2) * along;
+        unseen.conservativeResize(3, unseen.cols() + 1);
+        unseen.rightCols<1>() = axis;
+    }
+    translation.unobservedAxes = unseen;
+}
+
+PlaneEstimate ScanToMap::refine(const ScanView& view, const PointEstimate& placed,
+                                const Eigen::Isometry3d& predicted) const {
+    const auto prior =
+        planes::Prior::of(placed.pose, options_.point_sigma, options_.point_sigma_deg * kDeg);
+    auto found = planes::registerToPlanes(planes_, view.thinned, prior,
+                                          2 * planeOptions_.last_kernel, planeOptions_);
+    const Eigen::Isometry3d off = placed.pose.inverse() * found.pose();
+    if (!found.valid || off.translation().norm() > options_.believed ||
+        angleOf(off.linear()) > options_.believed_deg * kDeg)
+        found = byPoints(placed);
+    found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
+    keepPrediction(view.coarse, predicted, found);
+    return found;
+}
+}  // namespace delio

@@ -1,0 +1,160 @@
+#include "delio/points/point_registration.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "delio/core/geometry.h"
+
+namespace delio::points {
+namespace {
+/** A point of the scan, by its place in the order, with the nearest one of the map. */
+struct Pair {
+    Eigen::Vector3d inMap = Eigen::Vector3d::Zero();
+    double squaredDistance = 0;
+    double weight = 0;  //!< 0: none
+};
+
+std::vector<Pair> pairsAt(const PointMap& map, const Eigen::Matrix3Xd& points,
+                          const Eigen::Isometry3d& pose, double kernel) {
+    constexpr double kReach = 3;  // kernel widths
+    std::vector<Pair> pairs(static_cast<std::size_t>(points.cols()));
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, pairs.size(), 64),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const Eigen::Vector3d placed = pose * points.col(static_cast<Eigen::Index>(i));
+                Pair& pair = pairs[i];
+                if (!map.nearest(placed, kReach * kernel, pair.inMap)) continue;
+                pair.squaredDistance = (pair.inMap - placed).squaredNorm();
+                const double robust = 1 / (1 + pair.squaredDistance / (kernel * kernel));
+                pair.weight = robust * robust;
+            }
+        });
+    return pairs;
+}
+
+/** argmin over rotations of sum w |n_from - R n_to|^2 (Arun, Kabsch). */
+Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& moment) {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d sign(1, 1, 1);
+    sign[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+    return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+}
+
+/** Rotation about the centroids, then the translation. False with too few pairs. */
+bool solve(const Eigen::Matrix3Xd& points, const std::vector<Pair>& pairs, unsigned least,
+           Eigen::Isometry3d& pose) {
+    Eigen::Vector3d inMap = Eigen::Vector3d::Zero(), inScan = inMap;
+    double weight = 0;
+    unsigned count = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        inMap += pairs[i].weight * pairs[i].inMap;
+        inScan += pairs[i].weight * points.col(static_cast<Eigen::Index>(i));
+        weight += pairs[i].weight;
+        count += pairs[i].weight > 0;
+    }
+    if (count < least) return false;
+    inMap /= weight;
+    inScan /= weight;
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        moment += pairs[i].weight * (pairs[i].inMap - inMap) *
+                  (points.col(static_cast<Eigen::Index>(i)) - inScan).transpose();
+    pose.linear() = rotationOf(moment);
+    pose.translation() = inMap - pose.linear() * inScan;
+    return true;
+}
+
+/** How far points at a typical range are moved by a change of pose, metres. */
+double distanceBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+    constexpr double kTypicalRange_m = 20;
+    const Eigen::Isometry3d change = a.inverse() * b;
+    return change.translation().norm() + kTypicalRange_m * angleOf(change.linear());
+}
+
+void judge(const PointMap& map, const Eigen::Matrix3Xd& points,
+           const PointRegistrationOptions& options, PointEstimate& estimate) {
+    double squares = 0;
+    for (const auto& pair : pairsAt(map, points, estimate.pose, options.last_kernel)) {
+        if (pair.weight == 0 || pair.squaredDistance > options.last_kernel * options.last_kernel)
+            continue;
+        squares += pair.squaredDistance;
+        ++estimate.matches;
+    }
+    const auto matches = static_cast<double>(estimate.matches);
+    estimate.share = matches / static_cast<double>(std::max<Eigen::Index>(points.cols(), 1));
+    estimate.residual_m = matches > 0 ? std::sqrt(squares / matches) : 0;
+}
+}  // namespace
+
+std::vector<OptionField> PointRegistrationOptions::fields() const {
+    using Me = PointRegistrationOptions;
+    return {{"first_kernel", &Me::first_kernel,
+             "m; widest kernel of the distances, where the motion is not known", 1e-3, 100},
+            {"least_kernel", &Me::least_kernel,
+             "m; else it begins with what the motion model is off, but no narrower than this", 1e-3,
+             100},
+            {"last_kernel", &Me::last_kernel, "m; width to which the kernel is halved", 1e-3, 100},
+            {"max_iterations", &Me::max_iterations, "pairings with one kernel at most", 1, 10000},
+            {"converged_m", &Me::converged_m, "m; a smaller step ends the iteration", 0, 1},
+            {"min_matches", &Me::min_matches, "pairs that are needed; fewer: predicted", 3, 1e6}};
+}
+
+void PointRegistrationOptions::check(const std::string& section) const {
+    requireOrder(section + ".last_kernel", last_kernel, section + ".least_kernel", least_kernel);
+    requireOrder(section + ".least_kernel", least_kernel, section + ".first_kernel", first_kernel);
+}
+
+PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
+                               const Eigen::Isometry3d& predicted, double kernel,
+                               const PointRegistrationOptions& options) {
+    PointEstimate estimate;
+    estimate.pose = predicted;
+    for (double width = std::max(kernel, options.last_kernel);;
+         width = std::max(width / 2, options.last_kernel)) {
+        // Only the last kernel has to converge; the others lead into its reach.
+        constexpr double kRough = 0.02;
+        const bool isLast = width <= options.last_kernel;
+        const double enough = isLast ? options.converged_m : kRough * width;
+        for (unsigned i = 0; i < options.max_iterations; ++i) {
+            const Eigen::Isometry3d before = estimate.pose;
+            const auto pairs = pairsAt(map, points, before, width);
+            if (!solve(points, pairs, options.min_matches, estimate.pose)) {
+                estimate.pose = predicted;
+                return estimate;
+            }
+            ++estimate.iterations;
+            if (distanceBetween(before, estimate.pose) < enough) break;
+        }
+        if (isLast) break;
+    }
+    estimate.valid = true;
+    judge(map, points, options, estimate);
+    return estimate;
+}
+
+double shareAt(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
+               double distance) {
+    Eigen::Vector3d nearest;
+    Eigen::Index near = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        near += map.nearest(pose * points.col(i), distance, nearest);
+    return static_cast<double>(near) /
+           static_cast<double>(std::max<Eigen::Index>(points.cols(), 1));
+}
+
+Eigen::Matrix3Xd pointsOff(const PointMap& map, const Eigen::Matrix3Xd& points,
+                           const Eigen::Isometry3d& pose, double distance) {
+    Eigen::Matrix3Xd off(3, points.cols());
+    Eigen::Index count = 0;
+    Eigen::Vector3d nearest;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        if (!map.nearest(pose * points.col(i), distance, nearest)) off.col(count++) = points.col(i);
+    off.conservativeResize(3, count);
+    return off;
+}
+}  // namespace delio::points

@@ -1,0 +1,65 @@
+#include "delio/points/point_map.h"
+
+#include <gtest/gtest.h>
+
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using points::PointMap;
+using points::PointMapOptions;
+
+Eigen::Matrix3Xd cloud(Eigen::Index count, double spread, test::Noise& noise) {
+    Eigen::Matrix3Xd points(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) points.col(i) = spread * noise.normals();
+    return points;
+}
+
+TEST(PointMap, FindsTheNearestAsBruteForceDoes) {
+    test::Noise noise;
+    PointMapOptions options;
+    options.spacing = 0.01;  // nearly all points are kept
+    PointMap map(options);
+    const Eigen::Vector3d far(5000, -3000, 20);  // floats are taken about the cells
+    const Eigen::Matrix3Xd points = cloud(2000, 4, noise).colwise() + far;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) map.add(points.col(i));
+    EXPECT_GT(map.size(), 1900U);
+    unsigned found = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Eigen::Vector3d query = far + 4 * noise.normals();
+        Eigen::Vector3d nearest;
+        if (!map.nearest(query, 0.5, nearest)) continue;
+        ++found;
+        const double least = (points.colwise() - query).colwise().norm().minCoeff();
+        // A full cell holds twenty points: one that it dropped may be nearer.
+        EXPECT_GE((nearest - query).norm(), least - 1e-4);
+        EXPECT_LE((nearest - query).norm(), 0.5);
+    }
+    EXPECT_GT(found, 30U);
+}
+
+TEST(PointMap, KeepsPointsThatAreApart) {
+    PointMap map(PointMapOptions{});
+    const Eigen::Matrix3Xd row =
+        Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(91, 0, 0.9);
+    map.add(row);  // every centimetre
+    EXPECT_LE(map.size(), 5U);
+    EXPECT_GE(map.size(), 4U);
+    map.add(row);
+    EXPECT_LE(map.size(), 5U);
+}
+
+TEST(PointMap, ForgetsWhatIsFarAway) {
+    PointMap map(PointMapOptions{});
+    map.add(Eigen::Vector3d(0, 0, 0));
+    map.add(Eigen::Vector3d(500, 0, 0));
+    map.forgetFarFrom({0, 0, 0});
+    Eigen::Vector3d nearest;
+    EXPECT_EQ(map.size(), 1U);
+    EXPECT_TRUE(map.nearest({0.1, 0, 0}, 0.5, nearest));
+    EXPECT_FALSE(map.nearest({500.1, 0, 0}, 0.5, nearest));
+    map.clear();
+    EXPECT_EQ(map.size(), 0U);
+    EXPECT_FALSE(map.nearest({0.1, 0, 0}, 0.5, nearest));
+}
+}  // namespace

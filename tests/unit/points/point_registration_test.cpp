@@ -1,0 +1,86 @@
+#include "delio/points/point_registration.h"
+
+#include <gtest/gtest.h>
+
+#include "delio/core/geometry.h"
+#include "delio/scan/voxel_grid.h"
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using points::PointMap;
+using points::PointMapOptions;
+using points::PointRegistrationOptions;
+using test::degreesBetween;
+using test::poseAt;
+
+/** A scan of few rings. */
+const test::Sensor kSensor{16, 900, -15, 15, 0.02};
+
+Eigen::Matrix3Xd scanFrom(const Eigen::Isometry3d& pose, double spacing, test::Noise& noise) {
+    return scan::voxelCentroids(test::ringScan(test::yard(), pose, kSensor, noise).points, spacing)
+        .cast<double>();
+}
+
+PointMap mapOfYard(test::Noise& noise) {
+    PointMap map(PointMapOptions{});
+    map.add(scanFrom(Eigen::Isometry3d::Identity(), 0.25, noise));
+    return map;
+}
+
+TEST(PointRegistration, FindsAScanOfFewRings) {
+    test::Noise noise;
+    const PointMap map = mapOfYard(noise);
+    const Eigen::Isometry3d truth = poseAt(0.8, 0.1, 0.02, 0.03);
+    const auto found = points::registerToPoints(map, scanFrom(truth, 1, noise), poseAt(0.5, 0, 0),
+                                                1, PointRegistrationOptions{});
+    ASSERT_TRUE(found.valid);
+    EXPECT_LT((found.pose.translation() - truth.translation()).norm(), 0.1);
+    EXPECT_LT(degreesBetween(found.pose.linear(), truth.linear()), 0.5);
+    EXPECT_GT(found.share, 0.3);
+}
+
+// Decoupled: the rotation is taken about the centroids, wherever the scan is.
+TEST(PointRegistration, TheSamePointsComeBackExactly) {
+    test::Noise noise;
+    PointMapOptions fine;
+    fine.spacing = 0.01;
+    PointMap map(fine);
+    Eigen::Matrix3Xd points(3, 400);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) points.col(i) = 20 * noise.normals();
+    map.add(points);
+    const Eigen::Isometry3d truth = poseAt(0.1, -0.05, 0.02, 0.005, -0.003, 0.002);
+    PointRegistrationOptions options;
+    options.converged_m = 1e-9;
+    const auto found = points::registerToPoints(map, truth.inverse() * points,
+                                                Eigen::Isometry3d::Identity(), 0.5, options);
+    ASSERT_TRUE(found.valid);
+    EXPECT_LT((found.pose.matrix() - truth.matrix()).norm(), 1e-5);  // the map keeps floats
+    EXPECT_EQ(found.share, 1);
+}
+
+TEST(PointRegistration, WithTooFewPairsThePredictionStays) {
+    test::Noise noise;
+    const Eigen::Isometry3d predicted = poseAt(1, 2, 3, 0.1);
+    const PointMap empty(PointMapOptions{});
+    const auto nothing =
+        points::registerToPoints(empty, scanFrom(predicted, 1, noise), predicted, 1, {});
+    EXPECT_FALSE(nothing.valid);
+    EXPECT_TRUE(nothing.pose.isApprox(predicted));
+    const auto nobody =
+        points::registerToPoints(mapOfYard(noise), Eigen::Matrix3Xd(3, 0), predicted, 1, {});
+    EXPECT_FALSE(nobody.valid);
+}
+
+TEST(PointRegistration, PointsThatAreOffAreTold) {
+    test::Noise noise;
+    PointMap map(PointMapOptions{});
+    Eigen::Matrix3Xd points(3, 3);
+    points << 0, 10, 20, 0, 0, 0, 0, 0, 0;
+    map.add(points.leftCols(2));
+    const auto off = points::pointsOff(map, points, Eigen::Isometry3d::Identity(), 0.5);
+    ASSERT_EQ(off.cols(), 1);
+    EXPECT_EQ(off(0, 0), 20);
+    EXPECT_NEAR(points::shareAt(map, points, Eigen::Isometry3d::Identity(), 0.5), 2.0 / 3, 1e-12);
+}
+}  // namespace
