@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "../surfaces/kd_tree.h"
+#include "delio/core/kabsch.h"
 #include "delio/scan/voxel_grid.h"
-#include "kabsch.h"
 
 namespace delio::paper {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../surfaces/kd_tree.h"
-#include "kabsch.h"
+#include "delio/core/kabsch.h"
 
 namespace delio::paper {
 namespace {

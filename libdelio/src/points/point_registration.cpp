@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "delio/core/geometry.h"
+#include "delio/core/kabsch.h"
 
 namespace delio::points {
 namespace {
@@ -35,14 +36,6 @@ std::vector<Pair> pairsAt(const PointMap& map, const Eigen::Matrix3Xd& points,
             }
         });
     return pairs;
-}
-
-/** argmin over rotations of sum w |n_from - R n_to|^2 (Arun, Kabsch). */
-Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& moment) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Vector3d sign(1, 1, 1);
-    sign[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-    return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
 }
 
 /** Rotation about the centroids, then the translation. False with too few pairs. */

@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-namespace delio::paper {
+namespace delio {
 /** argmin over rotations of sum w |n_from - R n_to|^2, given sum w n_from n_to' (Arun, Kabsch). */
 Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& moment);
-}  // namespace delio::paper
+}  // namespace delio
