@@ -121,9 +121,9 @@ PointEstimate PlaneOdometry::relocalised(const ScanView& view, const Eigen::Isom
 PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d& predicted,
                                    double reach_m, Step& step) const {
     const auto& options = options_.points;
-    step.searched = lost_ || !prediction_.hasMotion();
+    step.searched = lost_ || doubted_ || !prediction_.hasMotion();
     auto best = step.searched
-                    ? map_.placeAnywhere(view.coarse, pose_,
+                    ? map_.placeAnywhere(view.coarse, doubted_ ? reference_.pose : pose_,
                                          std::min(reach_m, options_.tracker.first_reach))
                     : map_.place(view.coarse, predicted,
                                  kernel_.width(options.least_kernel, options.first_kernel));
@@ -154,7 +154,7 @@ void PlaneOdometry::undistortAgain(const scan::PointCloud& cloud, double since_s
     again.coarse = scan::firstOfVoxels(again.fine, options_.tracker.point_spacing).cast<double>();
     const auto placed = map_.place(again.coarse, estimate.pose(), options_.points.least_kernel);
     if (!placed.valid) return;
-    estimate = map_.refine(again, placed, estimate.pose());
+    estimate = map_.refine(again, placed, estimate.pose(), reference_.pose);
     view = std::move(again);
 }
 
@@ -228,7 +228,7 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
         if (!placed.valid) return planes::predictedEstimate(predicted, registration);
         view.thinned =
             scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
-        auto found = map_.refine(view, placed, predicted);
+        auto found = map_.refine(view, placed, predicted, reference_.pose);
         if (step.deskewed) undistortAgain(cloud, since_s, view, found);
         return found;
     });
@@ -236,7 +236,10 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
     pose_ = estimate.valid ? estimate.pose() : predicted;
     lost_ = !estimate.valid || step.interrupted;  // how fast it goes is not known
     timed(timeOf(step, "map_update"), [&] {
-        if (estimate.valid) {
+        doubted_ = estimate.valid && map_.isDoubtfulRest(estimate, reference_.pose);
+        if (doubted_) {
+            misses_ = 0;
+        } else if (estimate.valid) {
             if (!step.interrupted) learn(placed, predicted, since_s);
             if (detecting) dynamics_.remember(pose_);
             insert(view, pose_);

@@ -139,17 +139,27 @@ PlaneEstimate ScanToMap::byPoints(const PointEstimate& placed) const {
     return estimate;
 }
 
+bool ScanToMap::isDoubtfulRest(const PlaneEstimate& found, const Eigen::Isometry3d& latest) const {
+    const Eigen::Vector3d moved = found.translation.translation - latest.translation();
+    for (const auto& axis : found.translation.unobservedAxes.colwise())
+        if (std::abs(axis.dot(moved)) <= pointOptions_.last_kernel) return true;
+    return false;
+}
+
 /** Of the axes that planes do not see: those that the points do not see either go back to the
- *  prediction. */
-void ScanToMap::keepPrediction(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
-                               PlaneEstimate& found) const {
+ *  prediction; those along which points say "standing still" are kept and named. */
+void ScanToMap::settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+                                 const Eigen::Isometry3d& latest, PlaneEstimate& found) const {
     auto& translation = found.translation;
     Eigen::Matrix3Xd unseen(3, 0);
     for (Eigen::Index i = 0; i < translation.unobservedAxes.cols(); ++i) {
         const Eigen::Vector3d axis = translation.unobservedAxes.col(i);
-        if (pointsSee(coarse, found.pose(), axis)) continue;
         const Eigen::Matrix3d along = axis * axis.transpose();
-        translation.translation += along * (predicted.translation() - translation.translation);
+        const double moved_m = std::abs(axis.dot(translation.translation - latest.translation()));
+        if (!pointsSee(coarse, found.pose(), axis))
+            translation.translation += along * (predicted.translation() - translation.translation);
+        else if (moved_m > pointOptions_.last_kernel)
+            continue;
         translation.covariance += std::pow(planeOptions_.prior_sigma, 2) * along;
         unseen.conservativeResize(3, unseen.cols() + 1);
         unseen.rightCols<1>() = axis;
@@ -158,7 +168,8 @@ void ScanToMap::keepPrediction(const Eigen::Matrix3Xd& coarse, const Eigen::Isom
 }
 
 PlaneEstimate ScanToMap::refine(const ScanView& view, const PointEstimate& placed,
-                                const Eigen::Isometry3d& predicted) const {
+                                const Eigen::Isometry3d& predicted,
+                                const Eigen::Isometry3d& latest) const {
     const auto prior =
         planes::Prior::of(placed.pose, options_.point_sigma, options_.point_sigma_deg * kDeg);
     auto found = planes::registerToPlanes(planes_, view.thinned, prior,
@@ -168,7 +179,7 @@ PlaneEstimate ScanToMap::refine(const ScanView& view, const PointEstimate& place
         angleOf(off.linear()) > options_.believed_deg * kDeg)
         found = byPoints(placed);
     found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
-    keepPrediction(view.coarse, predicted, found);
+    settleUnobserved(view.coarse, predicted, latest, found);
     return found;
 }
 }  // namespace delio

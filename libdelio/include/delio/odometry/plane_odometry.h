@@ -101,6 +101,7 @@ class PlaneOdometry : public Odometry {
     bool first_ = true;                                       //!< no scan was seen yet
     bool started_ = false;                                    //!< the map can be used
     bool lost_ = true;       //!< where the next scan will be is not known to better than metres
+    bool doubted_ = false;   //!< the latest scan may or may not have been at rest
     double usualShare_ = 0;  //!< of points on those of the map
     unsigned misses_ = 0;    //!< scans in a row that were not found in the map
     /** The scan that the map began with, while the motion during it is not known. */

@@ -54,9 +54,14 @@ class ScanToMap {
                                         const Eigen::Isometry3d& latest, double reach) const;
 
     /** By planes, from where the points were placed. An axis that the planes see no better than the
-     *  points stays where these put it, if they see it, else where the prediction does. */
+     *  points stays where these put it, if they see it, else where the prediction does. Where
+     * points alone say that the scan stands where the map's `latest` does it is named as
+     * unobserved, too: a sensor's own rings say that anywhere. */
     planes::PlaneEstimate refine(const ScanView& view, const points::PointEstimate& placed,
-                                 const Eigen::Isometry3d& predicted) const;
+                                 const Eigen::Isometry3d& predicted,
+                                 const Eigen::Isometry3d& latest) const;
+
+    bool isDoubtfulRest(const planes::PlaneEstimate& found, const Eigen::Isometry3d& latest) const;
 
  private:
     std::vector<Eigen::Isometry3d> starts(const Eigen::Matrix3Xd& points,
@@ -64,8 +69,8 @@ class ScanToMap {
     bool pointsSee(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& pose,
                    const Eigen::Vector3d& axis) const;
     planes::PlaneEstimate byPoints(const points::PointEstimate& placed) const;
-    void keepPrediction(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
-                        planes::PlaneEstimate& found) const;
+    void settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+                          const Eigen::Isometry3d& latest, planes::PlaneEstimate& found) const;
 
     ScanToMapOptions options_;
     planes::PlaneRegistrationOptions planeOptions_;
