@@ -45,6 +45,9 @@ std::vector<OptionField> PlaneTrackerOptions::fields() const {
              "m; points that are registered against points are so far apart", 0.01, 10},
             {"first_reach", &Me::first_reach,
              "m; a motion of which nothing is known is looked for up to this", 0, 50},
+            {"acceleration", &Me::acceleration, "m/s2; of the hardest start or stop", 0, 1000},
+            {"doubt_spacing", &Me::doubt_spacing,
+             "m; scans that are weakly observed go into the map in such steps, not each", 0, 1000},
             {"scale", &Me::scale,
              "size of the place, by which all lengths that depend on it are multiplied: 1 for "
              "streets, less for rooms; 0: from the scan",
@@ -116,15 +119,19 @@ PointEstimate PlaneOdometry::relocalised(const ScanView& view, const Eigen::Isom
     return map_.place(view.coarse, found.pose(), registration.search_step);
 }
 
-/** By points, from the prediction; where that is lost, or fits worse than usual, from other starts
- *  too, and the one is taken where most points fit. */
+/** By points, from the prediction; where that is not known, or fits worse than usual, from other
+ *  starts too, and the one is taken where most points fit. */
 PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d& predicted,
                                    double reach_m, Step& step) const {
     const auto& options = options_.points;
-    step.searched = lost_ || doubted_ || !prediction_.hasMotion();
+    const auto& tracker = options_.tracker;
+    const bool knowsMotion = !lost_ && prediction_.hasMotion();
+    step.searched = !knowsMotion || doubted_;
+    const double since_s = timeline_.sinceStart_s() - reference_.time_s,
+                 gained_m = tracker.acceleration / 2 * since_s * since_s,
+                 start_m = std::min(knowsMotion ? gained_m : reach_m, tracker.first_reach);
     auto best = step.searched
-                    ? map_.placeAnywhere(view.coarse, doubted_ ? reference_.pose : pose_,
-                                         std::min(reach_m, options_.tracker.first_reach))
+                    ? map_.placeAnywhere(view.coarse, predicted, start_m)
                     : map_.place(view.coarse, predicted,
                                  kernel_.width(options.least_kernel, options.first_kernel));
     const bool isUsual = best.valid && best.share >= options_.tracker.lost_share * usualShare_;
@@ -236,16 +243,15 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
     pose_ = estimate.valid ? estimate.pose() : predicted;
     lost_ = !estimate.valid || step.interrupted;  // how fast it goes is not known
     timed(timeOf(step, "map_update"), [&] {
-        doubted_ = estimate.valid && map_.isDoubtfulRest(estimate, reference_.pose);
-        if (doubted_) {
-            misses_ = 0;
-        } else if (estimate.valid) {
-            if (!step.interrupted) learn(placed, predicted, since_s);
-            if (detecting) dynamics_.remember(pose_);
-            insert(view, pose_);
-            misses_ = 0;
-        } else
-            giveUp(cloud);
+        if (!estimate.valid) return giveUp(cloud);
+        misses_ = 0;
+        // What is only believed must not become the map that the next scan confirms it by.
+        doubted_ = estimate.translation.unobservedAxes.cols() > 0;
+        const double moved_m = (pose_.translation() - reference_.pose.translation()).norm();
+        if (doubted_ && moved_m <= options_.tracker.doubt_spacing) return;
+        if (!step.interrupted) learn(placed, predicted, since_s);
+        if (detecting) dynamics_.remember(pose_);
+        insert(view, pose_);
     });
     if (!estimate.valid)
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";

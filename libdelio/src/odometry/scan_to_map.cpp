@@ -53,10 +53,10 @@ PointEstimate ScanToMap::place(const Eigen::Matrix3Xd& coarse, const Eigen::Isom
     return found;
 }
 
-/** Starts on a disc about `latest`, those first where most of the points come to lie near the
+/** Starts on a disc about `guess`, those first where most of the points come to lie near the
  * map's. */
 std::vector<Eigen::Isometry3d> ScanToMap::starts(const Eigen::Matrix3Xd& points,
-                                                 const Eigen::Isometry3d& latest,
+                                                 const Eigen::Isometry3d& guess,
                                                  double reach) const {
     const double step = pointOptions_.first_kernel / 2;
     const int steps = static_cast<int>(reach / step);
@@ -64,7 +64,7 @@ std::vector<Eigen::Isometry3d> ScanToMap::starts(const Eigen::Matrix3Xd& points,
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y) {
             const Eigen::Vector3d offset(x * step, y * step, 0);
-            if (offset.norm() <= reach) all.emplace_back(0, latest * Eigen::Translation3d(offset));
+            if (offset.norm() <= reach) all.emplace_back(0, guess * Eigen::Translation3d(offset));
         }
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
         all[i].first = points::shareAt(points_, points, all[i].second, step / 2);
@@ -77,20 +77,20 @@ std::vector<Eigen::Isometry3d> ScanToMap::starts(const Eigen::Matrix3Xd& points,
 }
 
 PointEstimate ScanToMap::placeAnywhere(const Eigen::Matrix3Xd& coarse,
-                                       const Eigen::Isometry3d& latest, double reach) const {
+                                       const Eigen::Isometry3d& predicted, double reach) const {
     constexpr std::size_t kBest = 8;
-    auto best = place(coarse, latest, pointOptions_.least_kernel);
-    const auto moved = points::pointsOff(points_, coarse, latest, pointOptions_.least_kernel);
+    auto best = place(coarse, predicted, pointOptions_.least_kernel);
+    const auto moved = points::pointsOff(points_, coarse, predicted, pointOptions_.least_kernel);
     if (moved.cols() < pointOptions_.min_matches) return best;
     const auto shareOf = [&](const PointEstimate& found) {
         return points::shareAt(points_, moved, found.pose, pointOptions_.last_kernel);
     };
-    const auto wide = place(coarse, latest, pointOptions_.first_kernel);
+    const auto wide = place(coarse, predicted, pointOptions_.first_kernel);
     if (wide.valid && shareOf(wide) > shareOf(best)) best = wide;
     // Another start has to explain clearly more.
     constexpr double kClearly = 0.1;
     double most = shareOf(best) + kClearly;
-    auto tried = starts(moved, latest, reach);
+    auto tried = starts(moved, predicted, reach);
     if (tried.size() > kBest) tried.resize(kBest);
     for (const auto& start : tried) {
         const auto found = points::registerToPoints(points_, moved, start,
@@ -139,26 +139,20 @@ PlaneEstimate ScanToMap::byPoints(const PointEstimate& placed) const {
     return estimate;
 }
 
-bool ScanToMap::isDoubtfulRest(const PlaneEstimate& found, const Eigen::Isometry3d& latest) const {
-    const Eigen::Vector3d moved = found.translation.translation - latest.translation();
-    for (const auto& axis : found.translation.unobservedAxes.colwise())
-        if (std::abs(axis.dot(moved)) <= pointOptions_.last_kernel) return true;
-    return false;
-}
-
 /** Of the axes that planes do not see: those that the points do not see either go back to the
  *  prediction; those along which points say "standing still" are kept and named. */
 void ScanToMap::settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
                                  const Eigen::Isometry3d& latest, PlaneEstimate& found) const {
     auto& translation = found.translation;
+    const bool rests =
+        (translation.translation - latest.translation()).norm() <= pointOptions_.last_kernel;
     Eigen::Matrix3Xd unseen(3, 0);
     for (Eigen::Index i = 0; i < translation.unobservedAxes.cols(); ++i) {
         const Eigen::Vector3d axis = translation.unobservedAxes.col(i);
         const Eigen::Matrix3d along = axis * axis.transpose();
-        const double moved_m = std::abs(axis.dot(translation.translation - latest.translation()));
         if (!pointsSee(coarse, found.pose(), axis))
             translation.translation += along * (predicted.translation() - translation.translation);
-        else if (moved_m > pointOptions_.last_kernel)
+        else if (!rests)
             continue;
         translation.covariance += std::pow(planeOptions_.prior_sigma, 2) * along;
         unseen.conservativeResize(3, unseen.cols() + 1);

@@ -19,6 +19,8 @@ struct PlaneTrackerOptions : public StageOptions {
     double scan_spacing = 0.5;
     double point_spacing = 1.0;
     double first_reach = 4;
+    double acceleration = 15;
+    double doubt_spacing = 10;
     double scale = 0;
     double lost_share = 0.5;
 
@@ -101,7 +103,7 @@ class PlaneOdometry : public Odometry {
     bool first_ = true;                                       //!< no scan was seen yet
     bool started_ = false;                                    //!< the map can be used
     bool lost_ = true;       //!< where the next scan will be is not known to better than metres
-    bool doubted_ = false;   //!< the latest scan may or may not have been at rest
+    bool doubted_ = false;   //!< the latest scan was observed weakly
     double usualShare_ = 0;  //!< of points on those of the map
     unsigned misses_ = 0;    //!< scans in a row that were not found in the map
     /** The scan that the map began with, while the motion during it is not known. */

@@ -46,12 +46,12 @@ class ScanToMap {
     points::PointEstimate place(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
                                 double kernel) const;
 
-    /** By points, where the motion since the map's latest scan, at `latest`, is not known: up to
-     *  `reach` metres. The rings that a sensor draws on the ground look the same wherever it stands
-     *  and would hold the scan at rest; so starts all over a disc are compared by those points
-     * alone that would not lie on the map's if it stood still. */
+    /** By points, where `predicted` is a guess that may be off by `reach` metres. The rings that a
+     *  sensor draws on the ground look the same wherever it stands and would confirm any guess; so
+     *  starts all over a disc are compared by those points alone that the guess does not explain.
+     */
     points::PointEstimate placeAnywhere(const Eigen::Matrix3Xd& coarse,
-                                        const Eigen::Isometry3d& latest, double reach) const;
+                                        const Eigen::Isometry3d& predicted, double reach) const;
 
     /** By planes, from where the points were placed. An axis that the planes see no better than the
      *  points stays where these put it, if they see it, else where the prediction does. Where
@@ -61,11 +61,9 @@ class ScanToMap {
                                  const Eigen::Isometry3d& predicted,
                                  const Eigen::Isometry3d& latest) const;
 
-    bool isDoubtfulRest(const planes::PlaneEstimate& found, const Eigen::Isometry3d& latest) const;
-
  private:
     std::vector<Eigen::Isometry3d> starts(const Eigen::Matrix3Xd& points,
-                                          const Eigen::Isometry3d& latest, double reach) const;
+                                          const Eigen::Isometry3d& guess, double reach) const;
     bool pointsSee(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& pose,
                    const Eigen::Vector3d& axis) const;
     planes::PlaneEstimate byPoints(const points::PointEstimate& placed) const;
