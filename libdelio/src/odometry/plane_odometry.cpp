@@ -125,11 +125,11 @@ PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d
                                    double reach_m, Step& step) const {
     const auto& options = options_.points;
     const auto& tracker = options_.tracker;
-    const bool knowsMotion = !lost_ && prediction_.hasMotion();
-    step.searched = !knowsMotion || doubted_;
+    step.searched = lost_ || doubted_ || !prediction_.hasMotion();
     const double since_s = timeline_.sinceStart_s() - reference_.time_s,
                  gained_m = tracker.acceleration / 2 * since_s * since_s,
-                 start_m = std::min(knowsMotion ? gained_m : reach_m, tracker.first_reach);
+                 start_m =
+                     std::min(prediction_.hasMotion() ? gained_m : reach_m, tracker.first_reach);
     auto best = step.searched
                     ? map_.placeAnywhere(view.coarse, predicted, start_m)
                     : map_.place(view.coarse, predicted,

@@ -36,9 +36,13 @@ void ScanToMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pos
     const Eigen::Matrix3Xd placed =
         (pose.linear() * points.cast<double>()).colwise() + pose.translation();
     planes_.add(placed);
-    planes_.forgetFarFrom(pose.translation());
     points_.add(placed);
-    points_.forgetFarFrom(pose.translation());
+    // Each sweep goes through all that is known: not with every scan.
+    constexpr double kSweep_m = 5;
+    if ((pose.translation() - swept_m_).norm() < kSweep_m) return;
+    swept_m_ = pose.translation();
+    planes_.forgetFarFrom(swept_m_);
+    points_.forgetFarFrom(swept_m_);
 }
 
 void ScanToMap::clear() {

@@ -45,27 +45,39 @@ void PointMap::clear() {
     size_ = 0;
 }
 
+/** Of the cell, where it is nearer than `least` (squared metres). */
+bool PointMap::Cell::nearest(const Eigen::Vector3d& point, float& least,
+                             Eigen::Vector3d& found) const {
+    const Eigen::Vector3f local = (point - origin).cast<float>();
+    std::size_t best = kMost;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float squared = (points[i] - local).squaredNorm();
+        if (squared >= least) continue;
+        least = squared;
+        best = i;
+    }
+    if (best == kMost) return false;
+    found = origin + points[best].cast<double>();
+    return true;
+}
+
 bool PointMap::nearest(const Eigen::Vector3d& point, double reach, Eigen::Vector3d& found) const {
-    const double size = options_.voxel_size, step = std::min(reach, size);
-    const Eigen::Vector3d low = ((point.array() - step) / size).floor(),
-                          high = ((point.array() + step) / size).floor();
-    auto least = static_cast<float>(reach * reach);
+    const double size = options_.voxel_size;
+    const Eigen::Vector3d inVoxels = point / size, own = inVoxels.array().floor();
+    // How far the voxels before, at and behind the point's own are, along each axis.
+    const Eigen::Array3d before = size * (inVoxels - own).array();
+    Eigen::Array33d distances;
+    distances << before, Eigen::Array3d::Zero(), size - before;
+    const Eigen::Array33d squares = distances.square();
+    auto least = static_cast<float>(std::min(reach * reach, size * size));
     bool any = false;
-    for (double x = low.x(); x <= high.x(); ++x)
-        for (double y = low.y(); y <= high.y(); ++y)
-            for (double z = low.z(); z <= high.z(); ++z) {
-                const Eigen::Vector3d middle(x + 0.5, y + 0.5, z + 0.5);
-                const auto cell = cells_.find(scan::voxelKey(size * middle, size));
-                if (cell == cells_.end()) continue;
-                const Cell& near = cell->second;
-                const Eigen::Vector3f local = (point - near.origin).cast<float>();
-                for (std::size_t i = 0; i < near.count; ++i) {
-                    const float squared = (near.points[i] - local).squaredNorm();
-                    if (squared >= least) continue;
-                    least = squared;
-                    found = near.origin + near.points[i].cast<double>();
-                    any = true;
-                }
+    for (const int x : {1, 0, 2})  // its own first: what is nearer leaves out most others
+        for (const int y : {1, 0, 2})
+            for (const int z : {1, 0, 2}) {
+                if (squares(0, x) + squares(1, y) + squares(2, z) >= least) continue;
+                const Eigen::Vector3d middle = own + Eigen::Vector3d(x - 0.5, y - 0.5, z - 0.5);
+                const auto cell = cells_.find(scan::voxelKey(middle, 1));
+                if (cell != cells_.end()) any |= cell->second.nearest(point, least, found);
             }
     return any;
 }

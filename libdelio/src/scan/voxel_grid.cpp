@@ -8,7 +8,9 @@ namespace delio::scan {
 std::uint64_t voxelKey(const Eigen::Vector3d& point, double size) {
     constexpr std::int64_t kHalf = 1 << 20;  // 21 bits for each axis
     const auto part = [&](double value) {
-        const auto index = static_cast<std::int64_t>(std::floor(value / size));
+        const double voxels = value / size;
+        auto index = static_cast<std::int64_t>(voxels);
+        index -= voxels < static_cast<double>(index);  // rounded down: std::floor is a call
         return static_cast<std::uint64_t>(index + kHalf) & (2 * kHalf - 1);
     };
     return part(point.x()) << 42 | part(point.y()) << 21 | part(point.z());

@@ -75,5 +75,6 @@ class ScanToMap {
     points::PointRegistrationOptions pointOptions_;
     planes::PlaneMap planes_;
     points::PointMap points_;
+    Eigen::Vector3d swept_m_ = Eigen::Vector3d::Zero();  //!< where what is far was dropped last
 };
 }  // namespace delio

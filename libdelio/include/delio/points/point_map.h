@@ -40,6 +40,8 @@ class PointMap {
         Eigen::Vector3d origin;  //!< the first point: the others are seen from there
         std::array<Eigen::Vector3f, kMost> points;
         std::size_t count = 0;
+
+        bool nearest(const Eigen::Vector3d& point, float& least, Eigen::Vector3d& found) const;
     };
     PointMapOptions options_;
     std::unordered_map<std::uint64_t, Cell> cells_;
