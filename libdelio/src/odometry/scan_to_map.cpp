@@ -171,7 +171,7 @@ PlaneEstimate ScanToMap::refine(const ScanView& view, const PointEstimate& place
     const auto prior =
         planes::Prior::of(placed.pose, options_.point_sigma, options_.point_sigma_deg * kDeg);
     auto found = planes::registerToPlanes(planes_, view.thinned, prior,
-                                          2 * planeOptions_.last_kernel, planeOptions_);
+                                          planeOptions_.last_kernel, planeOptions_);
     const Eigen::Isometry3d off = placed.pose.inverse() * found.pose();
     if (!found.valid || off.translation().norm() > options_.believed ||
         angleOf(off.linear()) > options_.believed_deg * kDeg)
