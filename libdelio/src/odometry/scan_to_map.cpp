@@ -16,20 +16,24 @@ constexpr double kDeg = M_PI / 180;
 
 std::vector<OptionField> ScanToMapOptions::fields() const {
     using Me = ScanToMapOptions;
-    return {{"point_sigma", &Me::point_sigma, "m; error of a scan placed by points along each axis",
-             1e-6, 100},
-            {"point_sigma_deg", &Me::point_sigma_deg, "deg; the same about each axis", 1e-6, 180},
-            {"believed", &Me::believed,
-             "m; planes that lead farther than this from where points place the scan are not "
-             "believed",
-             0, 10},
-            {"believed_deg", &Me::believed_deg, "deg; the same of the rotation", 0, 90},
-            {"min_share", &Me::min_share,
-             "share of a scan's points that have to lie on points of the map; with less it is lost",
-             0, 1},
-            {"probe", &Me::probe,
-             "m; points see an axis if they bring the scan back that was moved along it by this",
-             0.05, 10}};
+    return {
+        {"point_sigma", &Me::point_sigma, "m; error of a scan placed by points along each axis",
+         1e-6, 100},
+        {"point_sigma_deg", &Me::point_sigma_deg,
+         "deg; the same about axes across the sensor's own, where its rings mislead", 1e-6, 180},
+        {"point_turn_deg", &Me::point_turn_deg,
+         "deg; the same about the sensor's own axis, its z: rings look all round it", 1e-6, 180},
+        {"believed", &Me::believed,
+         "m; planes that lead farther than this from where points place the scan are not "
+         "believed",
+         0, 10},
+        {"believed_deg", &Me::believed_deg, "deg; the same of the rotation", 0, 90},
+        {"min_share", &Me::min_share,
+         "share of a scan's points that have to lie on points of the map; with less it is lost", 0,
+         1},
+        {"probe", &Me::probe,
+         "m; points see an axis if they bring the scan back that was moved along it by this", 0.05,
+         10}};
 }
 
 void ScanToMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose) {
@@ -124,14 +128,18 @@ bool ScanToMap::pointsSee(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3
     return true;
 }
 
+Eigen::Vector3d ScanToMap::pointSigma_rad() const {
+    return kDeg * Eigen::Vector3d(options_.point_sigma_deg, options_.point_sigma_deg,
+                                  options_.point_turn_deg);
+}
+
 /** What the points say alone. */
 PlaneEstimate ScanToMap::byPoints(const PointEstimate& placed) const {
     PlaneEstimate estimate;
     auto& rotation = estimate.rotation;
     auto& translation = estimate.translation;
     rotation.rotation = placed.pose.linear();
-    rotation.covariance =
-        std::pow(options_.point_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity();
+    rotation.covariance = pointSigma_rad().cwiseAbs2().asDiagonal();
     rotation.matches = translation.matches = placed.matches;
     rotation.iterations = placed.iterations;
     rotation.valid = translation.valid = estimate.valid = true;
@@ -168,10 +176,9 @@ void ScanToMap::settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Is
 PlaneEstimate ScanToMap::refine(const ScanView& view, const PointEstimate& placed,
                                 const Eigen::Isometry3d& predicted,
                                 const Eigen::Isometry3d& latest) const {
-    const auto prior =
-        planes::Prior::of(placed.pose, options_.point_sigma, options_.point_sigma_deg * kDeg);
-    auto found = planes::registerToPlanes(planes_, view.thinned, prior,
-                                          planeOptions_.last_kernel, planeOptions_);
+    const auto prior = planes::Prior::of(placed.pose, options_.point_sigma, pointSigma_rad());
+    auto found = planes::registerToPlanes(planes_, view.thinned, prior, planeOptions_.last_kernel,
+                                          planeOptions_);
     const Eigen::Isometry3d off = placed.pose.inverse() * found.pose();
     if (!found.valid || off.translation().norm() > options_.believed ||
         angleOf(off.linear()) > options_.believed_deg * kDeg)

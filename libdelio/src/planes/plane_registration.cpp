@@ -62,11 +62,13 @@ double shareOnPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
 }
 
 /** Unit axes along which `information` is no better than what was known before. */
-Eigen::Matrix3Xd unobservedAxes(const Eigen::Matrix3d& information, double before) {
+Eigen::Matrix3Xd unobservedAxes(const Eigen::Matrix3d& information, const Eigen::Vector3d& before) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(information);
     // Eigenvalues rise.
     Eigen::Index count = 0;
-    while (count < 3 && !(axes.eigenvalues()[count] > before)) ++count;
+    while (count < 3 &&
+           !(axes.eigenvalues()[count] > axes.eigenvectors().col(count).cwiseAbs2().dot(before)))
+        ++count;
     return axes.eigenvectors().leftCols(count);
 }
 
@@ -92,7 +94,8 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
     rotation.observability = shares(turn.information, turn.weight);
     rotation.unobservedAxes = unobservedAxes(turn.information, prior.rotation);
     rotation.covariance =
-        noise * (turn.information + kPriorShare * prior.rotation * identity).inverse();
+        noise *
+        (turn.information + kPriorShare * Eigen::Matrix3d(prior.rotation.asDiagonal())).inverse();
     rotation.valid = true;
     auto& translation = estimate.translation;
     translation.matches = matches.size();
@@ -100,8 +103,9 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
     // Normals are known from no more independent points than residuals are; and where an edge was
     // taken for a plane, worse.
     constexpr double kEdges = 3;
-    const auto& unseen = translation.unobservedAxes = unobservedAxes(
-        move.information - kEdges / options.independent_share * move.pretended, prior.translation);
+    const auto& unseen = translation.unobservedAxes =
+        unobservedAxes(move.information - kEdges / options.independent_share * move.pretended,
+                       Eigen::Vector3d::Constant(prior.translation));
     const Eigen::Matrix3d before = unseen * unseen.transpose(), seen = identity - before,
                           inverse = seen *
                                     (move.information + kPriorShare * prior.translation * identity)
@@ -172,7 +176,8 @@ PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose,
 }
 
 Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions& options) {
-    return Prior::of(predicted, options.prior_sigma, options.prior_sigma_deg * kDeg);
+    return Prior::of(predicted, options.prior_sigma,
+                     Eigen::Vector3d::Constant(options.prior_sigma_deg * kDeg));
 }
 
 PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
