@@ -123,9 +123,6 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
 
 std::vector<OptionField> PlaneRegistrationOptions::fields() const {
     return {
-        {"first_kernel", &PlaneRegistrationOptions::first_kernel,
-         "m; widest kernel of the residuals; it follows the error of the motion model up to this",
-         1e-3, 100},
         {"last_kernel", &PlaneRegistrationOptions::last_kernel,
          "m; width to which the kernel is halved", 1e-3, 100},
         {"point_sigma", &PlaneRegistrationOptions::point_sigma, "m; a point's own error", 0, 1},
@@ -149,12 +146,6 @@ std::vector<OptionField> PlaneRegistrationOptions::fields() const {
          0, 100},
         {"search_step", &PlaneRegistrationOptions::search_step,
          "m; distance between the starts of that search", 0.5, 50}};
-}
-
-void PlaneRegistrationOptions::check(const std::string& section) const {
-    // The kernel starts between twice its last width and its first one.
-    requireOrder("twice " + section + ".last_kernel", 2 * last_kernel, section + ".first_kernel",
-                 first_kernel);
 }
 
 PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose,
