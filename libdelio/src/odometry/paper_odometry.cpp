@@ -1,6 +1,7 @@
 #include "delio/odometry/paper_odometry.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "delio/core/motion.h"
 #include "delio/core/stopwatch.h"
@@ -122,6 +123,7 @@ void PaperOdometry::takeIncrement(const PaperRegistration& registration, double 
 
 Step PaperOdometry::process(const Scan& scan) {
     Step step;
+    if (step.predicted) step.increment.covariance *= std::pow(errorGrowth(unregistered_s_), 2);
     const Interval interval = timeline_.advance(scan.stamp_s);
     step.interrupted = !interval.believed;
     if (step.interrupted) prediction_.forget();  // whether it went on meanwhile is not known
@@ -139,6 +141,7 @@ Step PaperOdometry::process(const Scan& scan) {
     });
     const auto features = extract(cloud, step);
     ++scans_;
+    unregistered_s_ += interval.elapsed_s;
     const bool usable =
         features->pattern.directions.cols() > 0 && features->lines.midpoints.cols() > 0;
     PaperRegistration registration;
@@ -172,3 +175,4 @@ Step PaperOdometry::process(const Scan& scan) {
     return step;
 }
 }  // namespace delio
+    if (!step.predicted) unregistered_s_ = 0;

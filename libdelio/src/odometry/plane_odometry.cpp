@@ -74,10 +74,10 @@ void PlaneOdometry::takeScale(double scale) {
 
 /** True where scans in a row show a place of another size than the map was made for: out of a house
  *  into the street. */
-bool PlaneOdometry::isOtherScale(const Scan& scan) {
+bool PlaneOdometry::isOtherScale() {
     constexpr double kOther = 2;
     constexpr unsigned kPatience = 10;
-    const double ratio = given_.tracker.scale > 0 ? 1 : scaleOf(scan) / scale_;
+    const double ratio = seenScale_ / scale_;
     otherScale_ = ratio >= kOther || ratio <= 1 / kOther ? otherScale_ + 1 : 0;
     return otherScale_ >= kPatience;
 }
@@ -134,7 +134,12 @@ PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d
                     ? map_.placeAnywhere(view.coarse, predicted, start_m)
                     : map_.place(view.coarse, predicted,
                                  kernel_.width(options.least_kernel, options.first_kernel));
-    const bool isUsual = best.valid && best.share >= options_.tracker.lost_share * usualShare_;
+    // After an interruption it may be anywhere: another place, which shares the ground with the
+    // map's, must not be taken for it.
+    constexpr double kFoundAgain = 0.75;
+    const bool isAnywhere = !prediction_.hasMotion();
+    const double least = (isAnywhere ? kFoundAgain : tracker.lost_share) * usualShare_;
+    const bool isUsual = best.valid && best.share >= least;
     if (view.coarse.cols() == 0 || isUsual) return best;
     step.searched = true;
     for (const auto& other : {relocalised(view, predicted, reach_m),
@@ -144,6 +149,7 @@ PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d
 }
 
 /** Once more, with the points where the motion that was found puts them. (It is the mean since the
+    best.valid = best.valid && (!isAnywhere || best.share >= least);
  *  latest scan that was registered. Extrapolated to this one it did worse: vehicles shake.) */
 void PlaneOdometry::undistortAgain(const scan::PointCloud& cloud, double since_s, ScanView& view,
                                    PlaneEstimate& estimate) {
@@ -194,6 +200,7 @@ ScanView PlaneOdometry::beginMap(const scan::PointCloud& cloud) {
     skewed_.reset();
     if (!cloud.times_s.empty()) skewed_ = cloud;
     started_ = map_.isUsable();
+    usualShare_ = 0;
     return view;
 }
 
@@ -205,7 +212,8 @@ void PlaneOdometry::processFirstOfMap(const scan::PointCloud& cloud, Step& step)
     if (!started_) step.reason = cloud.points.cols() == 0 ? "no points" : "too few points";
     first_ = false;
     step.details = detailsOf({}, {});
-    report(planes::predictedEstimate(pose_, options_.registration), pose_, view, step);
+    report(planes::predictedEstimate(pose_, options_.registration, errorGrowth(unregistered_s_)),
+           pose_, view, step);
 }
 
 /** Every other scan: undistort, place by points, leave out what moves, refine by planes, insert. */
@@ -232,7 +240,8 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
     if (detecting)
         timed(timeOf(step, "dynamic"), [&] { leaveOutDynamicObjects(voxels, placed.pose, view); });
     const auto estimate = timed(timeOf(step, "planes"), [&] {
-        if (!placed.valid) return planes::predictedEstimate(predicted, registration);
+        if (!placed.valid)
+            return planes::predictedEstimate(predicted, registration, errorGrowth(unregistered_s_));
         view.thinned =
             scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
         auto found = map_.refine(view, placed, predicted, reference_.pose);
@@ -271,6 +280,7 @@ void PlaneOdometry::giveUp(const scan::PointCloud& cloud) {
 /** What became of the scan, of which pose_ is the pose and `before` that of the one before. */
 void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3d& before,
                            ScanView& view, Step& step) const {
+    takeScale(seenScale_);  // the map may have begun with the vehicle's own body
     const auto dynamic = std::count(view.dynamic.begin(), view.dynamic.end(), std::uint8_t{1});
     step.increment = incrementOf(estimate.rotation, estimate.translation);
     step.increment.pose = normalised(before.inverse() * pose_);
@@ -285,7 +295,9 @@ Step PlaneOdometry::process(const Scan& scan) {
     Step step;
     step.times_ms = noTimes();
     const Interval interval = timeline_.advance(scan.stamp_s);
-    if (!started_) takeScale(given_.tracker.scale > 0 ? given_.tracker.scale : scaleOf(scan));
+    unregistered_s_ += interval.elapsed_s;
+    seenScale_ = given_.tracker.scale > 0 ? given_.tracker.scale : scaleOf(scan);
+    if (!started_) takeScale(seenScale_);
     auto cloud =
         timed(timeOf(step, "preprocess"), [&] { return scan::preprocess(scan, options_.scan); });
     step.notFinite = cloud.notFinite;
@@ -294,8 +306,9 @@ Step PlaneOdometry::process(const Scan& scan) {
         processNext(cloud, interval, step);
     else
         processFirstOfMap(cloud, step);
-    if (started_ && !lost_ && isOtherScale(scan)) {
-        takeScale(scaleOf(scan));
+    if (!step.predicted) unregistered_s_ = 0;
+    if (started_ && !lost_ && isOtherScale()) {
+        takeScale(seenScale_);
         beginMap(cloud);
     }
     step.details.emplace_back("scale", scale_);

@@ -136,7 +136,7 @@ std::vector<OptionField> PlaneRegistrationOptions::fields() const {
         {"independent_share", &PlaneRegistrationOptions::independent_share,
          "share of the points that count as independent in the covariance", 1e-6, 1},
         {"prior_sigma", &PlaneRegistrationOptions::prior_sigma,
-         "m; the motion model's error along each axis", 1e-6, 100},
+         "m; the motion model's error along each axis in 0.1 s; in more time more", 1e-6, 100},
         {"prior_sigma_deg", &PlaneRegistrationOptions::prior_sigma_deg,
          "deg; the same about each axis", 1e-6, 180},
         {"search_speed", &PlaneRegistrationOptions::search_speed,
@@ -149,15 +149,15 @@ std::vector<OptionField> PlaneRegistrationOptions::fields() const {
 }
 
 PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose,
-                                const PlaneRegistrationOptions& options) {
+                                const PlaneRegistrationOptions& options, double growth) {
     PlaneEstimate estimate;
     estimate.rotation.rotation = pose.linear();
     estimate.rotation.covariance =
-        std::pow(options.prior_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity();
+        std::pow(growth * options.prior_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity();
     estimate.rotation.unobservedAxes = Eigen::Matrix3d::Identity();
     estimate.translation.translation = pose.translation();
     estimate.translation.covariance =
-        options.prior_sigma * options.prior_sigma * Eigen::Matrix3d::Identity();
+        std::pow(growth * options.prior_sigma, 2) * Eigen::Matrix3d::Identity();
     estimate.translation.unobservedAxes = Eigen::Matrix3d::Identity();
     return estimate;
 }

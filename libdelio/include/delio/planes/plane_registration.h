@@ -39,9 +39,9 @@ struct PlaneEstimate {
 };
 
 /** The prediction (sensor to map), where there is nothing to register: not valid, with the motion
- *  model's variances. */
+ *  model's standard deviations, times `growth`. */
 PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose,
-                                const PlaneRegistrationOptions& options);
+                                const PlaneRegistrationOptions& options, double growth = 1);
 
 /** What the motion model knows: the prediction (sensor to map), off by prior_sigma. */
 Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions& options);
