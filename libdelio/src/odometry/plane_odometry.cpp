@@ -28,10 +28,14 @@ double& timeOf(Step& step, std::string_view stage) {
 /** The figures of both registrations. */
 std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate& placed) {
     const bool byPlanes = estimate.valid && estimate.rotation.observability[2] > 0;
+    const auto& rotation = estimate.rotation;
     return {{"inlier_ratio", placed.share},
+            {"kernel_m", placed.kernel_m},
             {"iterations", static_cast<double>(placed.iterations)},
+            {"converged", static_cast<double>(placed.converged)},
             {"plane_inlier_ratio", byPlanes ? estimate.share : 0},
-            {"plane_iterations", byPlanes ? static_cast<double>(estimate.rotation.iterations) : 0}};
+            {"plane_iterations", byPlanes ? static_cast<double>(rotation.iterations) : 0},
+            {"plane_converged", byPlanes ? static_cast<double>(rotation.converged) : 0}};
 }
 }  // namespace
 
@@ -145,11 +149,11 @@ PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d
     for (const auto& other : {relocalised(view, predicted, reach_m),
                               map_.place(view.coarse, predicted, options.first_kernel)})
         if (other.valid && (!best.valid || other.share > best.share)) best = other;
+    best.valid = best.valid && (!isAnywhere || best.share >= least);
     return best;
 }
 
 /** Once more, with the points where the motion that was found puts them. (It is the mean since the
-    best.valid = best.valid && (!isAnywhere || best.share >= least);
  *  latest scan that was registered. Extrapolated to this one it did worse: vehicles shake.) */
 void PlaneOdometry::undistortAgain(const scan::PointCloud& cloud, double since_s, ScanView& view,
                                    PlaneEstimate& estimate) {
@@ -196,11 +200,11 @@ ScanView PlaneOdometry::beginMap(const scan::PointCloud& cloud) {
     thin(view, kDense * options_.tracker.map_spacing, options_.tracker.scan_spacing);
     map_.clear();
     dynamics_.clear();
+    usualShare_ = 0;
     insert(view, pose_);
     skewed_.reset();
     if (!cloud.times_s.empty()) skewed_ = cloud;
     started_ = map_.isUsable();
-    usualShare_ = 0;
     return view;
 }
 
@@ -274,19 +278,21 @@ void PlaneOdometry::giveUp(const scan::PointCloud& cloud) {
     if (cloud.points.cols() > 0) ++misses_;
     if (misses_ < kPatience) return;
     misses_ = 0;
+    takeScale(seenScale_);  // the map may have begun with the vehicle's own body
     beginMap(cloud);
 }
 
 /** What became of the scan, of which pose_ is the pose and `before` that of the one before. */
 void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3d& before,
                            ScanView& view, Step& step) const {
-    takeScale(seenScale_);  // the map may have begun with the vehicle's own body
     const auto dynamic = std::count(view.dynamic.begin(), view.dynamic.end(), std::uint8_t{1});
     step.increment = incrementOf(estimate.rotation, estimate.translation);
     step.increment.pose = normalised(before.inverse() * pose_);
     step.quality = qualityOf(estimate.rotation, estimate.translation);
     step.predicted = !step.reason.empty();
+    const auto points = std::max<double>(1, static_cast<double>(view.dynamic.size()));
     step.details.emplace_back("dynamic", static_cast<double>(dynamic));
+    step.details.emplace_back("dynamic_share", static_cast<double>(dynamic) / points);
     step.used.points = std::move(view.points);
     step.used.dynamic = std::move(view.dynamic);
 }

@@ -223,7 +223,8 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
                                          ? Eigen::Vector3d(sums.d / sums.weight)
                                          : solveSeen(sums, options.min_observability / kPatience);
         estimate.translation += step;
-        if (step.norm() < options.converged) break;
+        estimate.converged = step.norm() < options.converged;
+        if (estimate.converged) break;
     }
     estimate.matches = sums.pairs;
     if (sums.pairs < options.min_matches) {

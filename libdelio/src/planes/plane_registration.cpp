@@ -28,21 +28,24 @@ double varianceFactor(const Correspondences& matches, const Eigen::Isometry3d& p
     return std::max(weighted / static_cast<double>(matches.size()), kLeast) / independent_share;
 }
 
-/** With one kernel, until both stand still. Returns how often correspondences were sought. */
-unsigned iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& known,
-                 double kernel, const PlaneRegistrationOptions& options, Eigen::Isometry3d& pose) {
+/** With one kernel, until both stand still. False where they do not. `iterations`: counts how often
+ *  correspondences were sought. */
+bool iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& known, double kernel,
+             const PlaneRegistrationOptions& options, Eigen::Isometry3d& pose,
+             unsigned& iterations) {
     for (unsigned i = 0; i < options.max_iterations; ++i) {
+        ++iterations;
         const auto matches = findCorrespondences(map, points, pose, kernel, options.point_sigma);
-        if (matches.size() < options.min_matches) return i + 1;
+        if (matches.size() < options.min_matches) return false;
         const Prior prior = known.times(varianceFactor(matches, pose, options.independent_share));
         const auto turn = rotationFromPlanes(matches, pose, prior);
         pose.linear() = normalised(Eigen::Matrix3d(pose.linear() * rotationExp(turn.step)));
         const auto move = translationFromPlanes(matches, pose, prior);
         pose.translation() += move.step;
         if (turn.step.norm() < options.converged_rad && move.step.norm() < options.converged_m)
-            return i + 1;
+            return true;
     }
-    return options.max_iterations;
+    return false;
 }
 
 /** How well those points that fall into voxels with a plane lie on it, 0 to 1. What is seen for the
@@ -171,9 +174,10 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
                                const PlaneRegistrationOptions& options) {
     Eigen::Isometry3d pose = prior.pose;
     unsigned iterations = 0;
+    bool converged = false;
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        iterations += iterate(map, points, prior, width, options, pose);
+        converged = iterate(map, points, prior, width, options, pose, iterations);
         if (width <= options.last_kernel) break;
     }
     const auto matches =
@@ -182,6 +186,7 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
     PlaneEstimate estimate;
     settle(matches, pose, prior, options, estimate);
     estimate.rotation.iterations = iterations;
+    estimate.rotation.converged = converged;
     estimate.share = shareOnPlanes(map, points, pose, options.last_kernel);
     return estimate;
 }
