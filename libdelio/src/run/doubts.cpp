@@ -88,7 +88,7 @@ std::vector<std::string> warningsOf(const Doubts& doubts) {
     if (static_cast<double>(doubts.weak.scans) > many)
         warnings.push_back(
             ofAll(doubts.weak, doubts.pairs) + " were observed weakly (" + weakAxesOf(doubts) +
-            " of the vehicle): what they see looks the same anywhere on these axes, "
+            "; the vehicle's axes): what they see looks the same anywhere on these axes, "
             "so that the motion there is the prediction, or a rest that may be none; "
             "take it from another sensor (wheels, GNSS, gyroscope)");
     if (doubts.interrupted.scans > 0)
