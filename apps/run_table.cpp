@@ -3,11 +3,13 @@
 #include <mrpt/core/bits_math.h>
 #include <mrpt/core/format.h>
 
+#include <cmath>
 #include <ostream>
 #include <utility>
 #include <vector>
 
 #include "delio/evaluation/rotation_angle.h"
+#include "delio/run/doubts.h"
 #include "delio/run/summary.h"
 
 namespace delio {
@@ -27,9 +29,11 @@ Rows rowsOf(const Comparison& found) {
         rows.emplace_back("KITTI translation", format("%.3f %%", kitti.t_percent));
         rows.emplace_back("KITTI rotation", format("%.3f deg/100 m", kitti.r_deg_per_100m));
     }
-    const double length_m = found.row.length_m, end_m = found.end_error_m;
-    const std::string share = length_m > 0 ? format(", %.2f %%", 100 * end_m / length_m) : "";
-    rows.emplace_back("end error", format("%.3f m%s of %.1f m", end_m, share.c_str(), length_m));
+    const double percent = found.endError_percent();
+    const std::string end = format("%.3f m", found.end_error_m);
+    rows.emplace_back("end error", std::isnan(percent) ? end + ", of a standstill"
+                                                       : end + format(", %.2f %% of %.1f m",
+                                                                      percent, found.row.length_m));
     rows.emplace_back("APE (aligned)", format("%.3f m", found.row.ape_m));
     const auto& translation = found.perScan.translation_m;
     const auto& rotation = found.perScan.rotation_deg;
@@ -46,7 +50,12 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
         out << format("%-26s %s\n", name, value.c_str());
     };
     row("scans", std::to_string(record.rows.size()));
-    row("predicted", std::to_string(record.predicted()));
+    const auto doubts = run::doubtsOf(record.rows);
+    const std::string axes = run::weakAxesOf(doubts);
+    row("predicted", run::textOf(doubts.predicted, record.predicted()));
+    row("weakly observed",
+        run::textOf(doubts.weak, doubts.weak.scans) + (axes.empty() ? "" : ", " + axes));
+    row("searched", run::textOf(doubts.searched, doubts.searched.scans));
     row("path", format("%.1f m", record.path_m()));
     row("time per scan", format("%.1f ms", record.msPerScan()));
     row("peak memory", format("%.0f MB", run::peakMemory_mb()));

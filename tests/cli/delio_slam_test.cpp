@@ -107,12 +107,13 @@ TEST_F(DelioSlam, ColumnsAndStagesAreThoseOfTheMethod) {
     const std::map<std::string, std::pair<Words, Words>> own = {
         {"accurate",
          {{"preprocess", "undistort", "thinning", "points", "dynamic", "planes", "map_update"},
-          {"dynamic", "inlier_ratio", "iterations", "plane_inlier_ratio", "plane_iterations",
-           "scale"}}},
+          {"converged", "dynamic", "dynamic_share", "inlier_ratio", "iterations", "kernel_m",
+           "plane_converged", "plane_inlier_ratio", "plane_iterations", "scale"}}},
         {"paper",
          {{"preprocess", "normals", "bilateral", "outliers", "mean_shift", "lines", "rotation",
            "translation"},
-          {"normals", "pattern", "modes", "lines"}}}};
+          {"normals", "pattern", "modes", "lines", "overlap", "rotation_iterations",
+           "rotation_converged", "translation_iterations", "translation_converged"}}}};
     for (const auto& [profile, names] : own) {
         const auto& [stages, details] = names;
         ASSERT_EQ(slam({"--profile", profile, "--force"}).exitCode, 0);

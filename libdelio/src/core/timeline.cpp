@@ -1,6 +1,7 @@
 #include "delio/core/timeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace delio {
@@ -18,14 +19,14 @@ Interval Timeline::advance(double stamp_s) {
     constexpr double kLongest_s = 1, kLongestOfUsual = 5;
     constexpr std::size_t kMemory = 9;
     const double elapsed_s = stamp_s - stamp_s_, usual = usual_s();
-    Interval interval{usual, true};
-    if (started_ && elapsed_s > 0) {
-        interval.believed = elapsed_s <= std::max(kLongest_s, kLongestOfUsual * usual);
-        if (interval.believed) {
-            interval.duration_s = elapsed_s;
-            latest_s_.push_back(elapsed_s);
-            if (latest_s_.size() > kMemory) latest_s_.pop_front();
-        }
+    Interval interval{usual, true, usual};
+    if (started_ && std::abs(elapsed_s) > std::max(kLongest_s, kLongestOfUsual * usual)) {
+        interval.believed = false;
+        interval.elapsed_s = std::abs(elapsed_s);
+    } else if (started_ && elapsed_s > 0) {
+        interval.duration_s = interval.elapsed_s = elapsed_s;
+        latest_s_.push_back(elapsed_s);
+        if (latest_s_.size() > kMemory) latest_s_.pop_front();
     }
     if (started_) sinceStart_s_ += interval.duration_s;
     started_ = true;

@@ -2,6 +2,8 @@
 
 #include <mrpt/core/format.h>
 
+#include <limits>
+
 #include "delio/evaluation/association.h"
 #include "delio/evaluation/kitti_metric.h"
 
@@ -61,6 +63,12 @@ Eigen::Vector3d endOf(const std::vector<Eigen::Isometry3d>& poses) {
     return (poses.front().inverse() * poses.back()).translation();
 }
 }  // namespace
+
+double Comparison::endError_percent() const {
+    constexpr double kLeast_m = 0.1;
+    if (!(row.length_m >= kLeast_m)) return std::numeric_limits<double>::quiet_NaN();
+    return 100 * end_error_m / row.length_m;
+}
 
 WrongFrames::WrongFrames(FrameMismatch found) : Error(textOf(found)), mismatch_(found) {}
 

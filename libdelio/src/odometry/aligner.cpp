@@ -82,7 +82,7 @@ class Alignment {
     PlaneEstimate fromEstimate(const Eigen::Isometry3d& guess) const {
         return planes::registerToPlanes(map_, points_,
                                         planes::priorOf(inMap(guess), options_.planes),
-                                        options_.planes.first_kernel, options_.planes);
+                                        options_.first_kernel, options_.planes);
     }
 
     PlaneEstimate searched(const Eigen::Isometry3d& guess) const {
@@ -151,7 +151,10 @@ std::vector<OptionField> AlignerOptions::fields() const {
             {"scan_spacing", &AlignerOptions::scan_spacing,
              "m; points that are registered are so far apart", 0.01, 10},
             {"min_agreement", &AlignerOptions::min_agreement,
-             "0 to 1; agreement of the surfaces that ends it without a search", 0, 1}};
+             "0 to 1; agreement of the surfaces that ends it without a search", 0, 1},
+            {"first_kernel", &AlignerOptions::first_kernel,
+             "m; first width of the residuals' kernel: how far the initial estimate may be off",
+             1e-3, 100}};
 }
 
 template <class List, class Options>
@@ -188,6 +191,8 @@ void AlignerOptions::saveToConfigFile(mrpt::config::CConfigFileBase& target,
 void AlignerOptions::check(const std::string& section) const {
     for (const auto& [name, stage] : stagesOf<ConstStageList>(*this))
         stage->check(section + "." + name);
+    requireOrder("twice " + section + ".plane_registration.last_kernel", 2 * planes.last_kernel,
+                 section + ".first_kernel", first_kernel);
 }
 
 mrpt::poses::CPose3DPDF::Ptr Aligner::Align3DPDF(

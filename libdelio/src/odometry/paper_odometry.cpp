@@ -1,6 +1,7 @@
 #include "delio/odometry/paper_odometry.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "delio/core/motion.h"
 #include "delio/core/stopwatch.h"
@@ -13,6 +14,18 @@ template <typename Work>
 auto stage(const char* name, Step& step, const Work& work) {
     step.times_ms.emplace_back(name, 0);
     return timed(step.times_ms.back().second, work);
+}
+
+/** The registration's own figures. */
+void note(const PaperRegistration& found, Step& step) {
+    const auto put = [&](const char* name, double value) {
+        step.details.emplace_back(name, value);
+    };
+    put("overlap", found.translation.overlap);
+    put("rotation_iterations", found.rotation.iterations);
+    put("rotation_converged", found.rotation.converged);
+    put("translation_iterations", found.translation.iterations);
+    put("translation_converged", found.translation.converged);
 }
 
 /** Rotation and translation again, now that it is known which normals were found at one place. */
@@ -110,6 +123,7 @@ void PaperOdometry::takeIncrement(const PaperRegistration& registration, double 
     const Eigen::Isometry3d sinceReference = registration.increment.pose;
     step.increment = registration.increment;
     step.increment.pose = normalised(sinceReference_.inverse() * sinceReference);
+    if (step.predicted) step.increment.covariance *= std::pow(errorGrowth(unregistered_s_), 2);
     step.quality = qualityOf(registration.rotation, registration.translation);
     // How fast it goes is not known after an interruption.
     if (!step.interrupted && registration.predictedReason.empty())
@@ -127,6 +141,7 @@ Step PaperOdometry::process(const Scan& scan) {
     if (step.interrupted) prediction_.forget();  // whether it went on meanwhile is not known
     lost_ = lost_ || step.interrupted;
     sinceReference_s_ += interval.duration_s;
+    unregistered_s_ += interval.elapsed_s;
     const Eigen::Isometry3d predicted = prediction_.predict(interval.duration_s);
     auto cloud = stage("preprocess", step, [&] {
         auto made = scan::preprocess(scan, options_->scan);
@@ -156,11 +171,13 @@ Step PaperOdometry::process(const Scan& scan) {
     step.predicted = !step.reason.empty();
     step.times_ms.emplace_back("rotation", registration.rotation_ms);
     step.times_ms.emplace_back("translation", registration.translation_ms);
+    note(registration, step);
     if (reference_)
         takeIncrement(registration, interval.duration_s, step);
     else  // nothing was measured
         step.quality.unobservedRotation = step.quality.unobservedTranslation =
             Eigen::Matrix3d::Identity();
+    if (!step.predicted) unregistered_s_ = 0;
     if (usable) {
         reference_ = features;
         sinceReference_ = Eigen::Isometry3d::Identity();

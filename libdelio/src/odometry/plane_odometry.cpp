@@ -28,10 +28,14 @@ double& timeOf(Step& step, std::string_view stage) {
 /** The figures of both registrations. */
 std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate& placed) {
     const bool byPlanes = estimate.valid && estimate.rotation.observability[2] > 0;
+    const auto& rotation = estimate.rotation;
     return {{"inlier_ratio", placed.share},
+            {"kernel_m", placed.kernel_m},
             {"iterations", static_cast<double>(placed.iterations)},
+            {"converged", static_cast<double>(placed.converged)},
             {"plane_inlier_ratio", byPlanes ? estimate.share : 0},
-            {"plane_iterations", byPlanes ? static_cast<double>(estimate.rotation.iterations) : 0}};
+            {"plane_iterations", byPlanes ? static_cast<double>(rotation.iterations) : 0},
+            {"plane_converged", byPlanes ? static_cast<double>(rotation.converged) : 0}};
 }
 }  // namespace
 
@@ -74,10 +78,10 @@ void PlaneOdometry::takeScale(double scale) {
 
 /** True where scans in a row show a place of another size than the map was made for: out of a house
  *  into the street. */
-bool PlaneOdometry::isOtherScale(const Scan& scan) {
+bool PlaneOdometry::isOtherScale() {
     constexpr double kOther = 2;
     constexpr unsigned kPatience = 10;
-    const double ratio = given_.tracker.scale > 0 ? 1 : scaleOf(scan) / scale_;
+    const double ratio = seenScale_ / scale_;
     otherScale_ = ratio >= kOther || ratio <= 1 / kOther ? otherScale_ + 1 : 0;
     return otherScale_ >= kPatience;
 }
@@ -134,12 +138,18 @@ PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d
                     ? map_.placeAnywhere(view.coarse, predicted, start_m)
                     : map_.place(view.coarse, predicted,
                                  kernel_.width(options.least_kernel, options.first_kernel));
-    const bool isUsual = best.valid && best.share >= options_.tracker.lost_share * usualShare_;
+    // After an interruption it may be anywhere: another place, which shares the ground with the
+    // map's, must not be taken for it.
+    constexpr double kFoundAgain = 0.75;
+    const bool isAnywhere = !prediction_.hasMotion();
+    const double least = (isAnywhere ? kFoundAgain : tracker.lost_share) * usualShare_;
+    const bool isUsual = best.valid && best.share >= least;
     if (view.coarse.cols() == 0 || isUsual) return best;
     step.searched = true;
     for (const auto& other : {relocalised(view, predicted, reach_m),
                               map_.place(view.coarse, predicted, options.first_kernel)})
         if (other.valid && (!best.valid || other.share > best.share)) best = other;
+    best.valid = best.valid && (!isAnywhere || best.share >= least);
     return best;
 }
 
@@ -190,6 +200,7 @@ ScanView PlaneOdometry::beginMap(const scan::PointCloud& cloud) {
     thin(view, kDense * options_.tracker.map_spacing, options_.tracker.scan_spacing);
     map_.clear();
     dynamics_.clear();
+    usualShare_ = 0;
     insert(view, pose_);
     skewed_.reset();
     if (!cloud.times_s.empty()) skewed_ = cloud;
@@ -205,7 +216,8 @@ void PlaneOdometry::processFirstOfMap(const scan::PointCloud& cloud, Step& step)
     if (!started_) step.reason = cloud.points.cols() == 0 ? "no points" : "too few points";
     first_ = false;
     step.details = detailsOf({}, {});
-    report(planes::predictedEstimate(pose_, options_.registration), pose_, view, step);
+    report(planes::predictedEstimate(pose_, options_.registration, errorGrowth(unregistered_s_)),
+           pose_, view, step);
 }
 
 /** Every other scan: undistort, place by points, leave out what moves, refine by planes, insert. */
@@ -232,7 +244,8 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
     if (detecting)
         timed(timeOf(step, "dynamic"), [&] { leaveOutDynamicObjects(voxels, placed.pose, view); });
     const auto estimate = timed(timeOf(step, "planes"), [&] {
-        if (!placed.valid) return planes::predictedEstimate(predicted, registration);
+        if (!placed.valid)
+            return planes::predictedEstimate(predicted, registration, errorGrowth(unregistered_s_));
         view.thinned =
             scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
         auto found = map_.refine(view, placed, predicted, reference_.pose);
@@ -265,6 +278,7 @@ void PlaneOdometry::giveUp(const scan::PointCloud& cloud) {
     if (cloud.points.cols() > 0) ++misses_;
     if (misses_ < kPatience) return;
     misses_ = 0;
+    takeScale(seenScale_);  // the map may have begun with the vehicle's own body
     beginMap(cloud);
 }
 
@@ -276,7 +290,9 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3
     step.increment.pose = normalised(before.inverse() * pose_);
     step.quality = qualityOf(estimate.rotation, estimate.translation);
     step.predicted = !step.reason.empty();
+    const auto points = std::max<double>(1, static_cast<double>(view.dynamic.size()));
     step.details.emplace_back("dynamic", static_cast<double>(dynamic));
+    step.details.emplace_back("dynamic_share", static_cast<double>(dynamic) / points);
     step.used.points = std::move(view.points);
     step.used.dynamic = std::move(view.dynamic);
 }
@@ -285,7 +301,9 @@ Step PlaneOdometry::process(const Scan& scan) {
     Step step;
     step.times_ms = noTimes();
     const Interval interval = timeline_.advance(scan.stamp_s);
-    if (!started_) takeScale(given_.tracker.scale > 0 ? given_.tracker.scale : scaleOf(scan));
+    unregistered_s_ += interval.elapsed_s;
+    seenScale_ = given_.tracker.scale > 0 ? given_.tracker.scale : scaleOf(scan);
+    if (!started_) takeScale(seenScale_);
     auto cloud =
         timed(timeOf(step, "preprocess"), [&] { return scan::preprocess(scan, options_.scan); });
     step.notFinite = cloud.notFinite;
@@ -294,8 +312,9 @@ Step PlaneOdometry::process(const Scan& scan) {
         processNext(cloud, interval, step);
     else
         processFirstOfMap(cloud, step);
-    if (started_ && !lost_ && isOtherScale(scan)) {
-        takeScale(scaleOf(scan));
+    if (!step.predicted) unregistered_s_ = 0;
+    if (started_ && !lost_ && isOtherScale()) {
+        takeScale(seenScale_);
         beginMap(cloud);
     }
     step.details.emplace_back("scale", scale_);

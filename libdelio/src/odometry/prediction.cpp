@@ -1,5 +1,7 @@
 #include "delio/odometry/prediction.h"
 
+#include <algorithm>
+
 #include "delio/core/motion.h"
 
 namespace delio {
@@ -23,5 +25,10 @@ Eigen::Isometry3d LinearPrediction::predict(double duration_s) const {
 void LinearPrediction::observe(const Eigen::Isometry3d& increment, double duration_s) {
     latestFirst_.push_front({increment, duration_s});
     if (latestFirst_.size() > frames_) latestFirst_.pop_back();
+}
+
+double errorGrowth(double unregistered_s) {
+    constexpr double kOfSigma_s = 0.1, kMost_s = 60;
+    return std::clamp(unregistered_s, kOfSigma_s, kMost_s) / kOfSigma_s;
 }
 }  // namespace delio

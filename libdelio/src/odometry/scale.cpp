@@ -29,8 +29,8 @@ PlaneOdometryOptions atScale(PlaneOdometryOptions options, double scale) {
           &options.tracker.doubt_spacing, &options.scanToMap.believed, &options.scanToMap.probe,
           &options.pointMap.voxel_size, &options.pointMap.spacing, &options.points.first_kernel,
           &options.points.least_kernel, &options.points.last_kernel, &options.points.converged_m,
-          &options.map.voxel_size, &options.map.max_thickness, &options.registration.first_kernel,
-          &options.registration.last_kernel, &options.registration.search_step})
+          &options.map.voxel_size, &options.map.max_thickness, &options.registration.last_kernel,
+          &options.registration.search_step})
         *length *= scale;
     return options;
 }

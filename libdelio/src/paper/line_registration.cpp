@@ -183,7 +183,8 @@ std::vector<OptionField> LineRegistrationOptions::fields() const {
          "m; lines whose midpoints are nearer to each other lie on a surface that both scans see",
          0, 100},
         {"prior_sigma", &LineRegistrationOptions::prior_sigma,
-         "m; the motion model's error along such a direction", 1e-6, 100},
+         "m; the motion model's error along such a direction in 0.1 s; in more time more", 1e-6,
+         100},
         {"search_speed", &LineRegistrationOptions::search_speed,
          "m/s; where the motion is not known, what can be driven at this speed is searched", 0,
          1000},
@@ -222,7 +223,8 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
                                          ? Eigen::Vector3d(sums.d / sums.weight)
                                          : solveSeen(sums, options.min_observability / kPatience);
         estimate.translation += step;
-        if (step.norm() < options.converged) break;
+        estimate.converged = step.norm() < options.converged;
+        if (estimate.converged) break;
     }
     estimate.matches = sums.pairs;
     if (sums.pairs < options.min_matches) {

@@ -118,6 +118,7 @@ void iterate(const Pattern& from, const Pattern& to, double kernel_deg,
     const double enough = (1 - 1e-6) * options.min_normals * static_cast<double>(to.weights.sum()) /
                           static_cast<double>(to.normals);
     double step = M_PI;
+    estimate.converged = false;
     while (estimate.iterations < options.max_iterations && step > options.converged_deg * kDeg) {
         const Pairing pairs =
             kernel_deg > 0 ? pairDensities(from, tree, to, estimate.rotation, kernel_deg * kDeg)
@@ -131,6 +132,7 @@ void iterate(const Pattern& from, const Pattern& to, double kernel_deg,
         step = Eigen::AngleAxisd(estimate.rotation.transpose() * next).angle();
         estimate.rotation = next;
     }
+    estimate.converged = step <= options.converged_deg * kDeg;
 }
 
 /** Moves the estimate back to the prediction about the axes that the pattern does not fix, or about

@@ -124,8 +124,8 @@ RotationEstimate registerInPlace(const Pattern& from, const Pattern& to,
     unsigned iterations = 0;
     for (double kernel_deg = options.kernel_deg;; kernel_deg /= 2) {
         kernel_deg = std::max(kernel_deg, options.last_kernel_deg);
-        for (double step = M_PI;
-             iterations < options.max_iterations && step > options.converged_deg * kDeg;) {
+        double step = M_PI;
+        while (iterations < options.max_iterations && step > options.converged_deg * kDeg) {
             const Moment sum = momentOf(from, to, pairs, estimate.rotation, kernel_deg * kDeg);
             if (!(sum.weight > 0)) return found;
             const Eigen::Matrix3d next = rotationOf(sum.moment);
@@ -134,6 +134,7 @@ RotationEstimate registerInPlace(const Pattern& from, const Pattern& to,
             estimate.residual_rad = std::sqrt(sum.squaredAngles / sum.weight);
             ++iterations;
         }
+        estimate.converged = step <= options.converged_deg * kDeg;
         if (kernel_deg <= options.last_kernel_deg) break;
     }
     estimate.iterations += iterations;

@@ -28,21 +28,24 @@ double varianceFactor(const Correspondences& matches, const Eigen::Isometry3d& p
     return std::max(weighted / static_cast<double>(matches.size()), kLeast) / independent_share;
 }
 
-/** With one kernel, until both stand still. Returns how often correspondences were sought. */
-unsigned iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& known,
-                 double kernel, const PlaneRegistrationOptions& options, Eigen::Isometry3d& pose) {
+/** With one kernel, until both stand still. False where they do not. `iterations`: counts how often
+ *  correspondences were sought. */
+bool iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& known, double kernel,
+             const PlaneRegistrationOptions& options, Eigen::Isometry3d& pose,
+             unsigned& iterations) {
     for (unsigned i = 0; i < options.max_iterations; ++i) {
+        ++iterations;
         const auto matches = findCorrespondences(map, points, pose, kernel, options.point_sigma);
-        if (matches.size() < options.min_matches) return i + 1;
+        if (matches.size() < options.min_matches) return false;
         const Prior prior = known.times(varianceFactor(matches, pose, options.independent_share));
         const auto turn = rotationFromPlanes(matches, pose, prior);
         pose.linear() = normalised(Eigen::Matrix3d(pose.linear() * rotationExp(turn.step)));
         const auto move = translationFromPlanes(matches, pose, prior);
         pose.translation() += move.step;
         if (turn.step.norm() < options.converged_rad && move.step.norm() < options.converged_m)
-            return i + 1;
+            return true;
     }
-    return options.max_iterations;
+    return false;
 }
 
 /** How well those points that fall into voxels with a plane lie on it, 0 to 1. What is seen for the
@@ -127,9 +130,6 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
 
 std::vector<OptionField> PlaneRegistrationOptions::fields() const {
     return {
-        {"first_kernel", &PlaneRegistrationOptions::first_kernel,
-         "m; widest kernel of the residuals; it follows the error of the motion model up to this",
-         1e-3, 100},
         {"last_kernel", &PlaneRegistrationOptions::last_kernel,
          "m; width to which the kernel is halved", 1e-3, 100},
         {"point_sigma", &PlaneRegistrationOptions::point_sigma, "m; a point's own error", 0, 1},
@@ -143,7 +143,7 @@ std::vector<OptionField> PlaneRegistrationOptions::fields() const {
         {"independent_share", &PlaneRegistrationOptions::independent_share,
          "share of the points that count as independent in the covariance", 1e-6, 1},
         {"prior_sigma", &PlaneRegistrationOptions::prior_sigma,
-         "m; the motion model's error along each axis", 1e-6, 100},
+         "m; the motion model's error along each axis in 0.1 s; in more time more", 1e-6, 100},
         {"prior_sigma_deg", &PlaneRegistrationOptions::prior_sigma_deg,
          "deg; the same about each axis", 1e-6, 180},
         {"search_speed", &PlaneRegistrationOptions::search_speed,
@@ -155,22 +155,16 @@ std::vector<OptionField> PlaneRegistrationOptions::fields() const {
          "m; distance between the starts of that search", 0.5, 50}};
 }
 
-void PlaneRegistrationOptions::check(const std::string& section) const {
-    // The kernel starts between twice its last width and its first one.
-    requireOrder("twice " + section + ".last_kernel", 2 * last_kernel, section + ".first_kernel",
-                 first_kernel);
-}
-
 PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose,
-                                const PlaneRegistrationOptions& options) {
+                                const PlaneRegistrationOptions& options, double growth) {
     PlaneEstimate estimate;
     estimate.rotation.rotation = pose.linear();
     estimate.rotation.covariance =
-        std::pow(options.prior_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity();
+        std::pow(growth * options.prior_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity();
     estimate.rotation.unobservedAxes = Eigen::Matrix3d::Identity();
     estimate.translation.translation = pose.translation();
     estimate.translation.covariance =
-        options.prior_sigma * options.prior_sigma * Eigen::Matrix3d::Identity();
+        std::pow(growth * options.prior_sigma, 2) * Eigen::Matrix3d::Identity();
     estimate.translation.unobservedAxes = Eigen::Matrix3d::Identity();
     return estimate;
 }
@@ -185,9 +179,10 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
                                const PlaneRegistrationOptions& options) {
     Eigen::Isometry3d pose = prior.pose;
     unsigned iterations = 0;
+    bool converged = false;
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        iterations += iterate(map, points, prior, width, options, pose);
+        converged = iterate(map, points, prior, width, options, pose, iterations);
         if (width <= options.last_kernel) break;
     }
     const auto matches =
@@ -196,6 +191,7 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
     PlaneEstimate estimate;
     settle(matches, pose, prior, options, estimate);
     estimate.rotation.iterations = iterations;
+    estimate.rotation.converged = converged;
     estimate.share = shareOnPlanes(map, points, pose, options.last_kernel);
     return estimate;
 }

@@ -107,8 +107,8 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
                                const PointRegistrationOptions& options) {
     PointEstimate estimate;
     estimate.pose = predicted;
-    for (double width = std::max(kernel, options.last_kernel);;
-         width = std::max(width / 2, options.last_kernel)) {
+    estimate.kernel_m = std::max(kernel, options.last_kernel);
+    for (double width = estimate.kernel_m;; width = std::max(width / 2, options.last_kernel)) {
         // Only the last kernel has to converge; the others lead into its reach.
         constexpr double kRough = 0.02;
         const bool isLast = width <= options.last_kernel;
@@ -118,10 +118,12 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
             const auto pairs = pairsAt(map, points, before, width);
             if (!solve(points, pairs, options.min_matches, estimate.pose)) {
                 estimate.pose = predicted;
+                estimate.converged = false;
                 return estimate;
             }
             ++estimate.iterations;
-            if (distanceBetween(before, estimate.pose) < enough) break;
+            estimate.converged = distanceBetween(before, estimate.pose) < enough;
+            if (estimate.converged) break;
         }
         if (isLast) break;
     }

@@ -18,7 +18,23 @@ Stretches stretchesOf(const std::vector<RunRow>& rows, const IsOfKind& isOfKind)
     return found;
 }
 
-std::string countOf(const Stretches& found, std::size_t pairs) {
+bool isWeak(const Step& step) {
+    return !step.predicted && (step.quality.unobservedRotation.cols() > 0 ||
+                               step.quality.unobservedTranslation.cols() > 0);
+}
+
+/** Counts each of the vehicle's axes that one of these, of the sensor, is nearest to. */
+void count(const Eigen::Matrix3Xd& axes, const RunRow& row, std::array<std::size_t, 3>& counts) {
+    std::array<bool, 3> open{};
+    for (Eigen::Index i = 0; i < axes.cols(); ++i) {
+        Eigen::Index nearest = 0;
+        (row.sensorPose.linear() * axes.col(i)).cwiseAbs().maxCoeff(&nearest);
+        open[static_cast<std::size_t>(nearest)] = true;
+    }
+    for (std::size_t k = 0; k < 3; ++k) counts[k] += open[k];
+}
+
+std::string ofAll(const Stretches& found, std::size_t pairs) {
     return mrpt::format("%zu of %zu scans (at most %zu in a row, from scan %zu)", found.scans,
                         pairs, found.longest, found.from);
 }
@@ -28,12 +44,36 @@ Doubts doubtsOf(const std::vector<RunRow>& rows) {
     Doubts doubts;
     doubts.pairs = rows.empty() ? 0 : rows.size() - 1;
     doubts.predicted = stretchesOf(rows, [](const Step& step) { return step.predicted; });
-    doubts.weak = stretchesOf(rows, [](const Step& step) {
-        return !step.predicted && (step.quality.unobservedRotation.cols() > 0 ||
-                                   step.quality.unobservedTranslation.cols() > 0);
-    });
+    doubts.weak = stretchesOf(rows, isWeak);
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        const Step& step = rows[i].report.step;
+        if (!isWeak(step)) continue;
+        count(step.quality.unobservedTranslation, rows[i], doubts.weakAlong);
+        count(step.quality.unobservedRotation, rows[i], doubts.weakAbout);
+    }
+    doubts.searched = stretchesOf(rows, [](const Step& step) { return step.searched; });
     doubts.interrupted = stretchesOf(rows, [](const Step& step) { return step.interrupted; });
     return doubts;
+}
+
+std::string textOf(const Stretches& found, std::size_t scans) {
+    const auto count = std::to_string(scans);
+    if (found.longest == 0) return count;
+    return count +
+           mrpt::format(", at most %zu in a row (from scan %zu)", found.longest, found.from);
+}
+
+std::string weakAxesOf(const Doubts& doubts) {
+    std::string text;
+    const auto put = [&](const char* how, const std::array<std::size_t, 3>& counts) {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (counts[k] > 0)
+                text += mrpt::format("%s%s %c in %zu", text.empty() ? "" : ", ", how, "xyz"[k],
+                                     counts[k]);
+    };
+    put("along", doubts.weakAlong);
+    put("about", doubts.weakAbout);
+    return text;
 }
 
 std::vector<std::string> warningsOf(const Doubts& doubts) {
@@ -41,17 +81,21 @@ std::vector<std::string> warningsOf(const Doubts& doubts) {
     const double many = kMany * static_cast<double>(doubts.pairs);
     std::vector<std::string> warnings;
     if (static_cast<double>(doubts.predicted.scans) > many)
-        warnings.push_back(countOf(doubts.predicted, doubts.pairs) +
-                           " could not be registered: their motion is a prediction; scans.csv says "
-                           "why");
+        warnings.push_back(ofAll(doubts.predicted, doubts.pairs) +
+                           " could not be registered: their motion is a prediction, and the poses "
+                           "before and after a long row of them do not belong together; the column "
+                           "reason of scans.csv says why");
     if (static_cast<double>(doubts.weak.scans) > many)
-        warnings.push_back(countOf(doubts.weak, doubts.pairs) +
-                           " were observed weakly: along the axes in scans.csv the motion is a "
-                           "prediction");
+        warnings.push_back(
+            ofAll(doubts.weak, doubts.pairs) + " were observed weakly (" + weakAxesOf(doubts) +
+            "; the vehicle's axes): what they see looks the same anywhere on these axes, "
+            "so that the motion there is the prediction, or a rest that may be none; "
+            "take it from another sensor (wheels, GNSS, gyroscope)");
     if (doubts.interrupted.scans > 0)
-        warnings.push_back(countOf(doubts.interrupted, doubts.pairs) +
+        warnings.push_back(ofAll(doubts.interrupted, doubts.pairs) +
                            " follow a pause, or a clock that was set: the motion before them was "
-                           "searched for, not predicted");
+                           "searched for; where it was not found (predicted in scans.csv) the "
+                           "drive begins anew");
     return warnings;
 }
 }  // namespace delio::run

@@ -29,7 +29,7 @@ Summary::Figures figuresOf(const evaluation::Comparison& comparison) {
     put("r_deg_per_100m", row.kitti.r_deg_per_100m);
     put("ape_m", row.ape_m);
     put("end_error_m", comparison.end_error_m);
-    put("end_error_percent", 100 * comparison.end_error_m / row.length_m);
+    put("end_error_percent", comparison.endError_percent());
     put("scan_translation_median_m", comparison.perScan.translation_m.median);
     put("scan_translation_p95_m", comparison.perScan.translation_m.p95);
     put("scan_rotation_median_deg", comparison.perScan.rotation_deg.median);
@@ -89,6 +89,17 @@ void write(YAML::Emitter& yaml, const char* key, const Summary::Figures& figures
     yaml << YAML::EndMap;
 }
 
+void write(YAML::Emitter& yaml, const char* key, const std::array<std::size_t, 3>& counts) {
+    yaml << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginMap;
+    for (std::size_t k = 0; k < 3; ++k) write(yaml, std::string(1, "xyz"[k]), counts[k]);
+    yaml << YAML::EndMap;
+}
+
+std::array<std::size_t, 3> countsIn(const YAML::Node& node) {
+    if (!node) return {};
+    return {node["x"].as<std::size_t>(), node["y"].as<std::size_t>(), node["z"].as<std::size_t>()};
+}
+
 Summary::Figures figuresIn(const YAML::Node& node) {
     Summary::Figures figures;
     for (const auto& entry : node)
@@ -117,7 +128,10 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.weakly_observed = doubts.weak.scans;
     summary.longest_weakly_observed = doubts.weak.longest;
     summary.interrupted = doubts.interrupted.scans;
+    summary.weakly_observed_along = doubts.weakAlong;
+    summary.weakly_observed_about = doubts.weakAbout;
     summary.searched = countOf(record, &Step::searched);
+    summary.longest_searched = doubts.searched.longest;
     summary.deskewed = countOf(record, &Step::deskewed);
     summary.path_m = record.path_m();
     summary.vertical_correction_deg = record.options.scan().vertical_correction_deg;
@@ -153,8 +167,11 @@ void writeSummary(const Summary& s, const std::string& path) {
     write(yaml, "longest_predicted", s.longest_predicted);
     write(yaml, "weakly_observed", s.weakly_observed);
     write(yaml, "longest_weakly_observed", s.longest_weakly_observed);
-    write(yaml, "interrupted", s.interrupted);
+    write(yaml, "weakly_observed_along", s.weakly_observed_along);
+    write(yaml, "weakly_observed_about", s.weakly_observed_about);
     write(yaml, "searched", s.searched);
+    write(yaml, "longest_searched", s.longest_searched);
+    write(yaml, "interrupted", s.interrupted);
     write(yaml, "path_m", s.path_m);
     write(yaml, "vertical_correction_deg", s.vertical_correction_deg);
     write(yaml, "deskewed", s.deskewed);
@@ -193,8 +210,11 @@ Summary readSummary(const std::string& path) {
         s.longest_predicted = node["longest_predicted"].as<std::size_t>(0);
         s.weakly_observed = node["weakly_observed"].as<std::size_t>(0);
         s.longest_weakly_observed = node["longest_weakly_observed"].as<std::size_t>(0);
-        s.interrupted = node["interrupted"].as<std::size_t>(0);
+        s.weakly_observed_along = countsIn(node["weakly_observed_along"]);
+        s.weakly_observed_about = countsIn(node["weakly_observed_about"]);
         s.searched = node["searched"].as<std::size_t>(0);
+        s.longest_searched = node["longest_searched"].as<std::size_t>(0);
+        s.interrupted = node["interrupted"].as<std::size_t>(0);
         s.deskewed = node["deskewed"].as<std::size_t>();
         s.path_m = node["path_m"].as<double>();
         s.vertical_correction_deg = node["vertical_correction_deg"].as<double>();

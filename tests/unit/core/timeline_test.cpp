@@ -34,6 +34,7 @@ TEST(Timeline, APauseOrAClockThatIsSetForwardIsNot) {
         const auto interval = timeline.advance(1 + jump_s);
         EXPECT_FALSE(interval.believed) << jump_s;
         EXPECT_EQ(interval.duration_s, 0.25);
+        EXPECT_EQ(interval.elapsed_s, jump_s);
         EXPECT_EQ(timeline.sinceStart_s(), 1.25);
         EXPECT_TRUE(timeline.advance(1.25 + jump_s).believed);
     }
@@ -65,9 +66,21 @@ TEST(Timeline, AClockThatIsSetBackCountsOnFromThere) {
     timeline.advance(1000.5);
     const auto back = timeline.advance(3);
     EXPECT_EQ(back.duration_s, 0.5);  // what is usual here
-    EXPECT_TRUE(back.believed);
+    EXPECT_FALSE(back.believed);
+    EXPECT_EQ(back.elapsed_s, 997.5);
     EXPECT_EQ(timeline.advance(3.25).duration_s, 0.25);
     EXPECT_NEAR(timeline.sinceStart_s(), 0.5 + 0.5 + 0.25, 1e-12);
+}
+
+// Two clocks that differ a little: no pause.
+TEST(Timeline, AStepBackOfLessThanASecondIsNoInterruption) {
+    Timeline timeline;
+    timeline.advance(1000);
+    timeline.advance(1000.1);
+    const auto back = timeline.advance(999.5);
+    EXPECT_TRUE(back.believed);
+    EXPECT_NEAR(back.duration_s, 0.1, 1e-9);
+    EXPECT_EQ(back.elapsed_s, back.duration_s);
 }
 
 TEST(Timeline, TimeGoesOnWhateverTheStampsAre) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "delio/core/error.h"
 #include "poses.h"
 
@@ -56,6 +58,15 @@ TEST(Comparison, TheEndErrorIsSeenFromTheFirstPoses) {
     for (auto& pose : moved.poses) pose = test::poseAtDeg(40, -3, 2, 70, 5, -4) * pose;
     moved.poses.back() = moved.poses.back() * test::poseAt(0, 0.3, 0.4);
     EXPECT_NEAR(compare(straight(1, 30), moved, {}).end_error_m, 0.5, 1e-9);
+}
+
+TEST(Comparison, OfAStandstillThereIsNoPercentage) {
+    EXPECT_NEAR(compare(straight(1, 31), straight(1.01, 31), {}).endError_percent(), 1, 1e-9);
+    for (const double step_m : {0.0, 1e-15, 1e-4}) {
+        const auto compared = compare(straight(step_m, 30), straight(0.01, 30), {});
+        EXPECT_NEAR(compared.end_error_m, 0.29, 0.01);
+        EXPECT_TRUE(std::isnan(compared.endError_percent())) << step_m;
+    }
 }
 
 TEST(Comparison, ChoosesLengthsThatTheDriveHas) {

@@ -43,11 +43,12 @@ TEST(AlignerOptions, OfTheirOwnGoTogether) { EXPECT_EQ(errorOfAligning({}), "");
 
 TEST(AlignerOptions, AKernelThatWouldWidenIsRefusedWhenAligning) {
     // Loading asks nothing: of two that change, one comes first.
-    const auto options = loaded("[my.plane_registration]\nfirst_kernel = 0.5\nlast_kernel = 0.3\n");
+    const auto options =
+        loaded("[my]\nfirst_kernel = 0.5\n[my.plane_registration]\nlast_kernel = 0.3\n");
     EXPECT_EQ(options.planes.last_kernel, 0.3);
     EXPECT_EQ(errorOfAligning(options),
               "option twice Aligner.plane_registration.last_kernel (0.6) has to be at most "
-              "Aligner.plane_registration.first_kernel (0.5)");
+              "Aligner.first_kernel (0.5)");
     EXPECT_EQ(errorOfAligning(loaded("[my.plane_registration]\nlast_kernel = 0.5\n")), "");
 }
 

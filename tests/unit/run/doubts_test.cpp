@@ -6,7 +6,8 @@ namespace {
 using namespace delio;
 using run::RunRow;
 
-/** Scans 5, 6, 7 ...: '.' registered, 'p' predicted, 'w' an axis not observed, 'i' interrupted. */
+/** Scans 5, 6, 7 ...: '.' registered, 'p' predicted, 'w' an axis not observed, 'i' interrupted, 's'
+ *  searched. */
 std::vector<RunRow> rowsOf(const std::string& kinds) {
     std::vector<RunRow> rows;
     for (const char kind : kinds) {
@@ -15,6 +16,7 @@ std::vector<RunRow> rowsOf(const std::string& kinds) {
         Step& step = row.report.step;
         step.predicted = kind == 'p';
         step.interrupted = kind == 'i';
+        step.searched = kind == 's';
         if (kind == 'w' || kind == 'p') step.quality.unobservedTranslation.setIdentity(3, 1);
         rows.push_back(row);
     }
@@ -32,6 +34,35 @@ TEST(Doubts, AreCountedWithTheirLongestStretch) {
     EXPECT_EQ(doubts.weak.from, 14U);
     EXPECT_EQ(doubts.interrupted.scans, 1U);
     EXPECT_EQ(doubts.interrupted.from, 18U);
+}
+
+TEST(Doubts, SearchedScansAreCountedAndNoWarning) {
+    const auto doubts = run::doubtsOf(rowsOf("..ss.sss.."));
+    EXPECT_EQ(doubts.searched.scans, 5U);
+    EXPECT_EQ(doubts.searched.longest, 3U);
+    EXPECT_EQ(doubts.searched.from, 10U);
+    EXPECT_TRUE(run::warningsOf(doubts).empty());
+    EXPECT_EQ(run::textOf(doubts.searched, 5), "5, at most 3 in a row (from scan 10)");
+    EXPECT_EQ(run::textOf(doubts.predicted, 0), "0");
+}
+
+TEST(Doubts, WeakAxesAreTheVehicles) {
+    auto rows = rowsOf(".wwww.");
+    EXPECT_EQ(run::weakAxesOf(run::doubtsOf(rows)), "along x in 4");
+    // A sensor that looks to the left: its x is the vehicle's y.
+    rows[1].sensorPose.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+    // Two that are open, neither along one of the vehicle's; both nearest to x count once.
+    auto& axes = rows[2].report.step.quality.unobservedTranslation;
+    axes.resize(3, 2);
+    axes << 0.8, -0.8, 0.6, 0.6, 0, 0;
+    rows[3].report.step.quality.unobservedTranslation.resize(3, 0);
+    rows[3].report.step.quality.unobservedRotation = -Eigen::Vector3d::UnitZ();
+    const auto doubts = run::doubtsOf(rows);
+    EXPECT_EQ(doubts.weak.scans, 4U);
+    EXPECT_EQ(run::weakAxesOf(doubts), "along x in 2, along y in 1, about z in 1");
+    const auto warnings = run::warningsOf(doubts);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("along x in 2, along y in 1, about z in 1"), std::string::npos);
 }
 
 TEST(Doubts, TheFirstScanHasNothingBeforeIt) {

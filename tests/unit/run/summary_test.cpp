@@ -23,8 +23,11 @@ Summary anySummary() {
     s.longest_predicted = 1000000;
     s.weakly_observed = 400000;
     s.longest_weakly_observed = 12;
+    s.weakly_observed_along = {380000, 0, 2};
+    s.weakly_observed_about = {0, 7, 100000};
     s.interrupted = 3;
     s.searched = 11;
+    s.longest_searched = 5;
     s.deskewed = 200000;
     s.path_m = 0.1 + 0.2;
     s.vertical_correction_deg = -0.205;
@@ -54,8 +57,11 @@ void expectSame(const Summary& a, const Summary& b) {
     EXPECT_EQ(a.longest_predicted, b.longest_predicted);
     EXPECT_EQ(a.weakly_observed, b.weakly_observed);
     EXPECT_EQ(a.longest_weakly_observed, b.longest_weakly_observed);
+    EXPECT_EQ(a.weakly_observed_along, b.weakly_observed_along);
+    EXPECT_EQ(a.weakly_observed_about, b.weakly_observed_about);
     EXPECT_EQ(a.interrupted, b.interrupted);
     EXPECT_EQ(a.searched, b.searched);
+    EXPECT_EQ(a.longest_searched, b.longest_searched);
     EXPECT_EQ(a.deskewed, b.deskewed);
     EXPECT_EQ(a.path_m, b.path_m);
     EXPECT_EQ(a.vertical_correction_deg, b.vertical_correction_deg);
@@ -143,6 +149,7 @@ TEST(Summary, SumsUpARecord) {
     EXPECT_EQ(summary.scans, 4U);
     EXPECT_EQ(summary.predicted, 1U);
     EXPECT_EQ(summary.searched, 2U);
+    EXPECT_EQ(summary.longest_searched, 2U);
     EXPECT_EQ(summary.deskewed, 3U);
     EXPECT_EQ(summary.path_m, 6);
     EXPECT_EQ(summary.ms_per_scan, 1 + 15 + 2);  // the map is told apart

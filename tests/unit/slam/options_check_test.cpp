@@ -49,11 +49,6 @@ struct Contradiction {
 const Contradiction kContradictions[] = {
     {"accurate", {"scan.min_range=101"}, "scan.min_range (101)", "scan.max_range (100)", true},
     {"paper", {"scan.max_range=2"}, "scan.min_range (2.5)", "scan.max_range (2)", true},
-    {"accurate",
-     {"plane_registration.last_kernel=0.6"},
-     "twice plane_registration.last_kernel (1.2)",
-     "plane_registration.first_kernel (1)",
-     true},
     {"paper",
      {"pattern_registration.last_kernel_deg=9"},
      "pattern_registration.last_kernel_deg (9)",

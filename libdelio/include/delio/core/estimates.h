@@ -17,6 +17,7 @@ struct RotationEstimate {
     std::size_t matches = 0;
     double residual_rad = 0;  //!< weighted root mean square angle of the pairs
     unsigned iterations = 0;
+    bool converged = false;  //!< false: ended by the most iterations that are allowed
     /** False: too few normals, or a rotation too far from the prediction; it is the prediction. */
     bool valid = false;
     bool tooFar = false;
@@ -40,6 +41,7 @@ struct TranslationEstimate {
     double overlap = 0;
     double residual_m = 0;  //!< root mean square distance of the matched lines
     unsigned iterations = 0;
+    bool converged = false;
     bool valid = false;  //!< false: too few lines or matches; translation is the prediction
 };
 

@@ -8,6 +8,9 @@ struct Interval {
     /** False after a pause, or where a clock was set: `duration_s` is the usual one then, and the
      *  motion in between is not known. */
     bool believed = true;
+    /** What the stamps say, where that is not believed: the motion in between may have taken so
+     *  long; else the duration. */
+    double elapsed_s = 0;
 };
 
 /** The only reader of stamps: what durations are believed between scans. */
@@ -15,7 +18,7 @@ class Timeline {
  public:
     /** Takes the stamp (seconds) of the next scan. Where there is none before it, or stamps do not
      *  rise, the interval is what is usual; likewise, and not believed, where the stamps are more
-     *  than a second and more than five times the usual interval apart. */
+     *  than a second and more than five times the usual interval apart, forwards or backwards. */
     Interval advance(double stamp_s);
 
     /** Sum of the durations: rises with every scan, whatever the stamps do. */

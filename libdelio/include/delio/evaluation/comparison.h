@@ -26,6 +26,9 @@ struct Comparison {
     std::size_t unusedReference = 0;     //!< rows of the reference for scans that were not used
     std::size_t unmatchedReference = 0;  //!< poses of the reference (unused ones apart) and of the
     std::size_t unmatchedEstimate = 0;   //!< estimate without a partner in time
+
+    /** The end error by the length of the true path; NaN where that stands still (below 0.1 m). */
+    double endError_percent() const;
 };
 
 struct ComparisonSettings {

@@ -25,6 +25,7 @@ struct AlignerOptions : public StageOptions {
     double map_spacing = 0.25;
     double scan_spacing = 0.5;
     double min_agreement = 0.25;
+    double first_kernel = 1;
     planes::PlaneMapOptions planeMap;
     planes::PlaneRegistrationOptions planes;
     surfaces::NormalsOptions normals;

@@ -77,6 +77,7 @@ class PaperOdometry : public Odometry {
     /** Maps the latest frame to that of reference_. */
     Eigen::Isometry3d sinceReference_ = Eigen::Isometry3d::Identity();
     double sinceReference_s_ = 0;
-    bool lost_ = true;  //!< where the next scan will be is not known to better than metres
+    double unregistered_s_ = 0;  //!< since the latest scan that was registered
+    bool lost_ = true;           //!< where the next scan will be is not known to better than metres
 };
 }  // namespace delio

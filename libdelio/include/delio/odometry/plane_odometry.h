@@ -67,7 +67,7 @@ class PlaneOdometry : public Odometry {
     };
 
     void takeScale(double scale);
-    bool isOtherScale(const Scan& scan);
+    bool isOtherScale();
     void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
     void processNext(const scan::PointCloud& cloud, const Interval& interval, Step& step);
     scan::VoxelNumbers thinAll(ScanView& view) const;
@@ -92,6 +92,7 @@ class PlaneOdometry : public Odometry {
     const PlaneOdometryOptions given_;
     PlaneOdometryOptions options_;  //!< at the scale of the place
     double scale_ = 1;
+    double seenScale_ = 1;     //!< that the latest scan shows
     unsigned otherScale_ = 0;  //!< scans in a row that show a place of another size
     Timeline timeline_;
     LinearPrediction prediction_;
@@ -100,12 +101,13 @@ class PlaneOdometry : public Odometry {
     AdaptiveKernel kernel_;
     Reference reference_;
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
-    bool first_ = true;                                       //!< no scan was seen yet
-    bool started_ = false;                                    //!< the map can be used
-    bool lost_ = true;       //!< where the next scan will be is not known to better than metres
-    bool doubted_ = false;   //!< the latest scan was observed weakly
-    double usualShare_ = 0;  //!< of points on those of the map
-    unsigned misses_ = 0;    //!< scans in a row that were not found in the map
+    double unregistered_s_ = 0;  //!< since the latest scan that was registered
+    bool first_ = true;          //!< no scan was seen yet
+    bool started_ = false;       //!< the map can be used
+    bool lost_ = true;           //!< where the next scan will be is not known to better than metres
+    bool doubted_ = false;       //!< the latest scan was observed weakly
+    double usualShare_ = 0;      //!< of points on those of the map
+    unsigned misses_ = 0;        //!< scans in a row that were not found in the map
     /** The scan that the map began with, while the motion during it is not known. */
     std::optional<scan::PointCloud> skewed_;
 };

@@ -40,4 +40,9 @@ class LinearPrediction {
     };
     std::deque<Observed> latestFirst_;
 };
+
+/** How many times larger than a motion model's standard deviation (prior_sigma, prior_sigma_deg)
+ * the error of a prediction is, `unregistered_s` after the latest scan that was registered: they
+ * are those of 0.1 s, and grow in proportion to the time, up to that of a minute. */
+double errorGrowth(double unregistered_s);
 }  // namespace delio

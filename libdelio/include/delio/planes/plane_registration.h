@@ -8,7 +8,6 @@
 
 namespace delio::planes {
 struct PlaneRegistrationOptions : public StageOptions {
-    double first_kernel = 1.0;
     double last_kernel = 0.1;
     double point_sigma = 0.01;
     unsigned max_iterations = 60;
@@ -21,8 +20,6 @@ struct PlaneRegistrationOptions : public StageOptions {
     double search_speed = 40;
     double search_radius = 30;
     double search_step = 1;
-
-    void check(const std::string& section) const override;
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -42,9 +39,9 @@ struct PlaneEstimate {
 };
 
 /** The prediction (sensor to map), where there is nothing to register: not valid, with the motion
- *  model's variances. */
+ *  model's standard deviations, times `growth`. */
 PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose,
-                                const PlaneRegistrationOptions& options);
+                                const PlaneRegistrationOptions& options, double growth = 1);
 
 /** What the motion model knows: the prediction (sensor to map), off by prior_sigma. */
 Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions& options);

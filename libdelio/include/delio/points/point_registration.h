@@ -26,7 +26,9 @@ struct PointEstimate {
     double residual_m = 0;  //!< root mean square distance of these
     std::size_t matches = 0;
     unsigned iterations = 0;
-    bool valid = false;  //!< false: too few correspondences; the pose is the prediction
+    bool converged = false;  //!< false: ended by the most iterations that are allowed
+    double kernel_m = 0;     //!< width that it began with
+    bool valid = false;      //!< false: too few correspondences; the pose is the prediction
 };
 
 /** Point-to-point registration, decoupled as the planes' is: each point is paired with the nearest

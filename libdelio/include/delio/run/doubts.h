@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,20 @@ struct Doubts {
     std::size_t pairs = 0;  //!< scans that have one before them
     Stretches predicted;    //!< not registered: the motion model's
     Stretches weak;         //!< registered, but an axis was not observed
+    /** Of these the scans with an open axis of the translation, and of the rotation, that is
+     * nearest to the vehicle's x, y and z. */
+    std::array<std::size_t, 3> weakAlong{}, weakAbout{};
+    Stretches searched;     //!< not only from the prediction
     Stretches interrupted;  //!< a pause or a set clock before them
 };
 
 Doubts doubtsOf(const std::vector<RunRow>& rows);
+
+/** "38, at most 30 in a row (from scan 12)"; `scans`: in place of those that were counted. */
+std::string textOf(const Stretches& found, std::size_t scans);
+
+/** Of the weak ones: "along x in 38, about z in 2"; empty where there are none. */
+std::string weakAxesOf(const Doubts& doubts);
 
 /** A line each of what a user has to know of them: nothing for a few scans. */
 std::vector<std::string> warningsOf(const Doubts& doubts);

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,9 +15,13 @@ struct Summary {
     std::string version, command, profile;
     bool complete = false;
     std::string fault;  //!< empty: none
-    std::size_t scans = 0, searched = 0, deskewed = 0;
+    std::size_t scans = 0, deskewed = 0;
     std::size_t predicted = 0, longest_predicted = 0;  //!< scans; of them in a row
     std::size_t weakly_observed = 0, longest_weakly_observed = 0;
+    /** Of these those with an axis along which, and about which, nothing was seen, nearest to the
+     *  vehicle's x, y and z. */
+    std::array<std::size_t, 3> weakly_observed_along{}, weakly_observed_about{};
+    std::size_t searched = 0, longest_searched = 0;
     std::size_t interrupted = 0;
     double path_m = 0;
     double vertical_correction_deg = 0;
