@@ -87,8 +87,10 @@ void DriveWriter::writeScan(std::size_t scan) {
 
 ScanPoints DriveWriter::simulate(std::size_t scan) {
     window_.moveTo(drive_.station(scan));
-    return scanner_.scan(
+    ScanPoints points = scanner_.scan(
         sweepOf(drive_, scan, request_.sensor, request_.distort, request_.scanner.seed), scan);
+    request_.mount.turn(points);
+    return points;
 }
 
 void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
@@ -101,12 +103,17 @@ void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
 }
 
 /** Where the LiDAR is at the scan's stamp, relative to the first scan, as cam0's: a row of KITTI's
- *  poses.txt. */
+ *  poses.txt. How the LiDAR is turned does not move cam0. */
 std::string DriveWriter::poseRow(std::size_t scan) const {
     Eigen::Isometry3d relative = Eigen::Isometry3d::Identity();
     if (scan > 0)  // the first is the identity to the last digit
         relative = drive_.lidarPose(0).inverse() * drive_.lidarPose(scan);
     return io::kittiRow(cam0PoseOf(relative, lidarToCam0()));
+}
+
+std::string DriveWriter::calibration() const {
+    if (request_.mount.isUpright()) return kCalib;
+    return "Tr: " + io::kittiRow(lidarToCam0() * request_.mount.pose());
 }
 
 void DriveWriter::finish() {
@@ -116,9 +123,10 @@ void DriveWriter::finish() {
     meta.motionCompensated = !request_.distort;
     meta.epoch_s = io::kDriveEpoch_s;
     meta.generator = std::string("synth2rawlog 2 (delio ") + kVersion + ")";
-    writer_.finish(meta, times_, kCalib, poses_, faults_);
-    cli::inform("wrote " + std::to_string(writer_.scans()) + " scans, " +
-                std::to_string(std::lround(drive_.station(drive_.scans() - 1))) + " m, to '" +
-                request_.output + "'");
+    writer_.finish(meta, times_, calibration(), poses_, faults_);
+    cli::inform(
+        "wrote " + std::to_string(writer_.scans()) + " scans, " +
+        std::to_string(std::lround(drive_.station(drive_.scans() - 1) - drive_.station(0))) +
+        " m, to '" + request_.output + "'");
 }
 }  // namespace delio::synth

@@ -6,6 +6,7 @@
 #include "delio/io/rawlog_writer.h"
 #include "drive.h"
 #include "faults.h"
+#include "mount.h"
 #include "ray_caster.h"
 #include "scanner.h"
 #include "scene.h"
@@ -18,6 +19,7 @@ struct DriveRequest {
     std::string output;  //!< OUT.rawlog
     SensorModel sensor;
     ScannerOptions scanner;
+    Mount mount;
     std::size_t movers = 0;
     FaultRates faults;
     bool distort = false;  //!< every column is fired on the way: OUT_Images/NNNNNN.time says when
@@ -25,7 +27,7 @@ struct DriveRequest {
     bool embed = false, force = false;
 };
 
-/** KITTI's Tr for the synthetic vehicle: LiDAR coordinates to cam0's. */
+/** KITTI's Tr for the synthetic vehicle: coordinates of the LiDAR, mounted upright, to cam0's. */
 Eigen::Isometry3d lidarToCam0();
 
 /** Drives through a scene and writes what the sensor sees, with the truth: the rawlog and all of
@@ -42,6 +44,7 @@ class DriveWriter {
     void add(std::size_t scan, const ScanPoints& points);
     ScanPoints simulate(std::size_t scan);
     std::string poseRow(std::size_t scan) const;
+    std::string calibration() const;
     void finish();
 
     const DriveRequest& request_;

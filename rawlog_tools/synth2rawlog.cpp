@@ -43,6 +43,17 @@ Gait gaitOf(const std::string& motion) {
     return motion == "handheld" ? Gait::kHandheld : Gait::kVehicle;
 }
 
+const std::vector<std::string> kStarts = {"rest", "moving"};
+
+Start startOf(const std::string& name) {
+    if (name.empty()) return Start::kOfSeed;
+    return name == "rest" ? Start::kRest : Start::kMoving;
+}
+
+bool isOneOf(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 /** The command line. */
 struct Arguments {
     TCLAP::CmdLine cmd{"synth2rawlog: a drive through a made-up world, with ground truth", ' ',
@@ -72,6 +83,26 @@ struct Arguments {
         false,
         "vehicle",
         "NAME",
+        cmd};
+    TCLAP::ValueArg<std::string> start{
+        "",
+        "start",
+        "How the drive begins: " + listed(kStarts) +
+            "; default: as the seed has it. rest: standing, up to its speed within 2 s; moving: "
+            "where it is fast for the first time. For a vehicle without --trajectory",
+        false,
+        "",
+        "NAME",
+        cmd};
+    TCLAP::ValueArg<std::string> mount{
+        "",
+        "mount",
+        "How the sensor is turned on its vehicle, in degrees: 0,25,0 looks 25 deg down ahead, "
+        "90,0,0 lies on its side. The rays stay those of an upright sensor: points, calibration "
+        "and truth are told in the turned frame",
+        false,
+        "0,0,0",
+        "ROLL,PITCH,YAW",
         cmd};
     TCLAP::ValueArg<std::string> sensor{
         "", "sensor", "Sensor: " + sensorOptions(), false, "hdl64e", "NAME", cmd};
@@ -116,8 +147,7 @@ bool isRate(double value) { return value >= 0 && value < 1; }
 /** Why a scene cannot be made as asked; empty: it can. */
 std::string faultInScene(Arguments& args) {
     const std::string& scene = args.scene.getValue();
-    const auto names = sceneNames();
-    if (std::find(names.begin(), names.end(), scene) == names.end())
+    if (!isOneOf(sceneNames(), scene))
         return "there is no scene '" + scene + "'; there are: " + sceneOptions();
     if (!args.trajectory.isSet()) return "";
     if (args.trajectory.getValue().empty()) return "--trajectory needs the name of a file";
@@ -126,12 +156,26 @@ std::string faultInScene(Arguments& args) {
     return "";
 }
 
+/** The same of how the sensor is moved. */
+std::string faultInMotion(Arguments& args) {
+    const std::string &motion = args.motion.getValue(), &start = args.start.getValue();
+    if (!isOneOf(kMotions, motion))
+        return "there is no motion '" + motion + "'; there is: " + listed(kMotions);
+    if (!mountIn(args.mount.getValue()))
+        return "--mount wants ROLL,PITCH,YAW in degrees, not '" + args.mount.getValue() + "'";
+    if (!args.start.isSet()) return "";
+    if (!isOneOf(kStarts, start))
+        return "there is no start '" + start + "'; there is: " + listed(kStarts);
+    if (args.trajectory.isSet())
+        return "--start does not go with --trajectory, which says how the drive begins";
+    if (gaitOf(motion) != Gait::kVehicle) return "--start does not go with --motion " + motion;
+    return "";
+}
+
 /** The same of sensor and drive. */
 std::string faultInDrive(Arguments& args) {
     if (!findSensor(args.sensor.getValue()))
         return "there is no sensor '" + args.sensor.getValue() + "'; there is: " + sensorOptions();
-    if (std::find(kMotions.begin(), kMotions.end(), args.motion.getValue()) == kMotions.end())
-        return "there is no motion '" + args.motion.getValue() + "'; there is: " + listed(kMotions);
     if (args.scans.getValue() < 1) return "--scans has to be 1 or more";
     if (args.seed.getValue() < 0) return "--seed has to be 0 or more";
     if (!isMetres(args.noise.getValue())) return "--noise has to be 0 or more metres";
@@ -155,6 +199,7 @@ DriveRequest requestOf(Arguments& args) {
     if (request.scanner.threads == 0)
         request.scanner.threads =
             static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    request.mount = *mountIn(args.mount.getValue());
     request.movers = static_cast<std::size_t>(args.movers.getValue());
     request.faults = {args.drop.getValue(), args.repeat.getValue(), args.empty.getValue()};
     request.distort = args.distort.getValue();
@@ -172,6 +217,7 @@ void suit(DriveRequest& request, const Carrier& carrier) {
 
 int makeDrive(Arguments& args) {
     std::string fault = faultInScene(args);
+    if (fault.empty()) fault = faultInMotion(args);
     if (fault.empty()) fault = faultInDrive(args);
     if (!fault.empty()) {
         cli::inform(fault + "; see --help");
@@ -180,9 +226,12 @@ int makeDrive(Arguments& args) {
     cli::catchInterrupts();
     DriveRequest request = requestOf(args);
     const auto count = static_cast<std::size_t>(args.scans.getValue());
-    const auto world = makeScene({args.scene.getValue(), request.scanner.seed, count,
-                                  args.trajectory.getValue(), lidarToCam0()});
-    const Drive drive(world->road(), count, request.scanner.seed, gaitOf(args.motion.getValue()));
+    const Start start = startOf(args.start.getValue());
+    const auto world =
+        makeScene({args.scene.getValue(), request.scanner.seed, count + scansBefore(start),
+                   args.trajectory.getValue(), lidarToCam0()});
+    const Drive drive(world->road(), count, request.scanner.seed, gaitOf(args.motion.getValue()),
+                      start);
     suit(request, drive.carrier());
     if (drive.scans() < count)
         cli::warn("the trajectory ends after " + std::to_string(drive.scans()) + " of " +

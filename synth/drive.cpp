@@ -6,7 +6,7 @@
 #include "speed_profile.h"
 
 namespace delio::synth {
-Drive::Drive(const Road& road, std::size_t scans, std::uint64_t seed, Gait gait)
+Drive::Drive(const Road& road, std::size_t scans, std::uint64_t seed, Gait gait, Start start)
     : road_(road), carrier_(road.profile().carrier), motion_(road.givenMotion()) {
     DrivingStyle style = road.profile().style;
     if (gait == Gait::kHandheld) {
@@ -15,7 +15,7 @@ Drive::Drive(const Road& road, std::size_t scans, std::uint64_t seed, Gait gait)
         style = walking(style);
     }
     if (!motion_) {
-        own_ = std::make_shared<SpeedProfile>(road.path(), style, seed);
+        own_ = begun(std::make_shared<SpeedProfile>(road.path(), style, seed), start);
         motion_ = own_.get();
     }
     const double known = std::floor(motion_->duration_s() / kScanPeriod_s + 1e-6);

@@ -9,17 +9,19 @@
 #include "handheld.h"
 #include "motion.h"
 #include "road.h"
+#include "start.h"
 
 namespace delio::synth {
 constexpr double kScanPeriod_s = 0.1;
 
 /** Where the vehicle is at every scan: it moves as the road's style or a given trajectory has it,
  *  and pitches and rolls with the ground under its wheels. A sensor in a hand moves at walking
- *  speed, if no trajectory says otherwise, and swings. */
+ *  speed, if no trajectory says otherwise, and swings. `start` is for what no trajectory says. */
 class Drive {
  public:
     /** Fewer scans than asked for where a given trajectory ends before. */
-    Drive(const Road& road, std::size_t scans, std::uint64_t seed, Gait gait = Gait::kVehicle);
+    Drive(const Road& road, std::size_t scans, std::uint64_t seed, Gait gait = Gait::kVehicle,
+          Start start = Start::kOfSeed);
 
     std::size_t scans() const { return scans_; }
     /** Metres along the path at scan `scan`. */
