@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,24 +17,21 @@ constexpr double kDeg = M_PI / 180;
 
 std::vector<OptionField> ScanToMapOptions::fields() const {
     using Me = ScanToMapOptions;
-    return {
-        {"point_sigma", &Me::point_sigma, "m; error of a scan placed by points along each axis",
-         1e-6, 100},
-        {"point_sigma_deg", &Me::point_sigma_deg,
-         "deg; the same about axes across the sensor's own, where its rings mislead", 1e-6, 180},
-        {"point_turn_deg", &Me::point_turn_deg,
-         "deg; the same about the sensor's own axis, its z: rings look all round it", 1e-6, 180},
-        {"believed", &Me::believed,
-         "m; planes that lead farther than this from where points place the scan are not "
-         "believed",
-         0, 10},
-        {"believed_deg", &Me::believed_deg, "deg; the same of the rotation", 0, 90},
-        {"min_share", &Me::min_share,
-         "share of a scan's points that have to lie on points of the map; with less it is lost", 0,
-         1},
-        {"probe", &Me::probe,
-         "m; points see an axis if they bring the scan back that was moved along it by this", 0.05,
-         10}};
+    return {{"point_sigma", &Me::point_sigma, "m; error of a scan placed by points along each axis",
+             1e-6, 100},
+            {"point_sigma_deg", &Me::point_sigma_deg,
+             "deg; the same about each axis but the one that the sensor spins about", 1e-6, 180},
+            {"believed", &Me::believed,
+             "m; planes that lead farther than this from where points place the scan are not "
+             "believed",
+             0, 10},
+            {"believed_deg", &Me::believed_deg, "deg; the same of the rotation", 0, 90},
+            {"min_share", &Me::min_share,
+             "share of a scan's points that have to lie on points of the map; with less it is lost",
+             0, 1},
+            {"probe", &Me::probe,
+             "m; points see an axis if they bring the scan back that was moved along it by this",
+             0.05, 10}};
 }
 
 void ScanToMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose) {
@@ -128,18 +126,32 @@ bool ScanToMap::pointsSee(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3
     return true;
 }
 
-Eigen::Vector3d ScanToMap::pointSigma_rad() const {
-    return kDeg * Eigen::Vector3d(options_.point_sigma_deg, options_.point_sigma_deg,
-                                  options_.point_turn_deg);
+/** Of the rotation that points found, rad^2, right tangent. A sensor's rings mislead about all axes
+ *  but the one that it spins about, across which it sees least: about that one the points err as
+ *  their distances say. */
+Eigen::Matrix3d ScanToMap::turnCovariance(const Eigen::Matrix3Xd& points,
+                                          const PointEstimate& placed) const {
+    constexpr double kTogether = 5;  // neighbours err alike
+    const Eigen::Matrix3Xd rays = points.colwise().normalized();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(rays * rays.transpose());
+    const Eigen::Vector3d axis = spread.eigenvectors().col(0);  // eigenvalues rise
+    const double arms = (points.squaredNorm() - (axis.transpose() * points).squaredNorm()) /
+                        static_cast<double>(points.cols()),
+                 most = std::pow(options_.point_sigma_deg * kDeg, 2),
+                 spin = std::pow(kTogether * std::max(placed.residual_m, options_.point_sigma), 2) /
+                        (arms * static_cast<double>(placed.matches));
+    return most * Eigen::Matrix3d::Identity() +
+           (std::min(spin, most) - most) * axis * axis.transpose();
 }
 
 /** What the points say alone. */
-PlaneEstimate ScanToMap::byPoints(const PointEstimate& placed) const {
+PlaneEstimate ScanToMap::byPoints(const PointEstimate& placed,
+                                  const Eigen::Matrix3d& turnCovariance) const {
     PlaneEstimate estimate;
     auto& rotation = estimate.rotation;
     auto& translation = estimate.translation;
     rotation.rotation = placed.pose.linear();
-    rotation.covariance = pointSigma_rad().cwiseAbs2().asDiagonal();
+    rotation.covariance = turnCovariance;
     rotation.matches = translation.matches = placed.matches;
     rotation.iterations = placed.iterations;
     rotation.valid = translation.valid = estimate.valid = true;
@@ -176,13 +188,14 @@ void ScanToMap::settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Is
 PlaneEstimate ScanToMap::refine(const ScanView& view, const PointEstimate& placed,
                                 const Eigen::Isometry3d& predicted,
                                 const Eigen::Isometry3d& latest) const {
-    const auto prior = planes::Prior::of(placed.pose, options_.point_sigma, pointSigma_rad());
+    const Eigen::Matrix3d turn = turnCovariance(view.coarse, placed);
+    const auto prior = planes::Prior::of(placed.pose, options_.point_sigma, turn);
     auto found = planes::registerToPlanes(planes_, view.thinned, prior, planeOptions_.last_kernel,
                                           planeOptions_);
     const Eigen::Isometry3d off = placed.pose.inverse() * found.pose();
     if (!found.valid || off.translation().norm() > options_.believed ||
         angleOf(off.linear()) > options_.believed_deg * kDeg)
-        found = byPoints(placed);
+        found = byPoints(placed, turn);
     found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
     settleUnobserved(view.coarse, predicted, latest, found);
     return found;

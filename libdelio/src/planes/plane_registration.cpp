@@ -65,13 +65,15 @@ double shareOnPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
 }
 
 /** Unit axes along which `information` is no better than what was known before. */
-Eigen::Matrix3Xd unobservedAxes(const Eigen::Matrix3d& information, const Eigen::Vector3d& before) {
+Eigen::Matrix3Xd unobservedAxes(const Eigen::Matrix3d& information, const Eigen::Matrix3d& before) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(information);
+    const auto isSeen = [&](Eigen::Index i) {
+        const Eigen::Vector3d axis = axes.eigenvectors().col(i);
+        return axes.eigenvalues()[i] > axis.dot(before * axis);
+    };
     // Eigenvalues rise.
     Eigen::Index count = 0;
-    while (count < 3 &&
-           !(axes.eigenvalues()[count] > axes.eigenvectors().col(count).cwiseAbs2().dot(before)))
-        ++count;
+    while (count < 3 && !isSeen(count)) ++count;
     return axes.eigenvectors().leftCols(count);
 }
 
@@ -96,9 +98,7 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
     rotation.matches = matches.size();
     rotation.observability = shares(turn.information, turn.weight);
     rotation.unobservedAxes = unobservedAxes(turn.information, prior.rotation);
-    rotation.covariance =
-        noise *
-        (turn.information + kPriorShare * Eigen::Matrix3d(prior.rotation.asDiagonal())).inverse();
+    rotation.covariance = noise * (turn.information + kPriorShare * prior.rotation).inverse();
     rotation.valid = true;
     auto& translation = estimate.translation;
     translation.matches = matches.size();
@@ -108,7 +108,7 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
     constexpr double kEdges = 3;
     const auto& unseen = translation.unobservedAxes =
         unobservedAxes(move.information - kEdges / options.independent_share * move.pretended,
-                       Eigen::Vector3d::Constant(prior.translation));
+                       prior.translation * identity);
     const Eigen::Matrix3d before = unseen * unseen.transpose(), seen = identity - before,
                           inverse = seen *
                                     (move.information + kPriorShare * prior.translation * identity)
@@ -171,7 +171,7 @@ PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose,
 
 Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions& options) {
     return Prior::of(predicted, options.prior_sigma,
-                     Eigen::Vector3d::Constant(options.prior_sigma_deg * kDeg));
+                     std::pow(options.prior_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity());
 }
 
 PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,

@@ -30,10 +30,8 @@ PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Is
     const Eigen::Matrix3d free = rt * tt.completeOrthogonalDecomposition().pseudoInverse();
     result.information = rr - free * rt.transpose();
     const Eigen::Vector3d gradient =
-        gr - free * gt +
-        prior.rotation.cwiseProduct(rotationLog(prior.pose.linear().transpose() * R));
-    Eigen::Matrix3d all = result.information;
-    all.diagonal() += prior.rotation;
+        gr - free * gt + prior.rotation * rotationLog(prior.pose.linear().transpose() * R);
+    const Eigen::Matrix3d all = result.information + prior.rotation;
     result.step = -all.completeOrthogonalDecomposition().solve(gradient);
     return result;
 }

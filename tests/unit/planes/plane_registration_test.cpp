@@ -142,7 +142,7 @@ TEST(PlanePrior, HoldsARotationThatNoPlaneSees) {
     auto matches = matchesSeenFrom(Eigen::Matrix3d::Identity(), {0, 0, 0}, 0, noise);
     for (auto& match : matches) match.normal = Eigen::Vector3d::UnitZ();  // yaw is not seen
     planes::Prior prior;
-    prior.rotation.setConstant(1e-3);
+    prior.rotation = 1e-3 * Eigen::Matrix3d::Identity();
     const auto turned = isometry(rotationAbout({0, 0, 1}, 2), {0, 0, 0});
     EXPECT_LT(planes::rotationFromPlanes(matches, turned).step.z(), 1e-9);
     EXPECT_NEAR(planes::rotationFromPlanes(matches, turned, prior).step.z(), -2 * M_PI / 180, 1e-6);

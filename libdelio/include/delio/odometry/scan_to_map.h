@@ -10,7 +10,6 @@ namespace delio {
 struct ScanToMapOptions : public StageOptions {
     double point_sigma = 0.02;
     double point_sigma_deg = 0.1;
-    double point_turn_deg = 0.015;
     double believed = 0.1;
     double believed_deg = 1.0;
     double min_share = 0.1;
@@ -67,8 +66,10 @@ class ScanToMap {
                                           const Eigen::Isometry3d& guess, double reach) const;
     bool pointsSee(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& pose,
                    const Eigen::Vector3d& axis) const;
-    Eigen::Vector3d pointSigma_rad() const;
-    planes::PlaneEstimate byPoints(const points::PointEstimate& placed) const;
+    Eigen::Matrix3d turnCovariance(const Eigen::Matrix3Xd& points,
+                                   const points::PointEstimate& placed) const;
+    planes::PlaneEstimate byPoints(const points::PointEstimate& placed,
+                                   const Eigen::Matrix3d& turnCovariance) const;
     void settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
                           const Eigen::Isometry3d& latest, planes::PlaneEstimate& found) const;
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Dense>
 #include <Eigen/Geometry>
 
 namespace delio::planes {
@@ -6,12 +7,12 @@ namespace delio::planes {
 struct Prior {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     double translation = 0;  //!< information along each axis, 1/m^2; 0: nothing is known
-    /** Information about each axis of the sensor, 1/rad^2. */
-    Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
+    /** Information, 1/rad^2, right tangent (sensor's frame). */
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
 
     static Prior of(const Eigen::Isometry3d& pose, double sigma_m,
-                    const Eigen::Vector3d& sigma_rad) {
-        return {pose, 1 / (sigma_m * sigma_m), sigma_rad.cwiseAbs2().cwiseInverse()};
+                    const Eigen::Matrix3d& covariance_rad2) {
+        return {pose, 1 / (sigma_m * sigma_m), covariance_rad2.inverse()};
     }
     /** In units of matches whose weights have this variance factor. */
     Prior times(double factor) const { return {pose, factor * translation, factor * rotation}; }
