@@ -8,8 +8,8 @@
 
 namespace delio {
 struct ScanToMapOptions : public StageOptions {
-    double point_sigma = 0.02;
-    double point_sigma_deg = 0.1;
+    double point_sigma = 0.05;
+    double point_sigma_deg = 0.3;
     double believed = 0.1;
     double believed_deg = 1.0;
     double min_share = 0.1;
