@@ -1,11 +1,10 @@
 #include "delio/odometry/scan_to_map.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "delio/points/point_search.h"
 
 namespace delio {
 using planes::PlaneEstimate;
@@ -26,9 +25,6 @@ std::vector<OptionField> ScanToMapOptions::fields() const {
              "believed",
              0, 10},
             {"believed_deg", &Me::believed_deg, "deg; the same of the rotation", 0, 90},
-            {"min_share", &Me::min_share,
-             "share of a scan's points that have to lie on points of the map; with less it is lost",
-             0, 1},
             {"probe", &Me::probe,
              "m; points see an axis if they bring the scan back that was moved along it by this",
              0.05, 10}};
@@ -54,76 +50,12 @@ void ScanToMap::clear() {
 
 PointEstimate ScanToMap::place(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
                                double kernel) const {
-    auto found = points::registerToPoints(points_, coarse, predicted, kernel, pointOptions_);
-    found.valid = found.valid && found.share >= options_.min_share;
-    return found;
-}
-
-/** Starts on a disc about `guess`, those first where most of the points come to lie near the
- * map's. */
-std::vector<Eigen::Isometry3d> ScanToMap::starts(const Eigen::Matrix3Xd& points,
-                                                 const Eigen::Isometry3d& guess,
-                                                 double reach) const {
-    const double step = pointOptions_.first_kernel / 2;
-    const int steps = static_cast<int>(reach / step);
-    std::vector<std::pair<double, Eigen::Isometry3d>> all;
-    for (int x = -steps; x <= steps; ++x)
-        for (int y = -steps; y <= steps; ++y) {
-            const Eigen::Vector3d offset(x * step, y * step, 0);
-            if (offset.norm() <= reach) all.emplace_back(0, guess * Eigen::Translation3d(offset));
-        }
-    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
-        all[i].first = points::shareAt(points_, points, all[i].second, step / 2);
-    });
-    std::stable_sort(all.begin(), all.end(),
-                     [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::vector<Eigen::Isometry3d> sorted;
-    for (const auto& [share, start] : all) sorted.push_back(start);
-    return sorted;
+    return points::registerToPoints(points_, coarse, predicted, kernel, pointOptions_);
 }
 
 PointEstimate ScanToMap::placeAnywhere(const Eigen::Matrix3Xd& coarse,
                                        const Eigen::Isometry3d& predicted, double reach) const {
-    constexpr std::size_t kBest = 8;
-    auto best = place(coarse, predicted, pointOptions_.least_kernel);
-    const auto moved = points::pointsOff(points_, coarse, predicted, pointOptions_.least_kernel);
-    if (moved.cols() < pointOptions_.min_matches) return best;
-    const auto shareOf = [&](const PointEstimate& found) {
-        return points::shareAt(points_, moved, found.pose, pointOptions_.last_kernel);
-    };
-    const auto wide = place(coarse, predicted, pointOptions_.first_kernel);
-    if (wide.valid && shareOf(wide) > shareOf(best)) best = wide;
-    // Another start has to explain clearly more.
-    constexpr double kClearly = 0.1;
-    double most = shareOf(best) + kClearly;
-    auto tried = starts(moved, predicted, reach);
-    if (tried.size() > kBest) tried.resize(kBest);
-    for (const auto& start : tried) {
-        const auto found = points::registerToPoints(points_, moved, start,
-                                                    pointOptions_.first_kernel / 2, pointOptions_);
-        if (!found.valid || found.share <= most) continue;
-        const auto all = place(coarse, found.pose, pointOptions_.least_kernel);
-        if (!all.valid || shareOf(all) <= most) continue;
-        most = shareOf(all);
-        best = all;
-    }
-    return best;
-}
-
-/** Moved along the axis to either side, the scan comes back. (Rings of a sensor in a tunnel lie on
- *  those of the scan before wherever it stands: there it stays where it was put.) */
-bool ScanToMap::pointsSee(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& pose,
-                          const Eigen::Vector3d& axis) const {
-    constexpr double kBack = 0.3;
-    for (const double side : {-1.0, 1.0}) {
-        Eigen::Isometry3d start = pose;
-        start.translation() += side * options_.probe * axis;
-        const auto back =
-            points::registerToPoints(points_, coarse, start, options_.probe, pointOptions_);
-        const double off_m = std::abs(axis.dot(back.pose.translation() - pose.translation()));
-        if (!back.valid || off_m > kBack * options_.probe) return false;
-    }
-    return true;
+    return points::searchPoints(points_, coarse, predicted, reach, pointOptions_);
 }
 
 /** Of the rotation that points found, rad^2, right tangent. A sensor's rings mislead about all axes
@@ -174,7 +106,7 @@ void ScanToMap::settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Is
     for (Eigen::Index i = 0; i < translation.unobservedAxes.cols(); ++i) {
         const Eigen::Vector3d axis = translation.unobservedAxes.col(i);
         const Eigen::Matrix3d along = axis * axis.transpose();
-        if (!pointsSee(coarse, found.pose(), axis))
+        if (!points::pointsSee(points_, coarse, found.pose(), axis, options_.probe, pointOptions_))
             translation.translation += along * (predicted.translation() - translation.translation);
         else if (!rests)
             continue;

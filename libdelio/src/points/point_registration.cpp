@@ -94,7 +94,10 @@ std::vector<OptionField> PointRegistrationOptions::fields() const {
             {"last_kernel", &Me::last_kernel, "m; width to which the kernel is halved", 1e-3, 100},
             {"max_iterations", &Me::max_iterations, "pairings with one kernel at most", 1, 10000},
             {"converged_m", &Me::converged_m, "m; a smaller step ends the iteration", 0, 1},
-            {"min_matches", &Me::min_matches, "pairs that are needed; fewer: predicted", 3, 1e6}};
+            {"min_matches", &Me::min_matches, "pairs that are needed; fewer: predicted", 3, 1e6},
+            {"min_share", &Me::min_share,
+             "share of a scan's points that have to lie on points of the map; with less it is lost",
+             0, 1}};
 }
 
 void PointRegistrationOptions::check(const std::string& section) const {
@@ -127,8 +130,8 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
         }
         if (isLast) break;
     }
-    estimate.valid = true;
     judge(map, points, options, estimate);
+    estimate.valid = estimate.share >= options.min_share;
     return estimate;
 }
 

@@ -12,7 +12,6 @@ struct ScanToMapOptions : public StageOptions {
     double point_sigma_deg = 0.3;
     double believed = 0.1;
     double believed_deg = 1.0;
-    double min_share = 0.1;
     double probe = 0.5;
 
  protected:
@@ -41,15 +40,11 @@ class ScanToMap {
     /** False where there are too few points to register anything against. */
     bool isUsable() const { return points_.size() >= pointOptions_.min_matches; }
 
-    /** By points, from the prediction on; `kernel` (metres): how far that may be off. Not valid
-     *  where fewer than `min_share` of the points come to lie on the map's. */
+    /** By points, from the prediction on; `kernel` (metres): how far that may be off. */
     points::PointEstimate place(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
                                 double kernel) const;
 
-    /** By points, where `predicted` is a guess that may be off by `reach` metres. The rings that a
-     *  sensor draws on the ground look the same wherever it stands and would confirm any guess; so
-     *  starts all over a disc are compared by those points alone that the guess does not explain.
-     */
+    /** By points, where `predicted` is a guess that may be off by `reach` metres. */
     points::PointEstimate placeAnywhere(const Eigen::Matrix3Xd& coarse,
                                         const Eigen::Isometry3d& predicted, double reach) const;
 
@@ -62,10 +57,6 @@ class ScanToMap {
                                  const Eigen::Isometry3d& latest) const;
 
  private:
-    std::vector<Eigen::Isometry3d> starts(const Eigen::Matrix3Xd& points,
-                                          const Eigen::Isometry3d& guess, double reach) const;
-    bool pointsSee(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& pose,
-                   const Eigen::Vector3d& axis) const;
     Eigen::Matrix3d turnCovariance(const Eigen::Matrix3Xd& points,
                                    const points::PointEstimate& placed) const;
     planes::PlaneEstimate byPoints(const points::PointEstimate& placed,

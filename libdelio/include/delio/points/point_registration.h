@@ -11,6 +11,7 @@ struct PointRegistrationOptions : public StageOptions {
     unsigned max_iterations = 100;
     double converged_m = 5e-3;
     unsigned min_matches = 50;
+    double min_share = 0.1;
 
     void check(const std::string& section) const override;
 
@@ -28,7 +29,8 @@ struct PointEstimate {
     unsigned iterations = 0;
     bool converged = false;  //!< false: ended by the most iterations that are allowed
     double kernel_m = 0;     //!< width that it began with
-    bool valid = false;      //!< false: too few correspondences; the pose is the prediction
+    /** False: too few correspondences, and the pose is the prediction; or too small a share. */
+    bool valid = false;
 };
 
 /** Point-to-point registration, decoupled as the planes' is: each point is paired with the nearest

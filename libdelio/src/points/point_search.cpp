@@ -1,0 +1,75 @@
+#include "delio/points/point_search.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace delio::points {
+namespace {
+/** Starts on a disc about `guess`, those first where most of the points come to lie near the
+ * map's. */
+std::vector<Eigen::Isometry3d> startsAbout(const PointMap& map, const Eigen::Matrix3Xd& points,
+                                           const Eigen::Isometry3d& guess, double reach,
+                                           double step) {
+    const int steps = static_cast<int>(reach / step);
+    std::vector<std::pair<double, Eigen::Isometry3d>> all;
+    for (int x = -steps; x <= steps; ++x)
+        for (int y = -steps; y <= steps; ++y) {
+            const Eigen::Vector3d offset(x * step, y * step, 0);
+            if (offset.norm() <= reach) all.emplace_back(0, guess * Eigen::Translation3d(offset));
+        }
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+        all[i].first = shareAt(map, points, all[i].second, step / 2);
+    });
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<Eigen::Isometry3d> sorted;
+    for (const auto& [share, start] : all) sorted.push_back(start);
+    return sorted;
+}
+}  // namespace
+
+PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
+                           const Eigen::Isometry3d& guess, double reach,
+                           const PointRegistrationOptions& options) {
+    constexpr std::size_t kBest = 8;
+    auto best = registerToPoints(map, points, guess, options.least_kernel, options);
+    const auto off = pointsOff(map, points, guess, options.least_kernel);
+    if (off.cols() < options.min_matches) return best;
+    const auto shareOf = [&](const PointEstimate& found) {
+        return shareAt(map, off, found.pose, options.last_kernel);
+    };
+    const auto wide = registerToPoints(map, points, guess, options.first_kernel, options);
+    if (wide.valid && shareOf(wide) > shareOf(best)) best = wide;
+    // Another start has to explain clearly more.
+    constexpr double kClearly = 0.1;
+    double most = shareOf(best) + kClearly;
+    auto tried = startsAbout(map, off, guess, reach, options.first_kernel / 2);
+    if (tried.size() > kBest) tried.resize(kBest);
+    for (const auto& start : tried) {
+        const auto found = registerToPoints(map, off, start, options.first_kernel / 2, options);
+        if (!found.valid || found.share <= most) continue;
+        const auto all = registerToPoints(map, points, found.pose, options.least_kernel, options);
+        if (!all.valid || shareOf(all) <= most) continue;
+        most = shareOf(all);
+        best = all;
+    }
+    return best;
+}
+
+bool pointsSee(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
+               const Eigen::Vector3d& axis, double probe, const PointRegistrationOptions& options) {
+    constexpr double kBack = 0.3;
+    for (const double side : {-1.0, 1.0}) {
+        Eigen::Isometry3d start = pose;
+        start.translation() += side * probe * axis;
+        const auto back = registerToPoints(map, points, start, probe, options);
+        const double off_m = std::abs(axis.dot(back.pose.translation() - pose.translation()));
+        if (!back.valid || off_m > kBack * probe) return false;
+    }
+    return true;
+}
+}  // namespace delio::points
