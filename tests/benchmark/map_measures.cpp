@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "delio/scan/voxel_grid.h"
-#include "surfaces/kd_tree.h"
+#include "core/kd_tree.h"
 
 namespace delio {
 namespace {

@@ -30,7 +30,10 @@ List paperStages(Options& o) {
             {"rotation_in_place", &o.inPlace},
             {"line_cloud", &o.lines},
             {"line_registration", &o.lineRegistration},
-            {"prediction", &o.prediction}};
+            {"prediction", &o.prediction},
+            {"point_check", &o.check},
+            {"point_map", &o.pointMap},
+            {"point_registration", &o.points}};
 }
 }  // namespace
 

@@ -6,9 +6,12 @@
 #include "delio/core/motion.h"
 #include "delio/core/stopwatch.h"
 #include "delio/scan/deskew.h"
+#include "delio/scan/spin_axis.h"
 
 namespace delio {
 namespace {
+constexpr double kDeg = M_PI / 180;
+
 /** Runs a stage and notes its time. */
 template <typename Work>
 auto stage(const char* name, Step& step, const Work& work) {
@@ -26,6 +29,7 @@ void note(const PaperRegistration& found, Step& step) {
     put("rotation_converged", found.rotation.converged);
     put("translation_iterations", found.translation.iterations);
     put("translation_converged", found.translation.converged);
+    put("denied", found.denied);
 }
 
 /** Rotation and translation again, now that it is known which normals were found at one place. */
@@ -45,19 +49,10 @@ void refineInPlace(const PaperFeatures& from, const PaperFeatures& to,
         });
     }
 }
-}  // namespace
 
-std::optional<Link> PaperFeatures::linkTo(const ScanFeatures& earlier,
-                                          const Eigen::Isometry3d& guess) const {
-    const auto& from = dynamic_cast<const PaperFeatures&>(earlier);
-    const auto found = registerFeatures(from, *this, guess, 0, *options);
-    if (!found.predictedReason.empty()) return {};
-    return Link{found.increment, found.translation.overlap};
-}
-
-PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeatures& to,
-                                   const Eigen::Isometry3d& guess, double search_m,
-                                   const PaperOdometryOptions& options) {
+PaperRegistration byPatternAndLines(const PaperFeatures& from, const PaperFeatures& to,
+                                    const Eigen::Isometry3d& guess, double search_m,
+                                    const PaperOdometryOptions& options) {
     PaperRegistration result;
     result.rotation = timed(result.rotation_ms, [&] {
         return paper::registerPatterns(from.pattern, to.pattern, guess.linear(), options.pattern);
@@ -71,10 +66,6 @@ PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeature
                    : paper::registerLines(from.lines, unrotated, t, options.lineRegistration);
     });
     refineInPlace(from, to, options, result);
-    // From another place other parts of the surfaces are seen, whose normals differ a little.
-    const double growth = 1 + result.translation.translation.norm() / options.pattern.view_distance;
-    result.rotation.covariance *= growth * growth;
-    result.increment = incrementOf(result.rotation, result.translation);
     if (!result.rotation.valid)
         result.predictedReason = result.rotation.tooFar ? "no rotation found" : "too few normals";
     if (!result.translation.valid)
@@ -82,8 +73,92 @@ PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeature
     return result;
 }
 
+Eigen::Isometry3d poseOf(const PaperRegistration& found) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = found.rotation.rotation;
+    pose.translation() = found.translation.translation;
+    return pose;
+}
+
+void nameAxis(const Eigen::Vector3d& axis, double sigma, Eigen::Matrix3Xd& axes,
+              Eigen::Matrix3d& covariance) {
+    axes.conservativeResize(3, axes.cols() + 1);
+    axes.rightCols<1>() = axis;
+    covariance += sigma * sigma * axis * axis.transpose();
+}
+
+/** Where rotation or translation lead away from `placed` they do not know better: these axes stay
+ *  as points have them. */
+void hold(const Eigen::Isometry3d& placed, const PaperOdometryOptions& options,
+          PaperRegistration& found) {
+    auto& rotation = found.rotation;
+    auto& translation = found.translation;
+    const Eigen::AngleAxisd turned(placed.linear().transpose() * rotation.rotation);
+    if (turned.angle() > options.check.believed_deg * kDeg) {
+        rotation.rotation = placed.linear();
+        nameAxis(turned.axis(), options.pattern.prior_sigma_deg * kDeg, rotation.unobservedAxes,
+                 rotation.covariance);
+    }
+    const Eigen::Vector3d off = translation.translation - placed.translation();
+    if (off.norm() > options.check.believed) {
+        translation.translation = placed.translation();
+        nameAxis(off.normalized(), options.lineRegistration.prior_sigma, translation.unobservedAxes,
+                 translation.covariance);
+    }
+}
+
+/** Both as one, whose errors grow with the distance: from another place other parts of the surfaces
+ *  are seen, whose normals differ a little. */
+Increment incrementOf(const PaperRegistration& found, const PaperOdometryOptions& options) {
+    auto rotation = found.rotation;
+    const double growth = 1 + found.translation.translation.norm() / options.pattern.view_distance;
+    rotation.covariance *= growth * growth;
+    return incrementOf(rotation, found.translation);
+}
+}  // namespace
+
+std::optional<Link> PaperFeatures::linkTo(const ScanFeatures& earlier,
+                                          const Eigen::Isometry3d& guess) const {
+    const auto& from = dynamic_cast<const PaperFeatures&>(earlier);
+    const auto found = byPatternAndLines(from, *this, guess, 0, *options);
+    if (!found.predictedReason.empty()) return {};
+    if (check && from.check) {
+        const auto placed = points::registerToPoints(from.check->map, check->points, guess,
+                                                     options->points.least_kernel, options->points);
+        if (placed.valid && !agree(placed.pose, poseOf(found), options->check)) return {};
+    }
+    return Link{incrementOf(found, *options), found.translation.overlap};
+}
+
+PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeatures& to,
+                                   const Eigen::Isometry3d& guess, double search_m,
+                                   const PaperOdometryOptions& options) {
+    auto found = byPatternAndLines(from, to, guess, search_m, options);
+    if (from.check && to.check) {
+        const double reach = std::max(options.check.reach, 1.5 * guess.translation().norm());
+        const auto placed = timed(found.check_ms, [&] {
+            return checkByPoints(*from.check, *to.check, poseOf(found), reach, options.check,
+                                 options.points);
+        });
+        if (placed.valid && !agree(placed.pose, poseOf(found), options.check)) {
+            const double check_ms = found.check_ms;
+            found = byPatternAndLines(from, to, placed.pose, 0, options);
+            hold(placed.pose, options, found);
+            found.check_ms = check_ms;
+            found.denied = true;
+        }
+    }
+    found.increment = incrementOf(found, options);
+    return found;
+}
+
 PaperOdometry::PaperOdometry(const PaperOdometryOptions& options)
     : options_(std::make_shared<PaperOdometryOptions>(options)), prediction_(options.prediction) {}
+
+/** The paper's rings and sectors are about z. */
+Eigen::Matrix3f PaperOdometry::upright() const {
+    return upright_.value_or(Eigen::Matrix3f::Identity());
+}
 
 /** Section III and IV-A: the pattern of the normals, and the lines. */
 std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const scan::PointCloud& cloud,
@@ -108,8 +183,14 @@ std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const scan::PointClo
     // nearly the same lines, each of which then pairs with itself and holds the vehicle at rest.
     auto lineOptions = options_->lines;
     lineOptions.seed += scans_;
-    features->lines = stage(
-        "lines", step, [&] { return paper::drawLines(cloud.points, cloud.rings, lineOptions); });
+    features->lines = stage("lines", step, [&] {
+        const auto drawn = paper::drawLines(upright() * cloud.points, cloud.rings, lineOptions);
+        return paper::rotated(drawn, upright().transpose().cast<double>());
+    });
+    stage("check_points", step, [&] {
+        if (options_->check.enabled)
+            features->check = checkPointsOf(cloud.points, options_->check, options_->pointMap);
+    });
     step.details = {{"normals", static_cast<double>(normals.directions.cols())},
                     {"pattern", static_cast<double>(features->pattern.directions.cols())},
                     {"modes", static_cast<double>(modes)},
@@ -145,7 +226,8 @@ Step PaperOdometry::process(const Scan& scan) {
     const Eigen::Isometry3d predicted = prediction_.predict(interval.duration_s);
     auto cloud = stage("preprocess", step, [&] {
         auto made = scan::preprocess(scan, options_->scan);
-        made.rings = scan::neighbouringRings(made);  // before points move
+        if (!upright_) upright_ = scan::uprightOf(made.points);
+        made.rings = scan::neighbouringRings(made, upright());  // before points move
         step.deskewed = !made.times_s.empty();
         if (step.deskewed)
             made.points =
@@ -165,12 +247,14 @@ Step PaperOdometry::process(const Scan& scan) {
         registration = registerFeatures(*reference_, *features, sinceReference_ * predicted,
                                         search_m, *options_);
         step.reason = registration.predictedReason;
+        step.searched = step.searched || registration.denied;
     } else if (scans_ > 1)
         step.reason = "no usable scan before it";  // what was driven since then is not known
     if (!usable) step.reason = cloud.points.cols() == 0 ? "no points" : "no surfaces";
     step.predicted = !step.reason.empty();
     step.times_ms.emplace_back("rotation", registration.rotation_ms);
     step.times_ms.emplace_back("translation", registration.translation_ms);
+    step.times_ms.emplace_back("check", registration.check_ms);
     note(registration, step);
     if (reference_)
         takeIncrement(registration, interval.duration_s, step);

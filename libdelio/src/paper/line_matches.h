@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "../surfaces/kd_tree.h"
+#include "../core/kd_tree.h"
 #include "delio/paper/line_cloud.h"
 
 namespace delio::paper {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../surfaces/kd_tree.h"
+#include "../core/kd_tree.h"
 #include "delio/paper/sphere.h"
 #include "delio/scan/voxel_grid.h"
 

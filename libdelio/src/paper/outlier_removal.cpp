@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../surfaces/kd_tree.h"
+#include "../core/kd_tree.h"
 
 namespace delio::paper {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../surfaces/kd_tree.h"
+#include "../core/kd_tree.h"
 #include "delio/core/kabsch.h"
 #include "delio/scan/voxel_grid.h"
 

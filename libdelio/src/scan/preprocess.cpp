@@ -65,7 +65,9 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     return cloud;
 }
 
-std::vector<std::uint16_t> neighbouringRings(const PointCloud& cloud) {
-    return cloud.rings.empty() ? ringsOf(cloud.points) : ringsFromTop(cloud.points, cloud.rings);
+std::vector<std::uint16_t> neighbouringRings(const PointCloud& cloud,
+                                             const Eigen::Matrix3f& upright) {
+    const Eigen::Matrix3Xf points = upright * cloud.points;
+    return cloud.rings.empty() ? ringsOf(points) : ringsFromTop(points, cloud.rings);
 }
 }  // namespace delio::scan

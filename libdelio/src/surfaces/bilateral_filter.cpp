@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "../surfaces/kd_tree.h"
+#include "../core/kd_tree.h"
 
 namespace delio::surfaces {
 std::vector<OptionField> BilateralFilterOptions::fields() const {

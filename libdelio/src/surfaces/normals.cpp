@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "../surfaces/kd_tree.h"
+#include "../core/kd_tree.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio::surfaces {

@@ -1,8 +1,10 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "delio/core/timeline.h"
 #include "delio/odometry/odometry.h"
+#include "delio/odometry/point_check.h"
 #include "delio/odometry/prediction.h"
 #include "delio/paper/line_cloud.h"
 #include "delio/paper/line_registration.h"
@@ -27,6 +29,9 @@ struct PaperOdometryOptions {
     paper::LineCloudOptions lines;
     paper::LineRegistrationOptions lineRegistration;
     PredictionOptions prediction;
+    PointCheckOptions check;
+    points::PointMapOptions pointMap;
+    points::PointRegistrationOptions points;
 };
 
 /** Scan `to` against scan `from`. */
@@ -36,13 +41,15 @@ struct PaperRegistration {
     TranslationEstimate translation;
     /** Why rotation, translation or both are the prediction; empty where both were registered. */
     std::string predictedReason;
-    double rotation_ms = 0, translation_ms = 0;
+    bool denied = false;  //!< points stand elsewhere: registered again from there
+    double rotation_ms = 0, translation_ms = 0, check_ms = 0;
 };
 
 /** Pattern of the normals and line cloud of a scan, in the sensor's frame. */
 struct PaperFeatures : public ScanFeatures {
     paper::Pattern pattern;
     paper::LineCloud lines;
+    std::optional<CheckPoints> check;                     //!< where it is enabled
     std::shared_ptr<const PaperOdometryOptions> options;  //!< that they were made with
 
     std::optional<Link> linkTo(const ScanFeatures& earlier,
@@ -51,7 +58,9 @@ struct PaperFeatures : public ScanFeatures {
 
 /** Rotation from the patterns of the normals (III-D), then translation from the line clouds of the
  *  unrotated scan (IV-B). `guess` maps frame `to` to frame `from`. With `search_m` > 0,
- *  translations up to so many metres off the guess are tried. */
+ *  translations up to so many metres off the guess are tried. Where points say that the scan stands
+ *  elsewhere it is registered again from there; an axis along or about which that still leads away
+ *  stays where the points put it, and is named as unobserved. */
 PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeatures& to,
                                    const Eigen::Isometry3d& guess, double search_m,
                                    const PaperOdometryOptions& options);
@@ -66,6 +75,7 @@ class PaperOdometry : public Odometry {
     Step process(const Scan& scan) override;
 
  private:
+    Eigen::Matrix3f upright() const;
     std::shared_ptr<const PaperFeatures> extract(const scan::PointCloud& cloud, Step& step) const;
     void takeIncrement(const PaperRegistration& registration, double duration_s, Step& step);
 
@@ -74,6 +84,8 @@ class PaperOdometry : public Odometry {
     LinearPrediction prediction_;
     unsigned scans_ = 0;                              //!< processed
     std::shared_ptr<const PaperFeatures> reference_;  //!< the last usable scan
+    /** Turns the sensor's frame such that it spins about z; of the first scan that shows how. */
+    std::optional<Eigen::Matrix3f> upright_;
     /** Maps the latest frame to that of reference_. */
     Eigen::Isometry3d sinceReference_ = Eigen::Isometry3d::Identity();
     double sinceReference_s_ = 0;

@@ -37,6 +37,8 @@ struct PointCloud {
 PointCloud preprocess(const Scan& scan, const PreprocessOptions& options);
 
 /** Ring of each point, from 0, neighbours with consecutive numbers: the source's, sorted from the
- *  top, or where it does not say, told by ringsOf(). */
-std::vector<std::uint16_t> neighbouringRings(const PointCloud& cloud);
+ *  top, or where it does not say, told by ringsOf(). `upright` turns the cloud's frame such that
+ * the sensor spins about z. */
+std::vector<std::uint16_t> neighbouringRings(
+    const PointCloud& cloud, const Eigen::Matrix3f& upright = Eigen::Matrix3f::Identity());
 }  // namespace delio::scan

@@ -1,0 +1,15 @@
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+
+namespace delio::scan {
+/** The axis, a unit vector, that a spinning LiDAR turns about, in the frame of its points (the
+ *  sensor at the origin): a cloud may have been turned into the axes of a vehicle. A beam keeps its
+ *  elevation, so that neighbouring rays, which are mostly one beam's, differ across the axis only.
+ *  Nothing where the points do not look like that. */
+std::optional<Eigen::Vector3d> spinAxisOf(const Eigen::Matrix3Xf& points);
+
+/** Turns the points' frame such that the sensor spins about z; the identity where it does already,
+ *  or nearly: beams of an HDL-64E do not come from one point. */
+std::optional<Eigen::Matrix3f> uprightOf(const Eigen::Matrix3Xf& points);
+}  // namespace delio::scan

@@ -1,0 +1,65 @@
+#include "delio/scan/spin_axis.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "../core/kd_tree.h"
+
+namespace delio::scan {
+namespace {
+/** Directions from rays to the two next to them, which are enough to tell: unit vectors. */
+std::vector<Eigen::Vector3d> stepsToNeighbours(const Eigen::Matrix3Xf& rays) {
+    constexpr Eigen::Index kAsked = 3000;
+    constexpr float kSame = 1e-5F, kFar = 0.05F;  // rad
+    const KdTree tree(rays);
+    std::vector<Eigen::Vector3d> steps;
+    for (Eigen::Index i = 0; i < rays.cols();
+         i += std::max<Eigen::Index>(1, rays.cols() / kAsked)) {
+        std::array<std::uint32_t, 3> indices{};
+        std::array<float, 3> squared{};
+        const auto found = tree.nearest(rays.col(i), 3, indices.data(), squared.data());
+        for (std::size_t k = 0; k < found; ++k) {
+            const Eigen::Vector3f step = rays.col(indices[k]) - rays.col(i);
+            const float length = step.norm();
+            if (length > kSame && length < kFar) steps.emplace_back((step / length).cast<double>());
+        }
+    }
+    return steps;
+}
+}  // namespace
+
+std::optional<Eigen::Vector3d> spinAxisOf(const Eigen::Matrix3Xf& points) {
+    constexpr std::size_t kLeast = 300;
+    constexpr double kFirst = 0.5, kLast = 0.02, kAcross = 0.05, kShare = 0.7;
+    const auto steps = stepsToNeighbours(points.colwise().normalized());
+    if (steps.size() < kLeast) return {};
+    Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // at first all steps count alike
+    for (double width = kFirst;; width /= 2) {
+        Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+        for (const auto& step : steps) {
+            const double robust = 1 / (1 + std::pow(step.dot(axis) / width, 2));
+            sum += robust * robust * step * step.transpose();
+        }
+        axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(0);
+        if (width < kLast) break;
+    }
+    const auto across = std::count_if(steps.begin(), steps.end(), [&](const auto& step) {
+        return std::abs(step.dot(axis)) < kAcross;
+    });
+    if (static_cast<double>(across) < kShare * static_cast<double>(steps.size())) return {};
+    return axis.z() < 0 ? Eigen::Vector3d(-axis) : axis;
+}
+
+std::optional<Eigen::Matrix3f> uprightOf(const Eigen::Matrix3Xf& points) {
+    constexpr double kNearly = 2 * M_PI / 180;
+    const auto axis = spinAxisOf(points);
+    if (!axis) return {};
+    const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+    if (axis->cross(z).norm() < std::sin(kNearly)) return Eigen::Matrix3f::Identity();
+    return Eigen::Quaterniond::FromTwoVectors(*axis, z).toRotationMatrix().cast<float>();
+}
+}  // namespace delio::scan
