@@ -14,14 +14,6 @@ std::vector<OptionField> PointMapOptions::fields() const {
             {"radius", &Me::radius, "m; the map ends at this distance from the sensor", 1, 1e4}};
 }
 
-PointMap::Cell::Distances PointMap::Cell::distances(Eigen::Index first,
-                                                    const Eigen::Vector3f& local) const {
-    const auto squared = [&](Eigen::Index axis) {
-        return (points.col(axis).segment<kTogether>(first) - local[axis]).square();
-    };
-    return squared(0) + (squared(1) + squared(2));
-}
-
 void PointMap::add(const Eigen::Matrix3Xd& points) {
     const auto squaredSpacing = static_cast<float>(options_.spacing * options_.spacing);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {

@@ -7,8 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "delio/scan/sample.h"
+
 namespace delio::points {
 namespace {
+/** So many points tell where all of them would be led to. */
+constexpr Eigen::Index kEnough = 1000;
+
 /** Starts on a disc about `guess`, those first where most of the points come to lie near the
  * map's. */
 std::vector<Eigen::Isometry3d> startsAbout(const PointMap& map, const Eigen::Matrix3Xd& points,
@@ -47,10 +52,12 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     // Another start has to explain clearly more.
     constexpr double kClearly = 0.1;
     double most = shareOf(best) + kClearly;
-    auto tried = startsAbout(map, off, guess, reach, options.first_kernel / 2);
+    // Where a start leads to, a part of the points tells: they are judged by all.
+    const Eigen::Matrix3Xd part = scan::sample(off, kEnough);
+    auto tried = startsAbout(map, part, guess, reach, options.first_kernel / 2);
     if (tried.size() > kBest) tried.resize(kBest);
     for (const auto& start : tried) {
-        const auto found = registerToPoints(map, off, start, options.first_kernel / 2, options);
+        const auto found = registerToPoints(map, part, start, options.first_kernel / 2, options);
         if (!found.valid || found.share <= most) continue;
         const auto all = registerToPoints(map, points, found.pose, options.least_kernel, options);
         if (!all.valid || shareOf(all) <= most) continue;
@@ -63,10 +70,11 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
 bool pointsSee(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
                const Eigen::Vector3d& axis, double probe, const PointRegistrationOptions& options) {
     constexpr double kBack = 0.3;
+    const Eigen::Matrix3Xd part = scan::sample(points, kEnough);
     for (const double side : {-1.0, 1.0}) {
         Eigen::Isometry3d start = pose;
         start.translation() += side * probe * axis;
-        const auto back = registerToPoints(map, points, start, probe, options);
+        const auto back = registerToPoints(map, part, start, probe, options);
         const double off_m = std::abs(axis.dot(back.pose.translation() - pose.translation()));
         if (!back.valid || off_m > kBack * probe) return false;
     }

@@ -10,6 +10,8 @@ std::uint64_t voxelKey(const Eigen::Vector3d& point, double size) {
 
 VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
     VoxelIndex numbers;
+    constexpr std::size_t kTypical = 4;  // points a voxel
+    numbers.reserve(static_cast<std::size_t>(points.cols()) / kTypical);
     VoxelNumbers result;
     result.ofPoint.reserve(static_cast<std::size_t>(points.cols()));
     // Most points lie in the voxel of the one before: a sensor gives neighbours after each other.

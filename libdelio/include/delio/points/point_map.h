@@ -46,7 +46,12 @@ class PointMap {
         Eigen::Index count = 0;
 
         /** Squared, of the points from `first` on; `local`: seen from the origin. */
-        Distances distances(Eigen::Index first, const Eigen::Vector3f& local) const;
+        Distances distances(Eigen::Index first, const Eigen::Vector3f& local) const {
+            const auto squared = [&](Eigen::Index axis) {
+                return (points.col(axis).segment<kTogether>(first) - local[axis]).square();
+            };
+            return squared(0) + (squared(1) + squared(2));
+        }
 
         bool nearest(const Eigen::Vector3d& point, float& least, Eigen::Vector3d& found) const;
     };
