@@ -1,5 +1,7 @@
 #include "delio/scan/voxel_grid.h"
 
+#include <tbb/parallel_for.h>
+
 #include "delio/scan/voxel_table.h"
 
 namespace delio::scan {
@@ -9,6 +11,10 @@ std::uint64_t voxelKey(const Eigen::Vector3d& point, double size) {
 }
 
 VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
+    std::vector<std::uint64_t> keys(static_cast<std::size_t>(points.cols()));
+    tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
+        keys[static_cast<std::size_t>(i)] = voxelKey(points.col(i).cast<double>(), size);
+    });
     VoxelIndex numbers;
     constexpr std::size_t kTypical = 4;  // points a voxel
     numbers.reserve(static_cast<std::size_t>(points.cols()) / kTypical);
@@ -16,9 +22,8 @@ VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
     result.ofPoint.reserve(static_cast<std::size_t>(points.cols()));
     // Most points lie in the voxel of the one before: a sensor gives neighbours after each other.
     std::uint64_t latestKey = 0;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const std::uint64_t key = voxelKey(points.col(i).cast<double>(), size);
-        if (i > 0 && key == latestKey) {
+    for (const std::uint64_t key : keys) {
+        if (!result.ofPoint.empty() && key == latestKey) {
             result.ofPoint.push_back(result.ofPoint.back());
             continue;
         }
