@@ -85,10 +85,13 @@ std::optional<Eigen::Vector3f> DynamicObjects::velocityOf(const Object& object) 
                 const auto earlier_s = static_cast<float>(second.stamp_s - first.stamp_s);
                 if (earlier_s < 0.75F * later_s || earlier_s > 1.5F * later_s) continue;
                 const Eigen::Vector3f expected = there.place - step * earlier_s / later_s;
-                for (const auto& start : first.objects)
-                    if ((start.place - expected).norm() < kTolerance_m + kTolerance * length &&
-                        alike(start.size, object.size) && gone(start, first) && gone(there, second))
+                const float tolerance = kTolerance_m + kTolerance * length;
+                for (const auto& start : first.objects) {
+                    const Eigen::Vector3f off = start.place - expected;
+                    if (std::abs(off.x()) >= tolerance || off.norm() >= tolerance) continue;
+                    if (alike(start.size, object.size) && gone(start, first) && gone(there, second))
                         return step / later_s;
+                }
             }
         }
     }

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -41,11 +42,12 @@ int RangeImage::columnOf(const Eigen::Vector3f& point) const {
 Place RangeImage::at(const Eigen::Vector3f& point, float margin) const {
     const float range = point.norm();
     const int row = rowOf(point), column = columnOf(point);
+    const std::array<int, 3> columns = {column == 0 ? columns_ - 1 : column - 1, column,
+                                        column + 1 == columns_ ? 0 : column + 1};
     int seen = 0, passed = 0;
     for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r)
-        for (int c = column - 1; c <= column + 1; ++c) {
-            const float nearest =
-                nearest_[static_cast<std::size_t>(r * columns_ + (c + columns_) % columns_)];
+        for (const int c : columns) {
+            const float nearest = nearest_[static_cast<std::size_t>(r * columns_ + c)];
             if (nearest == 0) continue;
             if (std::abs(nearest - range) <= margin) return Place::kTaken;
             ++seen;
