@@ -48,7 +48,9 @@ TEST(VoxelTable, KeepsTheRestWhenSomeAreErased) {
     forCube([&](std::uint64_t key) {
         const auto* found = table.find(key);
         ASSERT_EQ(found == nullptr, isOdd(key));
-        if (found) EXPECT_EQ(*found, key);
+        if (found) {
+            EXPECT_EQ(*found, key);
+        }
     });
     // What was erased can come again.
     const std::uint64_t odd = voxelKey(0, 0, 1);
