@@ -112,8 +112,9 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
     PointEstimate estimate;
     estimate.pose = predicted;
     estimate.kernel_m = std::max(kernel, options.last_kernel);
-    // A part of the points leads near the last kernel as well; all of them from there.
-    constexpr Eigen::Index kEnough = 2000;
+    // A part of the points leads near the last kernel as well; all of them from there. (With 2000
+    // an OS1-64 that starts from rest on a highway is off by 0.2 %, not 0.02 %.)
+    constexpr Eigen::Index kEnough = 4000;
     const Eigen::Matrix3Xd part = scan::sample(points, kEnough);
     for (double width = estimate.kernel_m;; width = std::max(width / 2, options.last_kernel)) {
         // Only the last kernel has to converge; the others lead into its reach.
