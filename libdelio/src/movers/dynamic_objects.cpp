@@ -65,13 +65,11 @@ std::optional<Eigen::Vector3f> DynamicObjects::velocityOf(const Object& object) 
     const auto gone = [&](const Object& earlier, const View& view) {
         return isFree(earlier, view, latest_, kLeastKnown);
     };
-    const Eigen::Vector3f here = latest_.toMap * object.centre;
     for (std::size_t i = 0; i < views_.size(); ++i) {
         const View& second = views_[i];
         const auto later_s = static_cast<float>(latest_.stamp_s - second.stamp_s);
         for (const auto& there : second.objects) {
-            const Eigen::Vector3f place = second.toMap * there.centre;
-            const Eigen::Vector3f step = here - place;
+            const Eigen::Vector3f step = object.place - there.place;
             const float length = step.norm();
             if (length < static_cast<float>(options_.margin) || length > kFastest_m_s * later_s ||
                 !alike(there.size, object.size))
@@ -86,12 +84,14 @@ std::optional<Eigen::Vector3f> DynamicObjects::velocityOf(const Object& object) 
                 const View& first = views_[j];
                 const auto earlier_s = static_cast<float>(second.stamp_s - first.stamp_s);
                 if (earlier_s < 0.75F * later_s || earlier_s > 1.5F * later_s) continue;
-                const Eigen::Vector3f expected = place - step * earlier_s / later_s;
-                for (const auto& start : first.objects)
-                    if ((first.toMap * start.centre - expected).norm() <
-                            kTolerance_m + kTolerance * length &&
-                        alike(start.size, object.size) && gone(start, first) && gone(there, second))
+                const Eigen::Vector3f expected = there.place - step * earlier_s / later_s;
+                const float tolerance = kTolerance_m + kTolerance * length;
+                for (const auto& start : first.objects) {
+                    const Eigen::Vector3f off = start.place - expected;
+                    if (std::abs(off.x()) >= tolerance || off.norm() >= tolerance) continue;
+                    if (alike(start.size, object.size) && gone(start, first) && gone(there, second))
                         return step / later_s;
+                }
             }
         }
     }
@@ -109,6 +109,7 @@ std::vector<std::uint8_t> DynamicObjects::detect(const Eigen::Matrix3Xf& points,
         Object object{Eigen::Matrix3Xf(3, segment.points.size()),
                       segment.box.center(),
                       segment.box.sizes(),
+                      latest_.toMap * segment.box.center(),
                       {}};
         for (std::size_t i = 0; i < segment.points.size(); ++i)
             object.points.col(static_cast<Eigen::Index>(i)) = points.col(segment.points[i]);
@@ -132,6 +133,7 @@ void DynamicObjects::remember(const Eigen::Isometry3d& pose) {
     if (!views_.empty() && latest_.stamp_s - views_.front().stamp_s < 0.99 * options_.interval_s)
         return;
     latest_.toMap = pose.cast<float>();
+    for (auto& object : latest_.objects) object.place = latest_.toMap * object.centre;
     views_.push_front(std::move(latest_));
 }
 }  // namespace delio::movers

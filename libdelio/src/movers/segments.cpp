@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace delio::movers {
@@ -57,6 +58,38 @@ std::vector<float> heights(const Eigen::Matrix3Xf& points, double radius) {
             points(2, i) - about[grid.at(points(0, i), points(1, i))];
     return result;
 }
+
+constexpr std::int32_t kNone = -1;
+
+/** The points that stand above the ground, cell by cell: from each to the next one of its cell. (A
+ *  list a cell would be tens of thousands of allocations a scan.) */
+struct Chains {
+    std::vector<std::int32_t> first, next;
+    std::vector<std::size_t> filled;  //!< cells, in the order of their first points
+};
+
+Chains chainsOf(const Eigen::Matrix3Xf& points, const std::vector<float>& above, const Grid& grid,
+                const SegmentOptions& options) {
+    Chains chains{std::vector<std::int32_t>(grid.size(), kNone),
+                  std::vector<std::int32_t>(above.size(), kNone),
+                  {}};
+    std::vector<std::int32_t> last(grid.size(), kNone);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const auto height = double{above[static_cast<std::size_t>(i)]};
+        if (height < options.above_ground || height > options.height) continue;
+        const std::size_t cell = grid.at(points(0, i), points(1, i));
+        if (cell == grid.size()) continue;
+        const auto point = static_cast<std::int32_t>(i);
+        if (last[cell] == kNone) {
+            chains.filled.push_back(cell);
+            chains.first[cell] = point;
+        } else {
+            chains.next[static_cast<std::size_t>(last[cell])] = point;
+        }
+        last[cell] = point;
+    }
+    return chains;
+}
 }  // namespace
 
 std::vector<OptionField> SegmentOptions::fields() const {
@@ -74,31 +107,25 @@ std::vector<OptionField> SegmentOptions::fields() const {
 std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentOptions& options) {
     const auto above = heights(points, options.radius);
     const Grid grid(options.cell, options.radius);
-    std::vector<std::vector<Eigen::Index>> cells(grid.size());
-    std::vector<std::size_t> filled;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const auto height = double{above[static_cast<std::size_t>(i)]};
-        const std::size_t cell = grid.at(points(0, i), points(1, i));
-        if (height < options.above_ground || height > options.height || cell == grid.size())
-            continue;
-        if (cells[cell].empty()) filled.push_back(cell);
-        cells[cell].push_back(i);
-    }
+    const Chains cells = chainsOf(points, above, grid, options);
+    std::vector<std::uint8_t> taken(grid.size());
     std::vector<Segment> segments;
-    for (const std::size_t start : filled) {
-        if (cells[start].empty()) continue;  // taken by a segment already
+    for (const std::size_t start : cells.filled) {
+        if (taken[start]) continue;
         Segment segment;
         std::vector<std::size_t> open = {start};
         while (!open.empty()) {
             const std::size_t cell = open.back();
             open.pop_back();
-            for (const Eigen::Index i : cells[cell]) {
+            if (taken[cell]) continue;
+            taken[cell] = true;
+            for (Eigen::Index i = cells.first[cell]; i != kNone;
+                 i = cells.next[static_cast<std::size_t>(i)]) {
                 segment.points.push_back(i);
                 segment.box.extend(points.col(i));
             }
-            cells[cell].clear();
             grid.forNeighbours(cell, [&](std::size_t neighbour) {
-                if (!cells[neighbour].empty()) open.push_back(neighbour);
+                if (!taken[neighbour] && cells.first[neighbour] != kNone) open.push_back(neighbour);
             });
         }
         const auto length = double{segment.box.sizes().head<2>().maxCoeff()};

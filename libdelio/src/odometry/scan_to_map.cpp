@@ -1,5 +1,7 @@
 #include "delio/odometry/scan_to_map.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -33,8 +35,7 @@ std::vector<OptionField> ScanToMapOptions::fields() const {
 void ScanToMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose) {
     const Eigen::Matrix3Xd placed =
         (pose.linear() * points.cast<double>()).colwise() + pose.translation();
-    planes_.add(placed);
-    points_.add(placed);
+    tbb::parallel_invoke([&] { planes_.add(placed); }, [&] { points_.add(placed); });
     // Each sweep goes through all that is known: not with every scan.
     constexpr double kSweep_m = 5;
     if ((pose.translation() - swept_m_).norm() < kSweep_m) return;

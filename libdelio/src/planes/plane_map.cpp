@@ -5,7 +5,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "delio/scan/voxel_grid.h"
 
@@ -59,21 +58,22 @@ void PlaneMap::fit(double edge, Cell& cell) const {
 }
 
 void PlaneMap::add(const Eigen::Matrix3Xd& points, Level& level) const {
-    std::vector<Cell*> touched;
+    std::vector<std::uint32_t> touched;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const Eigen::Vector3d point = points.col(i);
-        Cell& cell = level.cells[scan::voxelKey(point, level.edge)];
+        const std::uint32_t number = level.cells.insert(scan::voxelKey(point, level.edge));
+        Cell& cell = level.cells[number];
         if (cell.count == 0) cell.origin = point;
         if (cell.count >= options_.max_points) continue;
         const Eigen::Vector3d d = point - cell.origin;
         cell.sum += d;
         cell.squares += d * d.transpose();
         ++cell.count;
-        if (!cell.touched) touched.push_back(&cell);
+        if (!cell.touched) touched.push_back(number);
         cell.touched = true;
     }
     tbb::parallel_for(std::size_t{0}, touched.size(),
-                      [&](std::size_t i) { fit(level.edge, *touched[i]); });
+                      [&](std::size_t i) { fit(level.edge, level.cells[touched[i]]); });
 }
 
 void PlaneMap::add(const Eigen::Matrix3Xd& points) {
@@ -82,10 +82,9 @@ void PlaneMap::add(const Eigen::Matrix3Xd& points) {
 }
 
 void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
-    for (auto& [edge, cells] : levels_)
-        for (auto i = cells.begin(); i != cells.end();)
-            i = (i->second.origin - centre).norm() > options_.radius ? cells.erase(i)
-                                                                     : std::next(i);
+    for (auto& level : levels_)
+        level.cells.eraseIf(
+            [&](const Cell& cell) { return (cell.origin - centre).norm() > options_.radius; });
 }
 
 void PlaneMap::clear() {
@@ -102,14 +101,14 @@ std::size_t PlaneMap::planes() const {
     std::ptrdiff_t count = 0;
     for (const auto& level : levels_)
         count += std::count_if(level.cells.begin(), level.cells.end(),
-                               [](const auto& entry) { return entry.second.isPlane; });
+                               [](const Cell& cell) { return cell.isPlane; });
     return static_cast<std::size_t>(count);
 }
 
 const Plane* PlaneMap::at(const Eigen::Vector3d& point) const {
     for (const auto& level : levels_) {
-        const auto cell = level.cells.find(scan::voxelKey(point, level.edge));
-        if (cell != level.cells.end() && cell->second.isPlane) return &cell->second.plane;
+        const Cell* cell = level.cells.find(scan::voxelKey(point, level.edge));
+        if (cell && cell->isPlane) return &cell->plane;
     }
     return nullptr;
 }

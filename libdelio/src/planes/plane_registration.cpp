@@ -1,5 +1,7 @@
 #include "delio/planes/plane_registration.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -52,14 +54,18 @@ bool iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& k
  *  first time does not count. */
 double shareOnPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
                      const Eigen::Isometry3d& pose, double kernel) {
-    double sum = 0, count = 0;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    Eigen::VectorXd fits = Eigen::VectorXd::Zero(points.cols());  // 0: no plane there
+    tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
         const Eigen::Vector3d placed = pose * points.col(i);
         const Plane* plane = map.at(placed);
-        if (!plane) continue;
+        if (!plane) return;
         const double r = plane->normal().dot(placed - plane->mean) / kernel;
-        sum += 1 / (1 + r * r);
-        count += 1;
+        fits[i] = 1 / (1 + r * r);
+    });
+    double sum = 0, count = 0;
+    for (const double fit : fits) {
+        sum += fit;
+        count += fit > 0;
     }
     return count > 0 ? sum / count : 0;
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "delio/scan/sample.h"
+
 namespace delio::planes {
 double agreement(const PlaneMap& map, const surfaces::SurfaceNormals& surfaces,
                  const Eigen::Isometry3d& pose, double kernel) {
@@ -33,6 +35,12 @@ PlaneEstimate searchInPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points
                              const PlaneRegistrationOptions& options) {
     const Eigen::Matrix3d R = centre.linear();
     constexpr std::size_t kBest = 12;
+    // A part tells which starts are good, and where they lead to.
+    constexpr Eigen::Index kEnough = 1000;
+    const Eigen::Matrix3Xd part = scan::sample(points, kEnough);
+    surfaces::SurfaceNormals few;
+    few.points = scan::sample(surfaces.points, kEnough);
+    few.directions = scan::sample(surfaces.directions, kEnough);
     const int steps = static_cast<int>(radius / options.search_step);
     std::vector<std::pair<double, Eigen::Vector3d>> starts;
     for (int x = -steps; x <= steps; ++x)
@@ -42,7 +50,7 @@ PlaneEstimate searchInPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points
         }
     tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
         starts[i].first =
-            agreement(map, surfaces, isometry(R, starts[i].second), options.search_step / 2);
+            agreement(map, few, isometry(R, starts[i].second), options.search_step / 2);
     });
     std::stable_sort(starts.begin(), starts.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -51,7 +59,7 @@ PlaneEstimate searchInPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points
     PlaneEstimate best;
     double bestAgreement = -1;
     for (const auto& [rough, t] : starts) {
-        const auto found = registerToPlanes(map, points, priorOf(isometry(R, t), options),
+        const auto found = registerToPlanes(map, part, priorOf(isometry(R, t), options),
                                             options.search_step, options);
         const double agreed = agreement(map, surfaces, found.pose(), 2 * options.last_kernel);
         if (agreed <= bestAgreement) continue;

@@ -1,7 +1,7 @@
 #include "delio/points/point_map.h"
 
 #include <algorithm>
-#include <iterator>
+#include <array>
 
 #include "delio/scan/voxel_grid.h"
 
@@ -18,26 +18,24 @@ void PointMap::add(const Eigen::Matrix3Xd& points) {
     const auto squaredSpacing = static_cast<float>(options_.spacing * options_.spacing);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const Eigen::Vector3d point = points.col(i);
-        Cell& cell = cells_[scan::voxelKey(point, options_.voxel_size)];
+        Cell& cell = cells_[cells_.insert(scan::voxelKey(point, options_.voxel_size))];
         if (cell.count == Cell::kMost) continue;
         if (cell.count == 0) cell.origin = point;
         const Eigen::Vector3f local = (point - cell.origin).cast<float>();
-        const auto end = cell.points.begin() + static_cast<std::ptrdiff_t>(cell.count);
-        const bool isNew = std::none_of(cell.points.begin(), end, [&](const Eigen::Vector3f& p) {
-            return (p - local).squaredNorm() < squaredSpacing;
-        });
+        bool isNew = true;
+        for (Eigen::Index first = 0; isNew && first < cell.count; first += Cell::kTogether)
+            isNew = cell.distances(first, local).minCoeff() >= squaredSpacing;
         if (!isNew) continue;
-        cell.points[cell.count++] = local;
+        cell.points.row(cell.count++) = local.array();
         ++size_;
     }
 }
 
 void PointMap::forgetFarFrom(const Eigen::Vector3d& centre) {
-    for (auto i = cells_.begin(); i != cells_.end();) {
-        const bool isFar = (i->second.origin - centre).norm() > options_.radius;
-        if (isFar) size_ -= i->second.count;
-        i = isFar ? cells_.erase(i) : std::next(i);
-    }
+    cells_.eraseIf(
+        [&](const Cell& cell) { return (cell.origin - centre).norm() > options_.radius; });
+    size_ = 0;
+    for (const Cell& cell : cells_) size_ += static_cast<std::size_t>(cell.count);
 }
 
 void PointMap::clear() {
@@ -49,36 +47,47 @@ void PointMap::clear() {
 bool PointMap::Cell::nearest(const Eigen::Vector3d& point, float& least,
                              Eigen::Vector3d& found) const {
     const Eigen::Vector3f local = (point - origin).cast<float>();
-    std::size_t best = kMost;
-    for (std::size_t i = 0; i < count; ++i) {
-        const float squared = (points[i] - local).squaredNorm();
-        if (squared >= least) continue;
-        least = squared;
-        best = i;
+    Eigen::Index best = kMost;
+    for (Eigen::Index first = 0; first < count; first += kTogether) {
+        const Distances squared = distances(first, local);
+        const float lowest = squared.minCoeff();
+        if (!(lowest < least)) continue;
+        least = lowest;
+        best = first;
+        while (squared[best - first] != lowest) ++best;
     }
     if (best == kMost) return false;
-    found = origin + points[best].cast<double>();
+    found = origin + points.row(best).matrix().transpose().cast<double>();
     return true;
 }
 
 bool PointMap::nearest(const Eigen::Vector3d& point, double reach, Eigen::Vector3d& found) const {
     const double size = options_.voxel_size;
-    const Eigen::Vector3d inVoxels = point / size, own = inVoxels.array().floor();
-    // How far the voxels before, at and behind the point's own are, along each axis.
-    const Eigen::Array3d before = size * (inVoxels - own).array();
-    Eigen::Array33d distances;
-    distances << before, Eigen::Array3d::Zero(), size - before;
-    const Eigen::Array33d squares = distances.square();
+    // How far, squared, the voxels at, before and behind the point's own are, along each axis: its
+    // own first, as what is found there leaves out most others.
+    std::array<std::int64_t, 3> own;
+    std::array<std::array<double, 3>, 3> squares;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double inVoxels = point[static_cast<Eigen::Index>(axis)] / size;
+        own[axis] = scan::floorOf(inVoxels);
+        const double before = size * (inVoxels - static_cast<double>(own[axis])),
+                     behind = size - before;
+        squares[axis] = {0, before * before, behind * behind};
+    }
+    constexpr std::array<std::int64_t, 3> kOffsets = {0, -1, 1};
     auto least = static_cast<float>(std::min(reach * reach, size * size));
     bool any = false;
-    for (const int x : {1, 0, 2})  // its own first: what is nearer leaves out most others
-        for (const int y : {1, 0, 2})
-            for (const int z : {1, 0, 2}) {
-                if (squares(0, x) + squares(1, y) + squares(2, z) >= least) continue;
-                const Eigen::Vector3d middle = own + Eigen::Vector3d(x - 0.5, y - 0.5, z - 0.5);
-                const auto cell = cells_.find(scan::voxelKey(middle, 1));
-                if (cell != cells_.end()) any |= cell->second.nearest(point, least, found);
+    for (std::size_t x = 0; x < 3; ++x)
+        for (std::size_t y = 0; y < 3; ++y) {
+            const double flat = squares[0][x] + squares[1][y];
+            if (flat >= double{least}) continue;
+            for (std::size_t z = 0; z < 3; ++z) {
+                if (flat + squares[2][z] >= double{least}) continue;
+                const Cell* cell = cells_.find(scan::voxelKey(
+                    own[0] + kOffsets[x], own[1] + kOffsets[y], own[2] + kOffsets[z]));
+                if (cell) any |= cell->nearest(point, least, found);
             }
+        }
     return any;
 }
 }  // namespace delio::points

@@ -9,6 +9,7 @@
 
 #include "delio/core/geometry.h"
 #include "delio/core/kabsch.h"
+#include "delio/scan/sample.h"
 
 namespace delio::points {
 namespace {
@@ -111,15 +112,20 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
     PointEstimate estimate;
     estimate.pose = predicted;
     estimate.kernel_m = std::max(kernel, options.last_kernel);
+    // A part of the points leads near the last kernel as well; all of them from there. (With 2000
+    // an OS1-64 that starts from rest on a highway is off by 0.2 %, not 0.02 %.)
+    constexpr Eigen::Index kEnough = 4000;
+    const Eigen::Matrix3Xd part = scan::sample(points, kEnough);
     for (double width = estimate.kernel_m;; width = std::max(width / 2, options.last_kernel)) {
         // Only the last kernel has to converge; the others lead into its reach.
         constexpr double kRough = 0.02;
         const bool isLast = width <= options.last_kernel;
+        const Eigen::Matrix3Xd& used = width > 2 * options.last_kernel ? part : points;
         const double enough = isLast ? options.converged_m : kRough * width;
         for (unsigned i = 0; i < options.max_iterations; ++i) {
             const Eigen::Isometry3d before = estimate.pose;
-            const auto pairs = pairsAt(map, points, before, width);
-            if (!solve(points, pairs, options.min_matches, estimate.pose)) {
+            const auto pairs = pairsAt(map, used, before, width);
+            if (!solve(used, pairs, options.min_matches, estimate.pose)) {
                 estimate.pose = predicted;
                 estimate.converged = false;
                 return estimate;

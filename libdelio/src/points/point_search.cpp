@@ -7,8 +7,28 @@
 #include <utility>
 #include <vector>
 
+#include "delio/scan/sample.h"
+
 namespace delio::points {
 namespace {
+/** So many points tell where a start leads to. */
+constexpr Eigen::Index kEnough = 1000;
+/** Of sparse scans all are needed: with half of a VLP-16's points a road was taken for a tunnel. */
+constexpr Eigen::Index kDense = 2000;
+
+/** By a part of the points, which may take a hundred iterations, then by all. */
+PointEstimate registerInSteps(const PointMap& map, const Eigen::Matrix3Xd& points,
+                              const Eigen::Isometry3d& guess, double kernel,
+                              const PointRegistrationOptions& options) {
+    const Eigen::Matrix3Xd part = scan::sample(points, kDense);
+    const auto rough = registerToPoints(map, part, guess, kernel, options);
+    if (part.cols() == points.cols()) return rough;
+    auto estimate = registerToPoints(map, points, rough.pose, options.last_kernel, options);
+    estimate.iterations += rough.iterations;
+    estimate.kernel_m = rough.kernel_m;
+    return estimate;
+}
+
 /** Starts on a disc about `guess`, those first where most of the points come to lie near the
  * map's. */
 std::vector<Eigen::Isometry3d> startsAbout(const PointMap& map, const Eigen::Matrix3Xd& points,
@@ -36,21 +56,23 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& guess, double reach,
                            const PointRegistrationOptions& options) {
     constexpr std::size_t kBest = 8;
-    auto best = registerToPoints(map, points, guess, options.least_kernel, options);
+    auto best = registerInSteps(map, points, guess, options.least_kernel, options);
     const auto off = pointsOff(map, points, guess, options.least_kernel);
     if (off.cols() < options.min_matches) return best;
     const auto shareOf = [&](const PointEstimate& found) {
         return shareAt(map, off, found.pose, options.last_kernel);
     };
-    const auto wide = registerToPoints(map, points, guess, options.first_kernel, options);
+    const auto wide = registerInSteps(map, points, guess, options.first_kernel, options);
     if (wide.valid && shareOf(wide) > shareOf(best)) best = wide;
     // Another start has to explain clearly more.
     constexpr double kClearly = 0.1;
     double most = shareOf(best) + kClearly;
-    auto tried = startsAbout(map, off, guess, reach, options.first_kernel / 2);
+    // Where a start leads to, a part of the points tells: they are judged by all.
+    const Eigen::Matrix3Xd part = scan::sample(off, kEnough);
+    auto tried = startsAbout(map, part, guess, reach, options.first_kernel / 2);
     if (tried.size() > kBest) tried.resize(kBest);
     for (const auto& start : tried) {
-        const auto found = registerToPoints(map, off, start, options.first_kernel / 2, options);
+        const auto found = registerToPoints(map, part, start, options.first_kernel / 2, options);
         if (!found.valid || found.share <= most) continue;
         const auto all = registerToPoints(map, points, found.pose, options.least_kernel, options);
         if (!all.valid || shareOf(all) <= most) continue;
@@ -63,10 +85,11 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
 bool pointsSee(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
                const Eigen::Vector3d& axis, double probe, const PointRegistrationOptions& options) {
     constexpr double kBack = 0.3;
+    const Eigen::Matrix3Xd part = scan::sample(points, kDense);
     for (const double side : {-1.0, 1.0}) {
         Eigen::Isometry3d start = pose;
         start.translation() += side * probe * axis;
-        const auto back = registerToPoints(map, points, start, probe, options);
+        const auto back = registerToPoints(map, part, start, probe, options);
         const double off_m = std::abs(axis.dot(back.pose.translation() - pose.translation()));
         if (!back.valid || off_m > kBack * probe) return false;
     }

@@ -2,7 +2,9 @@
 
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace delio::scan {
 RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
@@ -10,16 +12,19 @@ RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
       rows_(static_cast<int>(std::lround(180 / cell_deg))),
       columns_(static_cast<int>(std::lround(360 / cell_deg))),
       nearest_(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_)) {
-    std::vector<std::size_t> cells(static_cast<std::size_t>(points.cols()));
+    struct Beam {
+        std::int32_t cell;
+        float range;
+    };
+    std::vector<Beam> beams(static_cast<std::size_t>(points.cols()));
     tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
         const Eigen::Vector3f point = points.col(i);
-        cells[static_cast<std::size_t>(i)] =
-            static_cast<std::size_t>(rowOf(point) * columns_ + columnOf(point));
+        beams[static_cast<std::size_t>(i)] = {rowOf(point) * columns_ + columnOf(point),
+                                              point.norm()};
     });
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        float& nearest = nearest_[cells[static_cast<std::size_t>(i)]];
-        const float range = points.col(i).norm();
-        if (nearest == 0 || range < nearest) nearest = range;
+    for (const Beam& beam : beams) {
+        float& nearest = nearest_[static_cast<std::size_t>(beam.cell)];
+        if (nearest == 0 || beam.range < nearest) nearest = beam.range;
     }
 }
 
@@ -37,11 +42,12 @@ int RangeImage::columnOf(const Eigen::Vector3f& point) const {
 Place RangeImage::at(const Eigen::Vector3f& point, float margin) const {
     const float range = point.norm();
     const int row = rowOf(point), column = columnOf(point);
+    const std::array<int, 3> columns = {column == 0 ? columns_ - 1 : column - 1, column,
+                                        column + 1 == columns_ ? 0 : column + 1};
     int seen = 0, passed = 0;
     for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r)
-        for (int c = column - 1; c <= column + 1; ++c) {
-            const float nearest =
-                nearest_[static_cast<std::size_t>(r * columns_ + (c + columns_) % columns_)];
+        for (const int c : columns) {
+            const float nearest = nearest_[static_cast<std::size_t>(r * columns_ + c)];
             if (nearest == 0) continue;
             if (std::abs(nearest - range) <= margin) return Place::kTaken;
             ++seen;

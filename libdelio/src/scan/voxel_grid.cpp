@@ -1,39 +1,36 @@
 #include "delio/scan/voxel_grid.h"
 
-#include <cmath>
-#include <cstdint>
-#include <unordered_map>
+#include <tbb/parallel_for.h>
+
+#include "delio/scan/voxel_table.h"
 
 namespace delio::scan {
 std::uint64_t voxelKey(const Eigen::Vector3d& point, double size) {
-    constexpr std::int64_t kHalf = 1 << 20;  // 21 bits for each axis
-    const auto part = [&](double value) {
-        const double voxels = value / size;
-        auto index = static_cast<std::int64_t>(voxels);
-        index -= voxels < static_cast<double>(index);  // rounded down: std::floor is a call
-        return static_cast<std::uint64_t>(index + kHalf) & (2 * kHalf - 1);
-    };
-    return part(point.x()) << 42 | part(point.y()) << 21 | part(point.z());
+    return voxelKey(floorOf(point.x() / size), floorOf(point.y() / size),
+                    floorOf(point.z() / size));
 }
 
 VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
-    std::unordered_map<std::uint64_t, Eigen::Index> numbers;
-    numbers.reserve(static_cast<std::size_t>(points.cols()));
+    std::vector<std::uint64_t> keys(static_cast<std::size_t>(points.cols()));
+    tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
+        keys[static_cast<std::size_t>(i)] = voxelKey(points.col(i).cast<double>(), size);
+    });
+    VoxelIndex numbers;
+    constexpr std::size_t kTypical = 4;  // points a voxel
+    numbers.reserve(static_cast<std::size_t>(points.cols()) / kTypical);
     VoxelNumbers result;
     result.ofPoint.reserve(static_cast<std::size_t>(points.cols()));
     // Most points lie in the voxel of the one before: a sensor gives neighbours after each other.
     std::uint64_t latestKey = 0;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const std::uint64_t key = voxelKey(points.col(i).cast<double>(), size);
-        if (i > 0 && key == latestKey) {
+    for (const std::uint64_t key : keys) {
+        if (!result.ofPoint.empty() && key == latestKey) {
             result.ofPoint.push_back(result.ofPoint.back());
             continue;
         }
-        const auto [entry, isNew] = numbers.emplace(key, result.voxels);
-        result.voxels += isNew;
-        result.ofPoint.push_back(entry->second);
+        result.ofPoint.push_back(numbers.insert(key));
         latestKey = key;
     }
+    result.voxels = static_cast<Eigen::Index>(numbers.size());
     return result;
 }
 

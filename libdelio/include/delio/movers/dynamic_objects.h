@@ -53,6 +53,7 @@ class DynamicObjects {
     struct Object {
         Eigen::Matrix3Xf points;
         Eigen::Vector3f centre, size;
+        Eigen::Vector3f place;                    //!< the centre, in the map's frame
         std::optional<Eigen::Vector3f> velocity;  //!< m/s, in the map's frame
     };
     struct View {

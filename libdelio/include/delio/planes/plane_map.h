@@ -1,11 +1,10 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
-#include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "delio/core/stage_options.h"
+#include "delio/scan/voxel_table.h"
 
 namespace delio::planes {
 struct PlaneMapOptions : public StageOptions {
@@ -72,7 +71,7 @@ class PlaneMap {
     };
     struct Level {
         double edge;  //!< of its voxels, metres
-        std::unordered_map<std::uint64_t, Cell> cells;
+        scan::VoxelTable<Cell> cells;
     };
     void add(const Eigen::Matrix3Xd& points, Level& level) const;
     void fit(double edge, Cell& cell) const;

@@ -1,10 +1,9 @@
 #pragma once
 #include <Eigen/Core>
-#include <array>
-#include <cstdint>
-#include <unordered_map>
+#include <limits>
 
 #include "delio/core/stage_options.h"
+#include "delio/scan/voxel_table.h"
 
 namespace delio::points {
 struct PointMapOptions : public StageOptions {
@@ -36,15 +35,28 @@ class PointMap {
 
  private:
     struct Cell {
-        static constexpr std::size_t kMost = 20;
+        static constexpr Eigen::Index kMost = 20;
+        static constexpr Eigen::Index kTogether = 4;  //!< compared at once
+        using Distances = Eigen::Array<float, kTogether, 1>;
+
         Eigen::Vector3d origin;  //!< the first point: the others are seen from there
-        std::array<Eigen::Vector3f, kMost> points;
-        std::size_t count = 0;
+        /** A row each. Rows without one lie infinitely far away. */
+        Eigen::Array<float, kMost, 3> points =
+            Eigen::Array<float, kMost, 3>::Constant(std::numeric_limits<float>::infinity());
+        Eigen::Index count = 0;
+
+        /** Squared, of the points from `first` on; `local`: seen from the origin. */
+        Distances distances(Eigen::Index first, const Eigen::Vector3f& local) const {
+            const auto squared = [&](Eigen::Index axis) {
+                return (points.col(axis).segment<kTogether>(first) - local[axis]).square();
+            };
+            return squared(0) + (squared(1) + squared(2));
+        }
 
         bool nearest(const Eigen::Vector3d& point, float& least, Eigen::Vector3d& found) const;
     };
     PointMapOptions options_;
-    std::unordered_map<std::uint64_t, Cell> cells_;
+    scan::VoxelTable<Cell> cells_;
     std::size_t size_ = 0;
 };
 }  // namespace delio::points

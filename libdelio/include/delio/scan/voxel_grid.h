@@ -7,6 +7,19 @@ namespace delio::scan {
 /** The same number for all points of one voxel and for no others within a million voxels to either
  *  side of the origin. */
 std::uint64_t voxelKey(const Eigen::Vector3d& point, double size);
+/** The same of a voxel by its numbers along the axes, which count from the origin. */
+inline std::uint64_t voxelKey(std::int64_t x, std::int64_t y, std::int64_t z) {
+    constexpr std::int64_t kHalf = 1 << 20;  // 21 bits for each axis
+    const auto part = [](std::int64_t index) {
+        return static_cast<std::uint64_t>(index + kHalf) & (2 * kHalf - 1);
+    };
+    return part(x) << 42 | part(y) << 21 | part(z);
+}
+/** Rounded down: without SSE 4.1 std::floor is a call. */
+inline std::int64_t floorOf(double value) {
+    const auto truncated = static_cast<std::int64_t>(value);
+    return truncated - (value < static_cast<double>(truncated));
+}
 /** Which voxel each point is in: voxels are numbered from 0 in the order in which they are first
  *  met. `size` in the unit of the points; also good for directions on the unit sphere. */
 struct VoxelNumbers {

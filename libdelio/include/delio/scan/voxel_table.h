@@ -1,0 +1,96 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace delio::scan {
+/** Numbers the keys of voxels from 0 in the order in which they come. An open-addressing hash table
+ *  with linear probing: a look-up mostly touches one place in memory, where std::unordered_map
+ *  follows pointers. */
+class VoxelIndex {
+ public:
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+    std::size_t size() const { return size_; }  //!< keys
+
+    /** The key's number; kNone where it has none. */
+    std::uint32_t find(std::uint64_t key) const { return slots_[slotOf(key)].number; }
+
+    /** The key's number: that of a new key is the size before. */
+    std::uint32_t insert(std::uint64_t key);
+
+    void clear() { *this = VoxelIndex(); }
+    void reserve(std::size_t keys);
+
+ private:
+    struct Slot {
+        std::uint64_t key = 0;
+        std::uint32_t number = kNone;
+    };
+    /** Where the key is, or the free slot where it would be. There always is a free one. */
+    std::size_t slotOf(std::uint64_t key) const {
+        constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;  // spreads neighbours
+        std::size_t slot = (key * kGolden) >> shift_;
+        while (slots_[slot].number != kNone && slots_[slot].key != key)
+            slot = (slot + 1) & (slots_.size() - 1);
+        return slot;
+    }
+    void grow();
+
+    unsigned shift_ = 60;  //!< 64 less the binary logarithm of the slots
+    std::vector<Slot> slots_ = std::vector<Slot>(16);
+    std::size_t size_ = 0;
+};
+
+/** A map from voxels' keys to values, which lie one behind the other in memory. Pointers are valid
+ *  until a key is added or values are erased. */
+template <typename Value>
+class VoxelTable {
+ public:
+    std::size_t size() const { return values_.size(); }
+
+    /** Null where there is none. */
+    const Value* find(std::uint64_t key) const {
+        const std::uint32_t number = index_.find(key);
+        return number == VoxelIndex::kNone ? nullptr : &values_[number];
+    }
+
+    /** The number of the key's value, which is made if there is none. */
+    std::uint32_t insert(std::uint64_t key) {
+        const std::uint32_t number = index_.insert(key);
+        if (number == values_.size()) {
+            values_.emplace_back();
+            keys_.push_back(key);
+        }
+        return number;
+    }
+
+    Value& operator[](std::uint32_t number) { return values_[number]; }
+
+    template <typename Predicate>
+    void eraseIf(const Predicate& isGone) {
+        std::size_t kept = 0;
+        index_.clear();
+        index_.reserve(values_.size());
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+            if (isGone(values_[i])) continue;
+            index_.insert(keys_[i]);
+            if (kept != i) values_[kept] = std::move(values_[i]);
+            keys_[kept++] = keys_[i];
+        }
+        values_.resize(kept);
+        keys_.resize(kept);
+    }
+
+    void clear() { *this = VoxelTable(); }
+
+    auto begin() const { return values_.begin(); }
+    auto end() const { return values_.end(); }
+
+ private:
+    VoxelIndex index_;
+    std::vector<Value> values_;
+    std::vector<std::uint64_t> keys_;  //!< of the values
+};
+}  // namespace delio::scan

@@ -1,0 +1,67 @@
+#include "delio/scan/voxel_table.h"
+
+#include <gtest/gtest.h>
+
+#include "delio/scan/voxel_grid.h"
+
+namespace delio::scan {
+namespace {
+constexpr std::int64_t kSide = 20;
+
+/** A cube of voxels about the origin: neighbours, whose keys differ by little. */
+template <typename Visit>
+void forCube(const Visit& visit) {
+    for (std::int64_t x = -kSide; x < kSide; ++x)
+        for (std::int64_t y = -kSide; y < kSide; ++y)
+            for (std::int64_t z = -kSide; z < kSide; ++z) visit(voxelKey(x, y, z));
+}
+
+TEST(VoxelIndex, NumbersInTheOrderInWhichKeysCome) {
+    VoxelIndex index;
+    std::uint32_t next = 0;
+    forCube([&](std::uint64_t key) { EXPECT_EQ(index.insert(key), next++); });
+    EXPECT_EQ(index.size(), next);
+    next = 0;
+    forCube([&](std::uint64_t key) {
+        EXPECT_EQ(index.find(key), next);
+        EXPECT_EQ(index.insert(key), next++);
+    });
+    EXPECT_EQ(index.find(voxelKey(kSide, 0, 0)), VoxelIndex::kNone);
+}
+
+TEST(VoxelIndex, IsEmptyAtFirstAndOnceCleared) {
+    VoxelIndex index;
+    EXPECT_EQ(index.find(0), VoxelIndex::kNone);
+    index.insert(0);
+    index.clear();
+    EXPECT_EQ(index.find(0), VoxelIndex::kNone);
+    EXPECT_EQ(index.size(), 0U);
+}
+
+TEST(VoxelTable, KeepsTheRestWhenSomeAreErased) {
+    VoxelTable<std::uint64_t> table;
+    forCube([&](std::uint64_t key) { table[table.insert(key)] = key; });
+    const auto all = table.size();
+    const auto isOdd = [](std::uint64_t key) { return key % 2 == 1; };
+    table.eraseIf(isOdd);
+    EXPECT_EQ(table.size(), all / 2);
+    forCube([&](std::uint64_t key) {
+        const auto* found = table.find(key);
+        ASSERT_EQ(found == nullptr, isOdd(key));
+        if (found) {
+            EXPECT_EQ(*found, key);
+        }
+    });
+    // What was erased can come again.
+    const std::uint64_t odd = voxelKey(0, 0, 1);
+    table[table.insert(odd)] = 7;
+    ASSERT_NE(table.find(odd), nullptr);
+    EXPECT_EQ(*table.find(odd), 7U);
+}
+
+TEST(VoxelKey, IsTheSameByNumbersAndByPoint) {
+    EXPECT_EQ(voxelKey({-0.1, 0.1, 1.2}, 0.5), voxelKey(-1, 0, 2));
+    EXPECT_EQ(voxelKey({-0.5, 0.5, -1.2}, 0.5), voxelKey(-1, 1, -3));
+}
+}  // namespace
+}  // namespace delio::scan
