@@ -134,7 +134,7 @@ PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeature
                                    const Eigen::Isometry3d& guess, double search_m,
                                    const PaperOdometryOptions& options) {
     auto found = byPatternAndLines(from, to, guess, search_m, options);
-    if (from.check && to.check) {
+    if (found.predictedReason.empty() && from.check && to.check) {
         const double reach = std::max(options.check.reach, 1.5 * guess.translation().norm());
         const auto placed = timed(found.check_ms, [&] {
             return checkByPoints(*from.check, *to.check, poseOf(found), reach, options.check,

@@ -1,0 +1,74 @@
+#include "delio/odometry/point_check.h"
+
+#include <gtest/gtest.h>
+
+#include "odometry_drive.h"
+
+namespace {
+using namespace delio;
+using namespace delio::odometry_test;
+using test::Block;
+
+const test::Sensor kSensor{16, 900, -15, 15, 0.02};
+
+/** Ground and rails along x, which look the same from anywhere on the road, and bushes. */
+test::Scene highway(bool bushes) {
+    test::Scene scene{{{-500, -300, -2.8}, {500, 300, -1.8}},
+                      {{-500, 8, -1.8}, {500, 8.3, -1}},
+                      {{-500, -8.3, -1.8}, {500, -8, -1}}};
+    test::Noise noise(5);
+    for (int i = 0; bushes && i < 300; ++i) {
+        const double x = 80 * noise.uniform(), y = 18 + 8 * noise.uniform(), side = i % 2 ? 1 : -1,
+                     height = 2 + 1.5 * noise.uniform();
+        scene.push_back({{x, side * y - 0.4, -1.8}, {x + 0.8, side * y + 0.4, height}});
+    }
+    return scene;
+}
+
+CheckPoints at(const Eigen::Isometry3d& pose, std::uint32_t seed, const test::Scene& scene) {
+    test::Noise noise(seed);
+    return checkPointsOf(test::ringScan(scene, pose, kSensor, noise).points, {}, {});
+}
+
+points::PointEstimate check(const test::Scene& before, const test::Scene& now,
+                            const Eigen::Isometry3d& moved, const Eigen::Isometry3d& found) {
+    const PointCheckOptions options;
+    return checkByPoints(at(poseAtDeg(0, 0, 0, 0), 1, before), at(moved, 2, now), found,
+                         options.reach, options, {});
+}
+
+TEST(PointCheck, AStandstillOnAHighwayIsDenied) {
+    for (const double metres : {2.2, 3.0, 3.7}) {
+        const auto moved = poseAtDeg(metres, 0, 0, 0.3);
+        const auto placed =
+            check(highway(true), highway(true), moved, Eigen::Isometry3d::Identity());
+        ASSERT_TRUE(placed.valid) << metres;
+        expectPose(placed.pose, moved, 0.1, 0.5);
+    }
+}
+
+TEST(PointCheck, WhatIsRightIsConfirmed) {
+    const auto moved = poseAtDeg(2.2, 0, 0, 0.3);
+    const auto placed = check(highway(true), highway(true), moved, moved);
+    EXPECT_TRUE(!placed.valid || agree(placed.pose, moved, {})) << placed.pose.matrix();
+}
+
+TEST(PointCheck, WhereNothingTellsItDoesNot) {
+    EXPECT_FALSE(check(highway(false), highway(false), poseAtDeg(2.2, 0, 0, 0),
+                       Eigen::Isometry3d::Identity())
+                     .valid);
+    const CheckPoints nothing = checkPointsOf(Eigen::Matrix3Xf(3, 0), {}, {});
+    EXPECT_FALSE(checkByPoints(nothing, nothing, Eigen::Isometry3d::Identity(), 4, {}, {}).valid);
+}
+
+// A vehicle that stands does not go with the cars that pass it.
+TEST(PointCheck, StandingBetweenMovingCarsIsStanding) {
+    auto before = highway(true), now = before;
+    for (const double x : {-12.0, 3.0, 17.0}) {
+        before.push_back({{x, 3, -1.6}, {x + 4.5, 4.8, 0}});
+        now.push_back({{x + 2, 3, -1.6}, {x + 6.5, 4.8, 0}});
+    }
+    EXPECT_FALSE(
+        check(before, now, Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()).valid);
+}
+}  // namespace
