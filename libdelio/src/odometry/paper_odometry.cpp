@@ -135,9 +135,8 @@ PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeature
                                    const PaperOdometryOptions& options) {
     auto found = byPatternAndLines(from, to, guess, search_m, options);
     if (found.predictedReason.empty() && from.check && to.check) {
-        const double reach = std::max(options.check.reach, 1.5 * guess.translation().norm());
         const auto placed = timed(found.check_ms, [&] {
-            return checkByPoints(*from.check, *to.check, poseOf(found), reach, options.check,
+            return checkByPoints(*from.check, *to.check, poseOf(found), guess, options.check,
                                  options.points);
         });
         if (placed.valid && !agree(placed.pose, poseOf(found), options.check)) {
@@ -189,7 +188,8 @@ std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const scan::PointClo
     });
     stage("check_points", step, [&] {
         if (options_->check.enabled)
-            features->check = checkPointsOf(cloud.points, options_->check, options_->pointMap);
+            features->check =
+                checkPointsOf(cloud.points, upright(), options_->check, options_->pointMap);
     });
     step.details = {{"normals", static_cast<double>(normals.directions.cols())},
                     {"pattern", static_cast<double>(features->pattern.directions.cols())},

@@ -6,6 +6,7 @@
 #include "delio/core/stopwatch.h"
 #include "delio/odometry/relocalisation.h"
 #include "delio/odometry/scale.h"
+#include "delio/scan/spin_axis.h"
 #include "delio/scan/voxel_grid.h"
 #include "delio/surfaces/surfaces.h"
 
@@ -14,6 +15,18 @@ using planes::PlaneEstimate;
 using points::PointEstimate;
 
 namespace {
+/** By the sensor's pose on the vehicle where the source knows that it is tilted, else about the
+ * axis that it spins about. */
+Eigen::Matrix3f uprightOf(const Scan& scan, const Eigen::Matrix3Xf& points) {
+    const Eigen::Matrix3f mounted = scan::turnedUp(scan.sensorPose.linear().row(2));
+    if (!mounted.isIdentity()) return mounted;
+    return scan::uprightOf(points).value_or(mounted);
+}
+
+Eigen::Isometry3d turnedBack(const Eigen::Matrix3f& upright) {
+    return Eigen::Isometry3d(upright.transpose().cast<double>());
+}
+
 /** What every scan's step has, whether the stage was gone through or not. */
 std::vector<Named> noTimes() {
     return {{"preprocess", 0}, {"undistort", 0}, {"thinning", 0},  {"points", 0},
@@ -105,7 +118,8 @@ scan::VoxelNumbers PlaneOdometry::thinAll(ScanView& view) const {
 /** Takes what moves out of the thinned scan, whose pose is known by points. */
 void PlaneOdometry::leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
                                            const Eigen::Isometry3d& pose, ScanView& view) {
-    const auto dynamic = dynamics_.detect(view.fine, view.points, pose, timeline_.sinceStart_s());
+    const auto dynamic = dynamics_.detect(upright_ * view.fine, upright_ * view.points,
+                                          pose * turnedBack(upright_), timeline_.sinceStart_s());
     for (std::size_t i = 0; i < view.dynamic.size(); ++i)
         view.dynamic[i] = dynamic[static_cast<std::size_t>(voxels.ofPoint[i])];
     view.fine = unmarked(view.fine, dynamic);
@@ -135,7 +149,7 @@ PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d
                  start_m =
                      std::min(prediction_.hasMotion() ? gained_m : reach_m, tracker.first_reach);
     auto best = step.searched
-                    ? map_.placeAnywhere(view.coarse, predicted, start_m)
+                    ? map_.placeAnywhere(view.coarse, predicted, start_m, upright_)
                     : map_.place(view.coarse, predicted,
                                  kernel_.width(options.least_kernel, options.first_kernel));
     // After an interruption it may be anywhere: another place, which shares the ground with the
@@ -263,7 +277,7 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
         const double moved_m = (pose_.translation() - reference_.pose.translation()).norm();
         if (doubted_ && moved_m <= options_.tracker.doubt_spacing) return;
         if (!step.interrupted) learn(placed, predicted, since_s);
-        if (detecting) dynamics_.remember(pose_);
+        if (detecting) dynamics_.remember(pose_ * turnedBack(upright_));
         insert(view, pose_);
     });
     if (!estimate.valid)
@@ -308,6 +322,7 @@ Step PlaneOdometry::process(const Scan& scan) {
         timed(timeOf(step, "preprocess"), [&] { return scan::preprocess(scan, options_.scan); });
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
+    if (!started_) upright_ = uprightOf(scan, cloud.points);
     if (started_)
         processNext(cloud, interval, step);
     else

@@ -32,9 +32,9 @@ std::vector<OptionField> PointCheckOptions::fields() const {
         {"reach", &Me::reach, "m; motions are searched up to this", 0, 50}};
 }
 
-CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const PointCheckOptions& options,
-                          const points::PointMapOptions& map) {
-    CheckPoints check{{}, points::PointMap(map)};
+CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
+                          const PointCheckOptions& options, const points::PointMapOptions& map) {
+    CheckPoints check{{}, points::PointMap(map), upright};
     const Eigen::Matrix3Xf fine = scan::voxelCentroids(points, options.map_spacing);
     check.map.add(fine.cast<double>());
     check.points = scan::firstOfVoxels(fine, options.point_spacing).cast<double>();
@@ -42,27 +42,34 @@ CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const PointCheckOption
 }
 
 PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
-                            const Eigen::Isometry3d& found, double reach,
+                            const Eigen::Isometry3d& found, const Eigen::Isometry3d& predicted,
                             const PointCheckOptions& options,
                             const points::PointRegistrationOptions& registration) {
-    Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();
-    rest.linear() = found.linear();
-    const auto moved = points::pointsOff(from.map, to.points, rest, options.rest);
+    const auto& points = to.points;
+    Eigen::Isometry3d rest = predicted;  // a rotation that was found may be off by much
+    rest.translation().setZero();
+    const auto moved = points::pointsOff(from.map, points, rest, options.rest);
     const auto shareOf = [&](const Eigen::Isometry3d& pose) {
         return points::shareAt(from.map, moved, pose, registration.last_kernel);
     };
-    const double atFound = shareOf(found);
-    auto best = points::registerToPoints(from.map, to.points, found, registration.least_kernel,
-                                         registration);
-    double most = best.valid ? shareOf(best.pose) : 0;
+    PointEstimate best;
+    double most = 0;
+    const auto compare = [&](const PointEstimate& placed) {
+        const double share = placed.valid ? shareOf(placed.pose) : 0;
+        if (share <= most) return;
+        most = share;
+        best = placed;
+    };
+    const double kernel = registration.least_kernel;
+    compare(points::registerToPoints(from.map, points, found, kernel, registration));
     if (most < options.min_share || !agree(best.pose, found, options)) {
-        const auto other = points::searchPoints(from.map, to.points, rest, reach, registration);
-        if (other.valid && shareOf(other.pose) > most) best = other;
-        most = std::max(most, shareOf(best.pose));
+        const double reach = std::max(options.reach, 1.5 * predicted.translation().norm());
+        compare(points::registerToPoints(from.map, points, predicted, kernel, registration));
+        compare(points::searchPoints(from.map, points, rest, reach, to.upright, registration));
     }
-    const auto least = options.min_moved * static_cast<double>(to.points.cols());
-    best.valid = best.valid && static_cast<double>(moved.cols()) >= least &&
-                 most >= options.min_share && most > atFound;
+    const auto least = options.min_moved * static_cast<double>(points.cols());
+    best.valid = static_cast<double>(moved.cols()) >= least && most >= options.min_share &&
+                 most > shareOf(found);
     return best;
 }
 

@@ -55,8 +55,9 @@ PointEstimate ScanToMap::place(const Eigen::Matrix3Xd& coarse, const Eigen::Isom
 }
 
 PointEstimate ScanToMap::placeAnywhere(const Eigen::Matrix3Xd& coarse,
-                                       const Eigen::Isometry3d& predicted, double reach) const {
-    return points::searchPoints(points_, coarse, predicted, reach, pointOptions_);
+                                       const Eigen::Isometry3d& predicted, double reach,
+                                       const Eigen::Matrix3f& upright) const {
+    return points::searchPoints(points_, coarse, predicted, reach, upright, pointOptions_);
 }
 
 /** Of the rotation that points found, rad^2, right tangent. A sensor's rings mislead about all axes

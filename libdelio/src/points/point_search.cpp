@@ -33,13 +33,14 @@ PointEstimate registerInSteps(const PointMap& map, const Eigen::Matrix3Xd& point
  * map's. */
 std::vector<Eigen::Isometry3d> startsAbout(const PointMap& map, const Eigen::Matrix3Xd& points,
                                            const Eigen::Isometry3d& guess, double reach,
-                                           double step) {
+                                           const Eigen::Matrix3f& upright, double step) {
     const int steps = static_cast<int>(reach / step);
     std::vector<std::pair<double, Eigen::Isometry3d>> all;
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y) {
-            const Eigen::Vector3d offset(x * step, y * step, 0);
-            if (offset.norm() <= reach) all.emplace_back(0, guess * Eigen::Translation3d(offset));
+            const Eigen::Vector3d level(x * step, y * step, 0),
+                offset = upright.transpose().cast<double>() * level;
+            if (level.norm() <= reach) all.emplace_back(0, guess * Eigen::Translation3d(offset));
         }
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
         all[i].first = shareAt(map, points, all[i].second, step / 2);
@@ -54,6 +55,7 @@ std::vector<Eigen::Isometry3d> startsAbout(const PointMap& map, const Eigen::Mat
 
 PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& guess, double reach,
+                           const Eigen::Matrix3f& upright,
                            const PointRegistrationOptions& options) {
     constexpr std::size_t kBest = 8;
     auto best = registerInSteps(map, points, guess, options.least_kernel, options);
@@ -69,7 +71,7 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     double most = shareOf(best) + kClearly;
     // Where a start leads to, a part of the points tells: they are judged by all.
     const Eigen::Matrix3Xd part = scan::sample(off, kEnough);
-    auto tried = startsAbout(map, part, guess, reach, options.first_kernel / 2);
+    auto tried = startsAbout(map, part, guess, reach, upright, options.first_kernel / 2);
     if (tried.size() > kBest) tried.resize(kBest);
     for (const auto& start : tried) {
         const auto found = registerToPoints(map, part, start, options.first_kernel / 2, options);

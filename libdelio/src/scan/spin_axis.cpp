@@ -51,15 +51,24 @@ std::optional<Eigen::Vector3d> spinAxisOf(const Eigen::Matrix3Xf& points) {
         return std::abs(step.dot(axis)) < kAcross;
     });
     if (static_cast<double>(across) < kShare * static_cast<double>(steps.size())) return {};
-    return axis.z() < 0 ? Eigen::Vector3d(-axis) : axis;
+    return axis;
+}
+
+Eigen::Matrix3f turnedUp(const Eigen::Vector3d& up) {
+    constexpr double kNearly = 2 * M_PI / 180;
+    const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+    if (up.z() > 0 && up.cross(z).norm() < std::sin(kNearly)) return Eigen::Matrix3f::Identity();
+    return Eigen::Quaterniond::FromTwoVectors(up, z).toRotationMatrix().cast<float>();
 }
 
 std::optional<Eigen::Matrix3f> uprightOf(const Eigen::Matrix3Xf& points) {
-    constexpr double kNearly = 2 * M_PI / 180;
+    constexpr double kLying = 0.5;
     const auto axis = spinAxisOf(points);
     if (!axis) return {};
-    const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-    if (axis->cross(z).norm() < std::sin(kNearly)) return Eigen::Matrix3f::Identity();
-    return Eigen::Quaterniond::FromTwoVectors(*axis, z).toRotationMatrix().cast<float>();
+    const Eigen::VectorXf along = axis->cast<float>().transpose() * points;
+    const bool isUp = std::abs(axis->z()) > kLying
+                          ? axis->z() > 0
+                          : 2 * (along.array() < 0).count() > along.size();  // ground is below
+    return turnedUp(isUp ? *axis : -*axis);
 }
 }  // namespace delio::scan

@@ -27,14 +27,15 @@ test::Scene highway(bool bushes) {
 
 CheckPoints at(const Eigen::Isometry3d& pose, std::uint32_t seed, const test::Scene& scene) {
     test::Noise noise(seed);
-    return checkPointsOf(test::ringScan(scene, pose, kSensor, noise).points, {}, {});
+    return checkPointsOf(test::ringScan(scene, pose, kSensor, noise).points,
+                         Eigen::Matrix3f::Identity(), {}, {});
 }
 
 points::PointEstimate check(const test::Scene& before, const test::Scene& now,
                             const Eigen::Isometry3d& moved, const Eigen::Isometry3d& found) {
     const PointCheckOptions options;
     return checkByPoints(at(poseAtDeg(0, 0, 0, 0), 1, before), at(moved, 2, now), found,
-                         options.reach, options, {});
+                         Eigen::Isometry3d::Identity(), options, {});
 }
 
 TEST(PointCheck, AStandstillOnAHighwayIsDenied) {
@@ -47,6 +48,15 @@ TEST(PointCheck, AStandstillOnAHighwayIsDenied) {
     }
 }
 
+// Patterns with few walls now and then fit elsewhere.
+TEST(PointCheck, ARotationThatIsFarOffIsDenied) {
+    const auto moved = poseAtDeg(2.2, 0, 0, 0.3);
+    const auto placed =
+        check(highway(true), highway(true), moved, moved * poseAtDeg(0.1, 0.5, 0, 10));
+    ASSERT_TRUE(placed.valid);
+    expectPose(placed.pose, moved, 0.1, 0.5);
+}
+
 TEST(PointCheck, WhatIsRightIsConfirmed) {
     const auto moved = poseAtDeg(2.2, 0, 0, 0.3);
     const auto placed = check(highway(true), highway(true), moved, moved);
@@ -57,8 +67,11 @@ TEST(PointCheck, WhereNothingTellsItDoesNot) {
     EXPECT_FALSE(check(highway(false), highway(false), poseAtDeg(2.2, 0, 0, 0),
                        Eigen::Isometry3d::Identity())
                      .valid);
-    const CheckPoints nothing = checkPointsOf(Eigen::Matrix3Xf(3, 0), {}, {});
-    EXPECT_FALSE(checkByPoints(nothing, nothing, Eigen::Isometry3d::Identity(), 4, {}, {}).valid);
+    const CheckPoints nothing =
+        checkPointsOf(Eigen::Matrix3Xf(3, 0), Eigen::Matrix3f::Identity(), {}, {});
+    EXPECT_FALSE(checkByPoints(nothing, nothing, Eigen::Isometry3d::Identity(),
+                               Eigen::Isometry3d::Identity(), {}, {})
+                     .valid);
 }
 
 // A vehicle that stands does not go with the cars that pass it.

@@ -90,7 +90,8 @@ class PlaneOdometry : public Odometry {
     void thinned(ScanView& view) const;
 
     const PlaneOdometryOptions given_;
-    PlaneOdometryOptions options_;  //!< at the scale of the place
+    PlaneOdometryOptions options_;                           //!< at the scale of the place
+    Eigen::Matrix3f upright_ = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
     double scale_ = 1;
     double seenScale_ = 1;     //!< that the latest scan shows
     unsigned otherScale_ = 0;  //!< scans in a row that show a place of another size

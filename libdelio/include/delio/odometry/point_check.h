@@ -6,7 +6,7 @@ namespace delio {
 struct PointCheckOptions : public StageOptions {
     bool enabled = true;
     double believed = 0.1;
-    double believed_deg = 1.0;
+    double believed_deg = 0.5;
     double map_spacing = 0.1;
     double point_spacing = 1.0;
     double rest = 0.3;
@@ -22,18 +22,19 @@ struct PointCheckOptions : public StageOptions {
 struct CheckPoints {
     Eigen::Matrix3Xd points;
     points::PointMap map;
+    Eigen::Matrix3f upright;  //!< turns the sensor's frame such that z is up
 };
-CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const PointCheckOptions& options,
-                          const points::PointMapOptions& map);
+CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
+                          const PointCheckOptions& options, const points::PointMapOptions& map);
 
-/** What points say of where scan `to` stands in scan `from`, beside what was `found` (maps frame
- *  `to` to frame `from`) with other features. A standstill explains the rings on the ground,
- *  wherever the sensor went, and so would confirm itself; therefore only those points are asked
- *  that a standstill does not explain. Not valid where these cannot tell: too few of them, or
- *  too few that lie on points of `from` in the best place. `reach` (metres): how far the sensor may
- *  have moved. */
+/** What points say of where scan `to` stands in scan `from`, beside what was `predicted` and
+ * `found` (both map frame `to` to frame `from`) with other features. A standstill explains the
+ * rings on the ground, wherever the sensor went, and so would confirm itself; therefore only those
+ * points are asked that a standstill does not explain. Not valid where these cannot tell: too few
+ * of them, or too few that lie on points of `from` in the best place. */
 points::PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
-                                    const Eigen::Isometry3d& found, double reach,
+                                    const Eigen::Isometry3d& found,
+                                    const Eigen::Isometry3d& predicted,
                                     const PointCheckOptions& options,
                                     const points::PointRegistrationOptions& registration);
 

@@ -44,9 +44,11 @@ class ScanToMap {
     points::PointEstimate place(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
                                 double kernel) const;
 
-    /** By points, where `predicted` is a guess that may be off by `reach` metres. */
+    /** By points, where `predicted` is a guess that may be off by `reach` metres in the plane that
+     *  is level where `upright` turns the sensor's frame such that z is up. */
     points::PointEstimate placeAnywhere(const Eigen::Matrix3Xd& coarse,
-                                        const Eigen::Isometry3d& predicted, double reach) const;
+                                        const Eigen::Isometry3d& predicted, double reach,
+                                        const Eigen::Matrix3f& upright) const;
 
     /** By planes, from where the points were placed. An axis that the planes see no better than the
      *  points stays where these put it, if they see it, else where the prediction does. Where

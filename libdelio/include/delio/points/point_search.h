@@ -4,10 +4,11 @@
 namespace delio::points {
 /** Registration where `guess` may be off by `reach` metres. The rings that a sensor draws on the
  *  ground look the same wherever it stands and would confirm any guess; so starts all over a disc
- *  are compared by those points alone that the guess does not explain. */
+ *  are compared by those points alone that the guess does not explain. The disc is level where
+ *  `upright` turns the points' frame such that z is up. */
 PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& guess, double reach,
-                           const PointRegistrationOptions& options);
+                           const Eigen::Matrix3f& upright, const PointRegistrationOptions& options);
 
 /** True where the points see that direction (a unit vector of the map's frame): the scan comes back
  *  to `pose` from `probe` metres along it to either side. (Rings of a sensor in a tunnel lie on

@@ -9,7 +9,11 @@ namespace delio::scan {
  *  Nothing where the points do not look like that. */
 std::optional<Eigen::Vector3d> spinAxisOf(const Eigen::Matrix3Xf& points);
 
-/** Turns the points' frame such that the sensor spins about z; the identity where it does already,
- *  or nearly: beams of an HDL-64E do not come from one point. */
+/** The rotation that turns `up`, a unit vector, into z; the identity where it is z already, or
+ *  nearly: beams of an HDL-64E do not come from one point. */
+Eigen::Matrix3f turnedUp(const Eigen::Vector3d& up);
+
+/** Turns the points' frame such that the sensor spins about z, with most of the points below it
+ *  where the frame's own z does not say what is up. */
 std::optional<Eigen::Matrix3f> uprightOf(const Eigen::Matrix3Xf& points);
 }  // namespace delio::scan
