@@ -35,9 +35,9 @@ std::string nameOf(const testing::TestParamInfo<Cell>& cell) {
     return name;
 }
 
-test::CellRun runOf(const Cell& cell) {
+test::CellRun runOf(const Cell& cell, const std::string& profile = "accurate") {
     const test::TemporaryFolder folder;
-    return test::runOn(test::makeDrive(cell, 30, folder.path()), folder / "out");
+    return test::runOn(test::makeDrive(cell, 30, folder.path()), folder / "out", profile);
 }
 
 class Anywhere : public testing::TestWithParam<Cell> {};
@@ -48,6 +48,22 @@ INSTANTIATE_TEST_SUITE_P(Forest, Anywhere,
 TEST_P(Anywhere, IsRegistered) {
     const auto run = runOf(GetParam());
     EXPECT_LT(run.endError_percent, 1);
+    EXPECT_EQ(run.predicted, 0U);
+    EXPECT_FALSE(run.lostInSilence());
+}
+
+// Where lines alone stood still and said nothing.
+class AnywherePaper : public testing::TestWithParam<Cell> {};
+INSTANTIATE_TEST_SUITE_P(Highways, AnywherePaper,
+                         testing::Values(Cell{"vlp16", "highway", "rest", "upright", 201},
+                                         Cell{"hdl32e", "highway", "moving", "rolled", 202},
+                                         Cell{"os1-64", "highway", "rest", "pitched", 203},
+                                         Cell{"vlp16", "urban", "moving", "rolled", 203}),
+                         nameOf);
+
+TEST_P(AnywherePaper, IsRegistered) {
+    const auto run = runOf(GetParam(), "paper");
+    EXPECT_LT(run.endError_percent, 5);
     EXPECT_EQ(run.predicted, 0U);
     EXPECT_FALSE(run.lostInSilence());
 }
