@@ -123,9 +123,13 @@ std::optional<Link> PaperFeatures::linkTo(const ScanFeatures& earlier,
     const auto found = byPatternAndLines(from, *this, guess, 0, *options);
     if (!found.predictedReason.empty()) return {};
     if (check && from.check) {
-        const auto placed = points::registerToPoints(from.check->map, check->points, guess,
-                                                     options->points.least_kernel, options->points);
-        if (placed.valid && !agree(placed.pose, poseOf(found), options->check)) return {};
+        // Where it stands is known already: nothing is searched. Seen from afar, surfaces differ.
+        PointCheckOptions wider = options->check;
+        wider.believed *= 2;
+        wider.believed_deg *= 2;
+        const auto placed =
+            checkByPoints(*from.check, *check, poseOf(found), guess, 0, wider, options->points);
+        if (placed.valid && !agree(placed.pose, poseOf(found), wider)) return {};
     }
     return Link{incrementOf(found, *options), found.translation.overlap};
 }
@@ -135,8 +139,9 @@ PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeature
                                    const PaperOdometryOptions& options) {
     auto found = byPatternAndLines(from, to, guess, search_m, options);
     if (found.predictedReason.empty() && from.check && to.check) {
+        const double reach = std::max(options.check.reach, 1.5 * guess.translation().norm());
         const auto placed = timed(found.check_ms, [&] {
-            return checkByPoints(*from.check, *to.check, poseOf(found), guess, options.check,
+            return checkByPoints(*from.check, *to.check, poseOf(found), guess, reach, options.check,
                                  options.points);
         });
         if (placed.valid && !agree(placed.pose, poseOf(found), options.check)) {

@@ -43,7 +43,7 @@ CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f&
 
 PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
                             const Eigen::Isometry3d& found, const Eigen::Isometry3d& predicted,
-                            const PointCheckOptions& options,
+                            double reach, const PointCheckOptions& options,
                             const points::PointRegistrationOptions& registration) {
     const auto& points = to.points;
     Eigen::Isometry3d rest = predicted;  // a rotation that was found may be off by much
@@ -63,7 +63,6 @@ PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
     const double kernel = registration.least_kernel;
     compare(points::registerToPoints(from.map, points, found, kernel, registration));
     if (most < options.min_share || !agree(best.pose, found, options)) {
-        const double reach = std::max(options.reach, 1.5 * predicted.translation().norm());
         compare(points::registerToPoints(from.map, points, predicted, kernel, registration));
         compare(points::searchPoints(from.map, points, rest, reach, to.upright, registration));
     }

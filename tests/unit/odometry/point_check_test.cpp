@@ -35,7 +35,7 @@ points::PointEstimate check(const test::Scene& before, const test::Scene& now,
                             const Eigen::Isometry3d& moved, const Eigen::Isometry3d& found) {
     const PointCheckOptions options;
     return checkByPoints(at(poseAtDeg(0, 0, 0, 0), 1, before), at(moved, 2, now), found,
-                         Eigen::Isometry3d::Identity(), options, {});
+                         Eigen::Isometry3d::Identity(), 4, options, {});
 }
 
 TEST(PointCheck, AStandstillOnAHighwayIsDenied) {
@@ -70,7 +70,7 @@ TEST(PointCheck, WhereNothingTellsItDoesNot) {
     const CheckPoints nothing =
         checkPointsOf(Eigen::Matrix3Xf(3, 0), Eigen::Matrix3f::Identity(), {}, {});
     EXPECT_FALSE(checkByPoints(nothing, nothing, Eigen::Isometry3d::Identity(),
-                               Eigen::Isometry3d::Identity(), {}, {})
+                               Eigen::Isometry3d::Identity(), 4, {}, {})
                      .valid);
 }
 

@@ -31,10 +31,11 @@ CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f&
  * `found` (both map frame `to` to frame `from`) with other features. A standstill explains the
  * rings on the ground, wherever the sensor went, and so would confirm itself; therefore only those
  * points are asked that a standstill does not explain. Not valid where these cannot tell: too few
- * of them, or too few that lie on points of `from` in the best place. */
+ * of them, or too few that lie on points of `from` in the best place. `reach`: metres that may have
+ * been driven. */
 points::PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
                                     const Eigen::Isometry3d& found,
-                                    const Eigen::Isometry3d& predicted,
+                                    const Eigen::Isometry3d& predicted, double reach,
                                     const PointCheckOptions& options,
                                     const points::PointRegistrationOptions& registration);
 
