@@ -7,8 +7,8 @@
 #include <limits>
 #include <unordered_map>
 
-#include "delio/scan/voxel_grid.h"
 #include "core/kd_tree.h"
+#include "delio/scan/voxel_grid.h"
 
 namespace delio {
 namespace {
