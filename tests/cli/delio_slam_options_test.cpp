@@ -76,7 +76,8 @@ TEST_F(DelioSlam, ItsConfigHasTheSectionsInUseOnly) {
     EXPECT_EQ(sections("paper"),
               Words({"[odometry]", "[scan]", "[normals]", "[bilateral_filter]", "[outlier_removal]",
                      "[mean_shift]", "[pattern_registration]", "[rotation_in_place]",
-                     "[line_cloud]", "[line_registration]", "[prediction]", "[graph]", "[map]"}));
+                     "[line_cloud]", "[line_registration]", "[prediction]", "[point_check]",
+                     "[point_map]", "[point_registration]", "[graph]", "[map]"}));
 }
 
 /** Every option of `ini` has its meaning in the line above it. Returns how many there are. */

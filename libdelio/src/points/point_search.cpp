@@ -61,13 +61,14 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     auto best = registerInSteps(map, points, guess, options.least_kernel, options);
     const auto off = pointsOff(map, points, guess, options.least_kernel);
     if (off.cols() < options.min_matches) return best;
+    // Within the whole kernel the ground of other places would fit as well.
     const auto shareOf = [&](const PointEstimate& found) {
-        return shareAt(map, off, found.pose, options.last_kernel);
+        return shareAt(map, off, found.pose, options.last_kernel / 2);
     };
     const auto wide = registerInSteps(map, points, guess, options.first_kernel, options);
     if (wide.valid && shareOf(wide) > shareOf(best)) best = wide;
     // Another start has to explain clearly more.
-    constexpr double kClearly = 0.1;
+    constexpr double kClearly = 0.03;
     double most = shareOf(best) + kClearly;
     // Where a start leads to, a part of the points tells: they are judged by all.
     const Eigen::Matrix3Xd part = scan::sample(off, kEnough);
@@ -75,7 +76,7 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     if (tried.size() > kBest) tried.resize(kBest);
     for (const auto& start : tried) {
         const auto found = registerToPoints(map, part, start, options.first_kernel / 2, options);
-        if (!found.valid || found.share <= most) continue;
+        if (!found.valid) continue;
         const auto all = registerToPoints(map, points, found.pose, options.least_kernel, options);
         if (!all.valid || shareOf(all) <= most) continue;
         most = shareOf(all);
