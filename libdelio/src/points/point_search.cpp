@@ -61,25 +61,29 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     auto best = registerInSteps(map, points, guess, options.least_kernel, options);
     const auto off = pointsOff(map, points, guess, options.least_kernel);
     if (off.cols() < options.min_matches) return best;
-    // Within the whole kernel the ground of other places would fit as well.
-    const auto shareOf = [&](const PointEstimate& found) {
-        return shareAt(map, off, found.pose, options.last_kernel / 2);
+    const auto shareOf = [&](const PointEstimate& found, double distance) {
+        return shareAt(map, off, found.pose, distance);
     };
+    const double width = options.last_kernel;
     const auto wide = registerInSteps(map, points, guess, options.first_kernel, options);
-    if (wide.valid && shareOf(wide) > shareOf(best)) best = wide;
-    // Another start has to explain clearly more.
-    constexpr double kClearly = 0.03;
-    double most = shareOf(best) + kClearly;
+    if (wide.valid && shareOf(wide, width) > shareOf(best, width)) best = wide;
+    // Another start has to explain clearly more; which of them does is told within half the width:
+    // in the whole, the ground of a road fits metres beside, too.
+    constexpr double kClearly = 0.1;
+    const double least = shareOf(best, width) + kClearly;
+    double most = 0;
     // Where a start leads to, a part of the points tells: they are judged by all.
     const Eigen::Matrix3Xd part = scan::sample(off, kEnough);
     auto tried = startsAbout(map, part, guess, reach, upright, options.first_kernel / 2);
     if (tried.size() > kBest) tried.resize(kBest);
     for (const auto& start : tried) {
         const auto found = registerToPoints(map, part, start, options.first_kernel / 2, options);
-        if (!found.valid) continue;
+        if (!found.valid || found.share <= least) continue;
         const auto all = registerToPoints(map, points, found.pose, options.least_kernel, options);
-        if (!all.valid || shareOf(all) <= most) continue;
-        most = shareOf(all);
+        if (!all.valid || shareOf(all, width) <= least) continue;
+        const double share = shareOf(all, width / 2);
+        if (share <= most) continue;
+        most = share;
         best = all;
     }
     return best;
