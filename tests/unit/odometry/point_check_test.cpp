@@ -7,7 +7,6 @@
 namespace {
 using namespace delio;
 using namespace delio::odometry_test;
-using test::Block;
 
 const test::Sensor kSensor{16, 900, -15, 15, 0.02};
 
