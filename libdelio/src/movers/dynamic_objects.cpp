@@ -58,6 +58,14 @@ bool DynamicObjects::came(const Object& object) const {
     return witnesses > 0 && witnesses == views_.size();
 }
 
+/** Those whose places are within `reach` of `x` along the map's first axis. */
+DynamicObjects::Range DynamicObjects::View::objectsAbout(float x, float reach) const {
+    return {std::partition_point(objects.begin(), objects.end(),
+                                 [&](const Object& o) { return o.place.x() < x - reach; }),
+            std::partition_point(objects.begin(), objects.end(),
+                                 [&](const Object& o) { return o.place.x() <= x + reach; })};
+}
+
 /** Its speed over the ground, where it left places behind; m/s, the map's frame. */
 std::optional<Eigen::Vector3f> DynamicObjects::velocityOf(const Object& object) const {
     constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTolerance = 0.15F, kTurn = 0.3F;
@@ -68,10 +76,11 @@ std::optional<Eigen::Vector3f> DynamicObjects::velocityOf(const Object& object) 
     for (std::size_t i = 0; i < views_.size(); ++i) {
         const View& second = views_[i];
         const auto later_s = static_cast<float>(latest_.stamp_s - second.stamp_s);
-        for (const auto& there : second.objects) {
+        const float farthest = kFastest_m_s * later_s;
+        for (const Object& there : second.objectsAbout(object.place.x(), farthest)) {
             const Eigen::Vector3f step = object.place - there.place;
             const float length = step.norm();
-            if (length < static_cast<float>(options_.margin) || length > kFastest_m_s * later_s ||
+            if (length < static_cast<float>(options_.margin) || length > farthest ||
                 !alike(there.size, object.size))
                 continue;
             // It goes on as it did.
@@ -86,12 +95,10 @@ std::optional<Eigen::Vector3f> DynamicObjects::velocityOf(const Object& object) 
                 if (earlier_s < 0.75F * later_s || earlier_s > 1.5F * later_s) continue;
                 const Eigen::Vector3f expected = there.place - step * earlier_s / later_s;
                 const float tolerance = kTolerance_m + kTolerance * length;
-                for (const auto& start : first.objects) {
-                    const Eigen::Vector3f off = start.place - expected;
-                    if (std::abs(off.x()) >= tolerance || off.norm() >= tolerance) continue;
-                    if (alike(start.size, object.size) && gone(start, first) && gone(there, second))
+                for (const Object& start : first.objectsAbout(expected.x(), tolerance))
+                    if ((start.place - expected).norm() < tolerance &&
+                        alike(start.size, object.size) && gone(start, first) && gone(there, second))
                         return step / later_s;
-                }
             }
         }
     }
@@ -134,6 +141,8 @@ void DynamicObjects::remember(const Eigen::Isometry3d& pose) {
         return;
     latest_.toMap = pose.cast<float>();
     for (auto& object : latest_.objects) object.place = latest_.toMap * object.centre;
+    std::sort(latest_.objects.begin(), latest_.objects.end(),
+              [](const Object& a, const Object& b) { return a.place.x() < b.place.x(); });
     views_.push_front(std::move(latest_));
 }
 }  // namespace delio::movers

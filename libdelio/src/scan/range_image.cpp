@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "delio/core/approximate_atan2.h"
+
 namespace delio::scan {
 RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
     : perRadian_(static_cast<float>(180 / M_PI / cell_deg)),
@@ -29,13 +31,13 @@ RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
 }
 
 int RangeImage::rowOf(const Eigen::Vector3f& point) const {
-    const float elevation = std::atan2(point.z(), point.head<2>().norm());
+    const float elevation = approximateAtan2(point.z(), point.head<2>().norm());
     const int row = static_cast<int>((elevation + static_cast<float>(M_PI_2)) * perRadian_);
     return std::clamp(row, 0, rows_ - 1);
 }
 
 int RangeImage::columnOf(const Eigen::Vector3f& point) const {
-    const float azimuth = std::atan2(point.y(), point.x()) + static_cast<float>(M_PI);
+    const float azimuth = approximateAtan2(point.y(), point.x()) + static_cast<float>(M_PI);
     return static_cast<int>(azimuth * perRadian_) % columns_;
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 #include <Eigen/Geometry>
-
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -56,11 +54,18 @@ class DynamicObjects {
         Eigen::Vector3f place;                    //!< the centre, in the map's frame
         std::optional<Eigen::Vector3f> velocity;  //!< m/s, in the map's frame
     };
+    struct Range {
+        std::vector<Object>::const_iterator first, last;
+        auto begin() const { return first; }
+        auto end() const { return last; }
+    };
     struct View {
         double stamp_s = 0;
         Eigen::Isometry3f toMap = Eigen::Isometry3f::Identity();
         scan::RangeImage image;
-        std::vector<Object> objects;
+        std::vector<Object> objects;  //!< of an earlier scan: by their places' x
+
+        Range objectsAbout(float x, float reach) const;
     };
     bool came(const Object& object) const;
     std::optional<Eigen::Vector3f> velocityOf(const Object& object) const;
