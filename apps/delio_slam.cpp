@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <future>
 #include <iostream>
 #include <sstream>
 #include <thread>
@@ -114,11 +115,17 @@ run::RunSettings settingsFor(CommandLine& line, int argc, char** argv) {
     return settings;
 }
 
-/** The first scan that is wanted; nothing if there is none. */
-std::optional<Scan> firstScan(CommandLine& line, io::ScanReader& reader) {
-    for (unsigned i = 0; i < line.start.getValue(); ++i)
+struct Reading {
+    std::optional<Scan> scan;  //!< nothing at the end
+    std::optional<double> fraction;
+};
+
+/** The next scan after some that are passed over. */
+Reading read(io::ScanReader& reader, unsigned passedOver) {
+    for (unsigned i = 0; i < passedOver; ++i)
         if (!reader.skip()) break;
-    return reader.next();
+    auto scan = reader.next();
+    return {std::move(scan), reader.fraction()};
 }
 
 void warnOfOthers(const io::ScanReader& reader,
@@ -127,21 +134,25 @@ void warnOfOthers(const io::ScanReader& reader,
         warn("scans of sensor '" + other + "' were not used; see --sensor-label");
 }
 
-/** Scans into the run until the end, the wanted count, an interrupt or a fault in the rawlog. */
-void process(CommandLine& line, std::optional<Scan> scan, io::ScanReader& reader, double read_ms,
+/** Scans into the run until the end, the wanted count, an interrupt or a fault in the rawlog. With
+ *  more than one thread each is read while the one before is registered: `read_ms` is what is
+ *  waited for. */
+void process(CommandLine& line, Reading now, io::ScanReader& reader, double read_ms,
              run::Run& run) {
-    const unsigned count = line.count.getValue();
+    const unsigned count = line.count.getValue(), passedOver = line.every.getValue() - 1;
+    const auto policy = line.threads.getValue() == 1 ? std::launch::deferred : std::launch::async;
     cli::Progress progress("scans", count);
     try {
-        for (std::size_t done = 1; scan; ++done) {
-            const auto& row = run.process(*scan, read_ms);
+        for (std::size_t done = 1; now.scan; ++done) {
+            // A fault in a scan that is not wanted is none: the last one is not read beyond.
+            std::future<Reading> next;
+            if (done != count) next = std::async(policy, [&] { return read(reader, passedOver); });
+            const auto& row = run.process(*now.scan, read_ms);
             if (line.verbose.getValue()) cli::inform(describe(row));
-            progress.update(done, reader.fraction());
+            progress.update(done, now.fraction);
             if (cli::interrupted() || done == count) break;
-            for (unsigned i = 1; i < line.every.getValue(); ++i)
-                if (!reader.skip()) break;
             Stopwatch watch;
-            scan = reader.next();
+            now = next.get();
             read_ms = watch.lap_ms();
         }
     } catch (const std::exception& e) {
@@ -162,9 +173,9 @@ int slamDrive(CommandLine& line, run::RunSettings settings) {
     const auto reader = io::openScans(input, line.label.getValue(), line.images.getValue());
     const Options options = optionsFor(line, reader->meta());
     Stopwatch watch;
-    auto first = firstScan(line, *reader);
+    auto first = read(*reader, line.start.getValue());
     const double read_ms = watch.lap_ms();
-    if (!first) {
+    if (!first.scan) {
         warnOfOthers(*reader, cli::warn);
         const unsigned start = line.start.getValue();
         const std::string label = line.label.getValue();

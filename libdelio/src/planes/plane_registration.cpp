@@ -30,14 +30,20 @@ double varianceFactor(const Correspondences& matches, const Eigen::Isometry3d& p
     return std::max(weighted / static_cast<double>(matches.size()), kLeast) / independent_share;
 }
 
-/** With one kernel, until both stand still. False where they do not. `iterations`: counts how often
- *  correspondences were sought. */
+/** What an iteration has come to. */
+struct Iterate {
+    Eigen::Isometry3d pose;
+    Correspondences matches;  //!< of the pose before the latest step
+    unsigned iterations = 0;  //!< how often correspondences were sought
+};
+
+/** With one kernel, until both stand still. False where they do not. */
 bool iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& known, double kernel,
-             const PlaneRegistrationOptions& options, Eigen::Isometry3d& pose,
-             unsigned& iterations) {
+             const PlaneRegistrationOptions& options, Iterate& now) {
+    auto& [pose, matches, iterations] = now;
     for (unsigned i = 0; i < options.max_iterations; ++i) {
         ++iterations;
-        const auto matches = findCorrespondences(map, points, pose, kernel, options.point_sigma);
+        matches = findCorrespondences(map, points, pose, kernel, options.point_sigma);
         if (matches.size() < options.min_matches) return false;
         const Prior prior = known.times(varianceFactor(matches, pose, options.independent_share));
         const auto turn = rotationFromPlanes(matches, pose, prior);
@@ -183,22 +189,19 @@ Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions
 PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
                                const Prior& prior, double kernel,
                                const PlaneRegistrationOptions& options) {
-    Eigen::Isometry3d pose = prior.pose;
-    unsigned iterations = 0;
+    Iterate now{prior.pose, {}};
     bool converged = false;
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        converged = iterate(map, points, prior, width, options, pose, iterations);
+        converged = iterate(map, points, prior, width, options, now);
         if (width <= options.last_kernel) break;
     }
-    const auto matches =
-        findCorrespondences(map, points, pose, options.last_kernel, options.point_sigma);
-    if (matches.size() < options.min_matches) return predictedEstimate(prior.pose, options);
+    if (now.matches.size() < options.min_matches) return predictedEstimate(prior.pose, options);
     PlaneEstimate estimate;
-    settle(matches, pose, prior, options, estimate);
-    estimate.rotation.iterations = iterations;
+    settle(now.matches, now.pose, prior, options, estimate);
+    estimate.rotation.iterations = now.iterations;
     estimate.rotation.converged = converged;
-    estimate.share = shareOnPlanes(map, points, pose, options.last_kernel);
+    estimate.share = shareOnPlanes(map, points, now.pose, options.last_kernel);
     return estimate;
 }
 }  // namespace delio::planes

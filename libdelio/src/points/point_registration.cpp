@@ -13,6 +13,17 @@
 
 namespace delio::points {
 namespace {
+constexpr double kTypicalRange_m = 20;
+}  // namespace
+
+Vector6 stepBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+    Vector6 step;
+    step << b.translation() - a.translation(),
+        kTypicalRange_m * rotationLog(a.linear().transpose() * b.linear());
+    return step;
+}
+
+namespace {
 /** A point of the scan, by its place in the order, with the nearest one of the map. */
 struct Pair {
     Eigen::Vector3d inMap = Eigen::Vector3d::Zero();
@@ -63,11 +74,42 @@ bool solve(const Eigen::Matrix3Xd& points, const std::vector<Pair>& pairs, unsig
     return true;
 }
 
-/** How far points at a typical range are moved by a change of pose, metres. */
-double distanceBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-    constexpr double kTypicalRange_m = 20;
-    const Eigen::Isometry3d change = a.inverse() * b;
-    return change.translation().norm() + kTypicalRange_m * angleOf(change.linear());
+/** Iterations with pairs that are anew the nearest ones creep towards where they end, each step a
+ *  share of the one before: where two went one way, what is left of that row is gone at once
+ *  (Aitken). False where they did not. */
+bool extrapolate(const Vector6& before, const Vector6& step, Eigen::Isometry3d& pose) {
+    constexpr double kOneWay = 0.9, kMost = 5;
+    const double along = step.dot(before);
+    if (along < kOneWay * step.norm() * before.norm()) return false;
+    const double ratio = along / before.squaredNorm();
+    const double left = ratio < 1 ? std::min(ratio / (1 - ratio), kMost) : kMost;
+    pose.translation() += left * step.head<3>();
+    pose.linear() = normalised(
+        Eigen::Matrix3d(pose.linear() * rotationExp(left / kTypicalRange_m * step.tail<3>())));
+    return true;
+}
+
+/** With one kernel, until steps are shorter than `enough`. False with too few pairs. */
+bool iterate(const PointMap& map, const Eigen::Matrix3Xd& points, double width, double enough,
+             const PointRegistrationOptions& options, PointEstimate& estimate) {
+    // Between two places that attract alike extrapolation goes back and forth: no more often.
+    constexpr unsigned kExtrapolations = 8;
+    unsigned extrapolated = 0;
+    Vector6 latest = Vector6::Zero();
+    for (unsigned i = 0; i < options.max_iterations; ++i) {
+        const Eigen::Isometry3d before = estimate.pose;
+        if (!solve(points, pairsAt(map, points, before, width), options.min_matches, estimate.pose))
+            return false;
+        ++estimate.iterations;
+        const Vector6 step = stepBetween(before, estimate.pose);
+        estimate.converged = step.head<3>().norm() + step.tail<3>().norm() < enough;
+        if (estimate.converged) break;
+        const bool isOn = extrapolated < kExtrapolations && !latest.isZero() &&
+                          extrapolate(latest, step, estimate.pose);
+        extrapolated += isOn;
+        latest = isOn ? Vector6::Zero() : step;
+    }
+    return true;
 }
 
 void judge(const PointMap& map, const Eigen::Matrix3Xd& points,
@@ -122,17 +164,10 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
         const bool isLast = width <= options.last_kernel;
         const Eigen::Matrix3Xd& used = width > 2 * options.last_kernel ? part : points;
         const double enough = isLast ? options.converged_m : kRough * width;
-        for (unsigned i = 0; i < options.max_iterations; ++i) {
-            const Eigen::Isometry3d before = estimate.pose;
-            const auto pairs = pairsAt(map, used, before, width);
-            if (!solve(used, pairs, options.min_matches, estimate.pose)) {
-                estimate.pose = predicted;
-                estimate.converged = false;
-                return estimate;
-            }
-            ++estimate.iterations;
-            estimate.converged = distanceBetween(before, estimate.pose) < enough;
-            if (estimate.converged) break;
+        if (!iterate(map, used, width, enough, options, estimate)) {
+            estimate.pose = predicted;
+            estimate.converged = false;
+            return estimate;
         }
         if (isLast) break;
     }

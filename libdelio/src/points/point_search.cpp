@@ -29,8 +29,8 @@ PointEstimate registerInSteps(const PointMap& map, const Eigen::Matrix3Xd& point
     return estimate;
 }
 
-/** Starts on a disc about `guess`, those first where most of the points come to lie near the
- * map's. */
+/** The best starts on a disc about `guess`, those first where most of the points come to lie near
+ * the map's. */
 std::vector<Eigen::Isometry3d> startsAbout(const PointMap& map, const Eigen::Matrix3Xd& points,
                                            const Eigen::Isometry3d& guess, double reach,
                                            const Eigen::Matrix3f& upright, double step) {
@@ -47,9 +47,28 @@ std::vector<Eigen::Isometry3d> startsAbout(const PointMap& map, const Eigen::Mat
     });
     std::stable_sort(all.begin(), all.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::vector<Eigen::Isometry3d> sorted;
-    for (const auto& [share, start] : all) sorted.push_back(start);
-    return sorted;
+    constexpr std::size_t kBest = 8;
+    std::vector<Eigen::Isometry3d> best;
+    for (std::size_t i = 0; i < std::min(kBest, all.size()); ++i) best.push_back(all[i].second);
+    return best;
+}
+
+/** Where the starts lead to. */
+std::vector<PointEstimate> placesFrom(const PointMap& map, const Eigen::Matrix3Xd& points,
+                                      const std::vector<Eigen::Isometry3d>& starts, double kernel,
+                                      const PointRegistrationOptions& options) {
+    std::vector<PointEstimate> places(starts.size());
+    tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
+        places[i] = registerToPoints(map, points, starts[i], kernel, options);
+    });
+    return places;
+}
+
+bool isAmong(const std::vector<Eigen::Isometry3d>& places, const Eigen::Isometry3d& place,
+             double within) {
+    return std::any_of(places.begin(), places.end(), [&](const Eigen::Isometry3d& other) {
+        return stepBetween(other, place).norm() < within;
+    });
 }
 }  // namespace
 
@@ -57,14 +76,13 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& guess, double reach,
                            const Eigen::Matrix3f& upright,
                            const PointRegistrationOptions& options) {
-    constexpr std::size_t kBest = 8;
     auto best = registerInSteps(map, points, guess, options.least_kernel, options);
     const auto off = pointsOff(map, points, guess, options.least_kernel);
     if (off.cols() < options.min_matches) return best;
     const auto shareOf = [&](const PointEstimate& found, double distance) {
         return shareAt(map, off, found.pose, distance);
     };
-    const double width = options.last_kernel;
+    const double width = options.last_kernel, start = options.first_kernel / 2;
     const auto wide = registerInSteps(map, points, guess, options.first_kernel, options);
     if (wide.valid && shareOf(wide, width) > shareOf(best, width)) best = wide;
     // Another start has to explain clearly more; which of them does is told within half the width:
@@ -72,13 +90,13 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     constexpr double kClearly = 0.1;
     const double least = shareOf(best, width) + kClearly;
     double most = 0;
-    // Where a start leads to, a part of the points tells: they are judged by all.
+    // Where a start leads to, a part of the points tells: they are judged by all, each place once.
     const Eigen::Matrix3Xd part = scan::sample(off, kEnough);
-    auto tried = startsAbout(map, part, guess, reach, upright, options.first_kernel / 2);
-    if (tried.size() > kBest) tried.resize(kBest);
-    for (const auto& start : tried) {
-        const auto found = registerToPoints(map, part, start, options.first_kernel / 2, options);
-        if (!found.valid || found.share <= least) continue;
+    std::vector<Eigen::Isometry3d> judged;
+    for (const auto& found : placesFrom(
+             map, part, startsAbout(map, part, guess, reach, upright, start), start, options)) {
+        if (!found.valid || found.share <= least || isAmong(judged, found.pose, width)) continue;
+        judged.push_back(found.pose);
         const auto all = registerToPoints(map, points, found.pose, options.least_kernel, options);
         if (!all.valid || shareOf(all, width) <= least) continue;
         const double share = shareOf(all, width / 2);
@@ -93,13 +111,13 @@ bool pointsSee(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen:
                const Eigen::Vector3d& axis, double probe, const PointRegistrationOptions& options) {
     constexpr double kBack = 0.3;
     const Eigen::Matrix3Xd part = scan::sample(points, kDense);
-    for (const double side : {-1.0, 1.0}) {
-        Eigen::Isometry3d start = pose;
-        start.translation() += side * probe * axis;
-        const auto back = registerToPoints(map, part, start, probe, options);
+    const Eigen::Vector3d aside = probe * axis;
+    const auto found = placesFrom(
+        map, part, {Eigen::Translation3d(aside) * pose, Eigen::Translation3d(-aside) * pose}, probe,
+        options);
+    return std::all_of(found.begin(), found.end(), [&](const PointEstimate& back) {
         const double off_m = std::abs(axis.dot(back.pose.translation() - pose.translation()));
-        if (!back.valid || off_m > kBack * probe) return false;
-    }
-    return true;
+        return back.valid && off_m <= kBack * probe;
+    });
 }
 }  // namespace delio::points

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
 
+#include "delio/core/geometry.h"
 #include "delio/points/point_map.h"
 
 namespace delio::points {
@@ -40,6 +41,10 @@ struct PointEstimate {
 PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
                                const Eigen::Isometry3d& predicted, double kernel,
                                const PointRegistrationOptions& options);
+
+/** The way from a to b, metres: of the sensor, in the map's frame, and of what it sees at a typical
+ *  range, about its axes. */
+Vector6 stepBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
 
 /** Share of the points that lie within `distance` (metres) of one of the map's, 0 to 1. */
 double shareAt(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,

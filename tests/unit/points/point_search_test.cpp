@@ -1,0 +1,102 @@
+#include "delio/points/point_search.h"
+
+#include <gtest/gtest.h>
+
+#include "delio/scan/voxel_grid.h"
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using Eigen::Isometry3d;
+using Eigen::Matrix3f;
+using Eigen::Vector3d;
+using points::PointMap;
+using points::PointMapOptions;
+using points::PointRegistrationOptions;
+using test::poseAt;
+
+const test::Sensor kSensor{16, 900, -15, 15, 0.02};
+const PointRegistrationOptions kOptions;
+
+Eigen::Matrix3Xd seenFrom(const test::Scene& scene, const Isometry3d& pose, double spacing,
+                          test::Noise& noise) {
+    return scan::voxelCentroids(test::ringScan(scene, pose, kSensor, noise).points, spacing)
+        .cast<double>();
+}
+
+/** A place, seen from its middle by a scan, and by one more. */
+struct Pair {
+    PointMap map{PointMapOptions{}};
+    Eigen::Matrix3Xd scan;
+};
+
+Pair pairIn(const test::Scene& scene, const Isometry3d& moved) {
+    test::Noise noise;
+    Pair pair;
+    pair.map.add(seenFrom(scene, Isometry3d::Identity(), 0.1, noise));
+    pair.scan = seenFrom(scene, moved, 0.5, noise);
+    return pair;
+}
+
+double offBy(const points::PointEstimate& found, const Isometry3d& truth) {
+    return (found.pose.translation() - truth.translation()).norm();
+}
+
+// Rings on the ground lie on those of the scan before wherever the sensor stands.
+TEST(PointSearch, RingsOnTheGroundDoNotHideAMotionOfMetres) {
+    constexpr double kMistaken_m = 0.5, kFound_m = 0.25, kReach_m = 5;
+    for (const auto& moved : {poseAt(4, 0, 0), poseAt(-2, 3, 0), poseAt(3, -2, 0, 0.05)}) {
+        const Pair pair = pairIn(test::yard(), moved);
+        const auto nearest = points::registerToPoints(pair.map, pair.scan, Isometry3d::Identity(),
+                                                      kOptions.least_kernel, kOptions);
+        EXPECT_GT(offBy(nearest, moved), kMistaken_m) << "nothing to search for";
+        const auto found = points::searchPoints(pair.map, pair.scan, Isometry3d::Identity(),
+                                                kReach_m, Matrix3f::Identity(), kOptions);
+        EXPECT_TRUE(found.valid);
+        EXPECT_LT(offBy(found, moved), kFound_m) << moved.translation().transpose();
+    }
+}
+
+// The disc of starts lies level, whatever the axes of the points.
+TEST(PointSearch, TheDiscIsLevelWhereUprightSaysSo) {
+    constexpr double kFound_m = 0.25, kReach_m = 5;
+    const Isometry3d moved = poseAt(4, 0, 0);
+    const Pair pair = pairIn(test::yard(), moved);
+    const Eigen::Matrix3d rolled = Eigen::AngleAxisd(M_PI_2, Vector3d::UnitX()).toRotationMatrix();
+    PointMap map(PointMapOptions{});
+    test::Noise noise;
+    map.add(
+        rolled *
+        test::ringScan(test::yard(), Isometry3d::Identity(), kSensor, noise).points.cast<double>());
+    const auto found = points::searchPoints(map, rolled * pair.scan, Isometry3d::Identity(),
+                                            kReach_m, rolled.transpose().cast<float>(), kOptions);
+    EXPECT_LT((rolled.transpose() * found.pose.translation() - moved.translation()).norm(),
+              kFound_m);
+}
+
+TEST(PointSearch, AStandingSensorStands) {
+    const Pair pair = pairIn(test::yard(), Isometry3d::Identity());
+    const auto found = points::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), 5,
+                                            Matrix3f::Identity(), kOptions);
+    EXPECT_TRUE(found.valid);
+    EXPECT_LT(offBy(found, Isometry3d::Identity()), 0.03);
+}
+
+TEST(PointSearch, PointsSeeAcrossACorridorAndNotAlongIt) {
+    constexpr double kProbe_m = 0.5;
+    test::Noise noise;
+    PointMap map(PointMapOptions{});
+    for (double x = 0; x < 3; x += 0.2) {
+        const Isometry3d pose = poseAt(x, 0, 0);
+        map.add(pose * seenFrom(test::corridor(), pose, 0.1, noise));
+    }
+    const Isometry3d pose = poseAt(1.5, 0, 0);
+    const auto scan = seenFrom(test::corridor(), pose, 0.5, noise);
+    const auto sees = [&](const Vector3d& axis) {
+        return points::pointsSee(map, scan, pose, axis, kProbe_m, kOptions);
+    };
+    EXPECT_FALSE(sees(Vector3d::UnitX()));
+    EXPECT_TRUE(sees(Vector3d::UnitY()));
+    EXPECT_TRUE(sees(Vector3d::UnitZ()));
+}
+}  // namespace
