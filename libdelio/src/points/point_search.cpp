@@ -82,9 +82,14 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     const auto shareOf = [&](const PointEstimate& found, double distance) {
         return shareAt(map, off, found.pose, distance);
     };
-    const double width = options.last_kernel, start = options.first_kernel / 2;
+    // Other places have to explain about as much of the whole scan: by those points alone it would
+    // drive with the car beside it.
+    constexpr double kAsMuch = 0.7;
+    const double width = options.last_kernel, start = options.first_kernel / 2,
+                 leastOfAll = kAsMuch * best.share;
     const auto wide = registerInSteps(map, points, guess, options.first_kernel, options);
-    if (wide.valid && shareOf(wide, width) > shareOf(best, width)) best = wide;
+    if (wide.valid && wide.share >= leastOfAll && shareOf(wide, width) > shareOf(best, width))
+        best = wide;
     // Another start has to explain clearly more; which of them does is told within half the width:
     // in the whole, the ground of a road fits metres beside, too.
     constexpr double kClearly = 0.1;
@@ -98,7 +103,7 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
         if (!found.valid || found.share <= least || isAmong(judged, found.pose, width)) continue;
         judged.push_back(found.pose);
         const auto all = registerToPoints(map, points, found.pose, options.least_kernel, options);
-        if (!all.valid || shareOf(all, width) <= least) continue;
+        if (!all.valid || all.share < leastOfAll || shareOf(all, width) <= least) continue;
         const double share = shareOf(all, width / 2);
         if (share <= most) continue;
         most = share;

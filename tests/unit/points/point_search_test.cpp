@@ -30,12 +30,24 @@ struct Pair {
     Eigen::Matrix3Xd scan;
 };
 
-Pair pairIn(const test::Scene& scene, const Isometry3d& moved) {
+Pair pairIn(const test::Scene& scene, const Isometry3d& moved, const test::Scene& later) {
     test::Noise noise;
     Pair pair;
     pair.map.add(seenFrom(scene, Isometry3d::Identity(), 0.1, noise));
-    pair.scan = seenFrom(scene, moved, 0.5, noise);
+    pair.scan = seenFrom(later, moved, 0.5, noise);
     return pair;
+}
+Pair pairIn(const test::Scene& scene, const Isometry3d& moved) {
+    return pairIn(scene, moved, scene);
+}
+
+/** The yard with cars on both sides, so far from its middle. */
+test::Scene traffic(double x) {
+    test::Scene scene = test::yard();
+    for (const double beside : {-4.5, 2.5})
+        for (const double ahead : {-7.0, 0.0, 7.0})
+            scene.push_back({{x + ahead, beside, -1.6}, {x + ahead + 4, beside + 2, -0.1}});
+    return scene;
 }
 
 double offBy(const points::PointEstimate& found, const Isometry3d& truth) {
@@ -80,6 +92,17 @@ TEST(PointSearch, AStandingSensorStands) {
                                             Matrix3f::Identity(), kOptions);
     EXPECT_TRUE(found.valid);
     EXPECT_LT(offBy(found, Isometry3d::Identity()), 0.03);
+}
+
+// What is not explained where it stands is the cars', all of which have gone on alike.
+TEST(PointSearch, ASensorBetweenCarsThatDriveOnStands) {
+    for (const double driven : {0.8, 1.5, 3.0}) {
+        const Pair pair = pairIn(traffic(0), Isometry3d::Identity(), traffic(driven));
+        const auto found = points::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), 5,
+                                                Matrix3f::Identity(), kOptions);
+        EXPECT_TRUE(found.valid);
+        EXPECT_LT(offBy(found, Isometry3d::Identity()), 0.03) << driven;
+    }
 }
 
 TEST(PointSearch, PointsSeeAcrossACorridorAndNotAlongIt) {
