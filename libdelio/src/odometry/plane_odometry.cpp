@@ -157,13 +157,19 @@ PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d
     constexpr double kFoundAgain = 0.75;
     const bool isAnywhere = !prediction_.hasMotion();
     const double least = (isAnywhere ? kFoundAgain : tracker.lost_share) * usualShare_;
-    const bool isUsual = best.valid && best.share >= least;
-    if (view.coarse.cols() == 0 || isUsual) return best;
-    step.searched = true;
-    for (const auto& other : {relocalised(view, predicted, reach_m),
-                              map_.place(view.coarse, predicted, options.first_kernel)})
+    const auto isFound = [&](double share) { return best.valid && best.share >= share; };
+    const auto consider = [&](const PointEstimate& other) {
         if (other.valid && (!best.valid || other.share > best.share)) best = other;
-    best.valid = best.valid && (!isAnywhere || best.share >= least);
+    };
+    static const double kT = getenv("KT") ? atof(getenv("KT")) : 0.75;
+    static const double kL = getenv("KL") ? atof(getenv("KL")) : 0.35;
+    if (view.coarse.cols() == 0 || isFound(kT * usualShare_)) return best;
+    step.searched = true;
+    consider(map_.placeTurned(view.coarse, predicted));
+    if (isFound(least)) return best;
+    consider(relocalised(view, predicted, reach_m));
+    consider(map_.place(view.coarse, predicted, options.first_kernel));
+    best.valid = isFound(isAnywhere ? least : kL * usualShare_);
     return best;
 }
 

@@ -60,6 +60,11 @@ PointEstimate ScanToMap::placeAnywhere(const Eigen::Matrix3Xd& coarse,
     return points::searchPoints(points_, coarse, predicted, reach, upright, pointOptions_);
 }
 
+PointEstimate ScanToMap::placeTurned(const Eigen::Matrix3Xd& coarse,
+                                     const Eigen::Isometry3d& predicted) const {
+    return points::searchTurns(points_, coarse, predicted, pointOptions_);
+}
+
 /** Of the rotation that points found, rad^2, right tangent. A sensor's rings mislead about all axes
  *  but the one that it spins about, across which it sees least: about that one the points err as
  *  their distances say. */

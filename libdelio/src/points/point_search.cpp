@@ -29,28 +29,52 @@ PointEstimate registerInSteps(const PointMap& map, const Eigen::Matrix3Xd& point
     return estimate;
 }
 
-/** The best starts on a disc about `guess`, those first where most of the points come to lie near
- * the map's. */
-std::vector<Eigen::Isometry3d> startsAbout(const PointMap& map, const Eigen::Matrix3Xd& points,
-                                           const Eigen::Isometry3d& guess, double reach,
+/** Of the starts the best ones: where most of the points come to lie within `distance` of the
+ *  map's. */
+std::vector<Eigen::Isometry3d> bestOf(const std::vector<Eigen::Isometry3d>& starts,
+                                      const PointMap& map, const Eigen::Matrix3Xd& points,
+                                      double distance) {
+    constexpr std::size_t kBest = 8;
+    std::vector<std::pair<double, Eigen::Isometry3d>> all;
+    for (const auto& start : starts) all.emplace_back(0, start);
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+        all[i].first = shareAt(map, points, all[i].second, distance);
+    });
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<Eigen::Isometry3d> best;
+    for (std::size_t i = 0; i < std::min(kBest, all.size()); ++i) best.push_back(all[i].second);
+    return best;
+}
+
+/** On a level disc about `guess`. */
+std::vector<Eigen::Isometry3d> startsAbout(const Eigen::Isometry3d& guess, double reach,
                                            const Eigen::Matrix3f& upright, double step) {
     const int steps = static_cast<int>(reach / step);
-    std::vector<std::pair<double, Eigen::Isometry3d>> all;
+    std::vector<Eigen::Isometry3d> starts;
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y) {
             const Eigen::Vector3d level(x * step, y * step, 0),
                 offset = upright.transpose().cast<double>() * level;
-            if (level.norm() <= reach) all.emplace_back(0, guess * Eigen::Translation3d(offset));
+            if (level.norm() <= reach) starts.push_back(guess * Eigen::Translation3d(offset));
         }
-    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
-        all[i].first = shareAt(map, points, all[i].second, step / 2);
-    });
-    std::stable_sort(all.begin(), all.end(),
-                     [](const auto& a, const auto& b) { return a.first > b.first; });
-    constexpr std::size_t kBest = 8;
-    std::vector<Eigen::Isometry3d> best;
-    for (std::size_t i = 0; i < std::min(kBest, all.size()); ++i) best.push_back(all[i].second);
-    return best;
+    return starts;
+}
+
+/** Turned about all axes, by up to `reach` (rad). */
+std::vector<Eigen::Isometry3d> turnsAbout(const Eigen::Isometry3d& guess, double reach,
+                                          double step) {
+    const int steps = static_cast<int>(reach / step);
+    std::vector<Eigen::Isometry3d> starts;
+    for (int x = -steps; x <= steps; ++x)
+        for (int y = -steps; y <= steps; ++y)
+            for (int z = -steps; z <= steps; ++z) {
+                const Eigen::Vector3d turn(x * step, y * step, z * step);
+                if (turn.norm() > reach) continue;
+                starts.push_back(guess);
+                starts.back().linear() *= rotationExp(turn);
+            }
+    return starts;
 }
 
 /** Where the starts lead to. */
@@ -98,8 +122,8 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     // Where a start leads to, a part of the points tells: they are judged by all, each place once.
     const Eigen::Matrix3Xd part = scan::sample(off, kEnough);
     std::vector<Eigen::Isometry3d> judged;
-    for (const auto& found : placesFrom(
-             map, part, startsAbout(map, part, guess, reach, upright, start), start, options)) {
+    const auto starts = bestOf(startsAbout(guess, reach, upright, start), map, part, start / 2);
+    for (const auto& found : placesFrom(map, part, starts, start, options)) {
         if (!found.valid || found.share <= least || isAmong(judged, found.pose, width)) continue;
         judged.push_back(found.pose);
         const auto all = registerToPoints(map, points, found.pose, options.least_kernel, options);
@@ -110,6 +134,20 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
         best = all;
     }
     return best;
+}
+
+PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
+                          const Eigen::Isometry3d& guess, const PointRegistrationOptions& options) {
+    constexpr double kReach = 0.55, kStep = 0.11;  // rad
+    constexpr Eigen::Index kFew = 500;
+    const double start = options.first_kernel / 2;
+    const auto starts =
+        bestOf(turnsAbout(guess, kReach, kStep), map, scan::sample(points, kFew), start / 2);
+    PointEstimate best;
+    for (const auto& found : placesFrom(map, scan::sample(points, kEnough), starts, start, options))
+        if (found.valid && (!best.valid || found.share > best.share)) best = found;
+    if (!best.valid) return best;
+    return registerToPoints(map, points, best.pose, options.least_kernel, options);
 }
 
 bool pointsSee(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,

@@ -50,6 +50,10 @@ class ScanToMap {
                                         const Eigen::Isometry3d& predicted, double reach,
                                         const Eigen::Matrix3f& upright) const;
 
+    /** By points, where the rotation of `predicted` may be off by up to 30 deg about any axis. */
+    points::PointEstimate placeTurned(const Eigen::Matrix3Xd& coarse,
+                                      const Eigen::Isometry3d& predicted) const;
+
     /** By planes, from where the points were placed. An axis that the planes see no better than the
      *  points stays where these put it, if they see it, else where the prediction does. Where
      * points alone say that the scan stands where the map's `latest` does it is named as

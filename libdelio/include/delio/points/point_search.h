@@ -10,6 +10,11 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& guess, double reach,
                            const Eigen::Matrix3f& upright, const PointRegistrationOptions& options);
 
+/** Registration where the rotation of `guess` may be off by up to 30 deg about any axis: by the hand
+ *  that carries the sensor, or a bump. */
+PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
+                          const Eigen::Isometry3d& guess, const PointRegistrationOptions& options);
+
 /** True where the points see that direction (a unit vector of the map's frame): the scan comes back
  *  to `pose` from `probe` metres along it to either side. (Rings of a sensor in a tunnel lie on
  *  those of the scan before wherever it stands: there it stays where it was put.) */
