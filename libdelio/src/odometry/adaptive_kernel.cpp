@@ -15,9 +15,13 @@ void AdaptiveKernel::observe(const Eigen::Isometry3d& found, const Eigen::Isomet
     if (errors_m_.size() > kMemory) errors_m_.pop_front();
 }
 
-double AdaptiveKernel::width(double least, double most) const {
+bool AdaptiveKernel::isKnown() const {
     constexpr std::size_t kEnough = 3;
-    if (errors_m_.size() < kEnough) return most;
+    return errors_m_.size() >= kEnough;
+}
+
+double AdaptiveKernel::width(double least, double most) const {
+    if (!isKnown()) return most;
     double squares = 0;
     for (const double error : errors_m_) squares += error * error;
     const double sigma = std::sqrt(squares / static_cast<double>(errors_m_.size()));

@@ -54,24 +54,26 @@ std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate&
 
 std::vector<OptionField> PlaneTrackerOptions::fields() const {
     using Me = PlaneTrackerOptions;
-    return {{"map_spacing", &Me::map_spacing,
-             "m; points of a scan that go into the map are so far apart", 0.01, 10},
-            {"scan_spacing", &Me::scan_spacing,
-             "m; points that are registered against planes are so far apart", 0.01, 10},
-            {"point_spacing", &Me::point_spacing,
-             "m; points that are registered against points are so far apart", 0.01, 10},
-            {"first_reach", &Me::first_reach,
-             "m; a motion of which nothing is known is looked for up to this", 0, 50},
-            {"acceleration", &Me::acceleration, "m/s2; of the hardest start or stop", 0, 1000},
-            {"doubt_spacing", &Me::doubt_spacing,
-             "m; scans that are weakly observed go into the map in such steps, not each", 0, 1000},
-            {"scale", &Me::scale,
-             "size of the place, by which all lengths that depend on it are multiplied: 1 for "
-             "streets, less for rooms; 0: from the scan",
-             0, 1},
-            {"lost_share", &Me::lost_share,
-             "share of the usual share of points on those of the map; with less it is searched for",
-             0, 1}};
+    return {
+        {"map_spacing", &Me::map_spacing,
+         "m; points of a scan that go into the map are so far apart", 0.01, 10},
+        {"scan_spacing", &Me::scan_spacing,
+         "m; points that are registered against planes are so far apart", 0.01, 10},
+        {"point_spacing", &Me::point_spacing,
+         "m; points that are registered against points are so far apart", 0.01, 10},
+        {"first_reach", &Me::first_reach,
+         "m; a motion of which nothing is known is looked for up to this", 0, 50},
+        {"acceleration", &Me::acceleration, "m/s2; of the hardest start or stop", 0, 1000},
+        {"doubt_spacing", &Me::doubt_spacing,
+         "m; scans that are weakly observed go into the map in such steps, not each", 0, 1000},
+        {"scale", &Me::scale,
+         "size of the place, by which all lengths that depend on it are multiplied: 1 for "
+         "streets, less for rooms; 0: from the scan",
+         0, 1},
+        {"lost_share", &Me::lost_share,
+         "share of the usual share of points on those of the map; with less it is searched for by "
+         "surfaces, too",
+         0, 1}};
 }
 
 PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
@@ -148,28 +150,29 @@ PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d
                  gained_m = tracker.acceleration / 2 * since_s * since_s,
                  start_m =
                      std::min(prediction_.hasMotion() ? gained_m : reach_m, tracker.first_reach);
-    auto best = step.searched
-                    ? map_.placeAnywhere(view.coarse, predicted, start_m, upright_)
-                    : map_.place(view.coarse, predicted,
-                                 kernel_.width(options.least_kernel, options.first_kernel));
-    // After an interruption it may be anywhere: another place, which shares the ground with the
-    // map's, must not be taken for it.
-    constexpr double kFoundAgain = 0.75;
-    const bool isAnywhere = !prediction_.hasMotion();
-    const double least = (isAnywhere ? kFoundAgain : tracker.lost_share) * usualShare_;
+    const double width = kernel_.width(options.least_kernel, options.first_kernel);
+    auto best = step.searched ? map_.placeAnywhere(view.coarse, predicted, start_m, upright_)
+                              : map_.place(view.coarse, predicted, width);
     const auto isFound = [&](double share) { return best.valid && best.share >= share; };
     const auto consider = [&](const PointEstimate& other) {
         if (other.valid && (!best.valid || other.share > best.share)) best = other;
     };
-    static const double kT = getenv("KT") ? atof(getenv("KT")) : 0.75;
-    static const double kL = getenv("KL") ? atof(getenv("KL")) : 0.35;
-    if (view.coarse.cols() == 0 || isFound(kT * usualShare_)) return best;
+    // A prediction that is off by more than any kernel (a hand's swings) is no start.
+    constexpr double kUsual = 0.75, kUsualAtFirst = 0.25;
+    const bool isShaken = kernel_.isKnown() && width >= options.first_kernel,
+               isUsual = isFound(usualShare_ > 0 ? kUsual * usualShare_ : kUsualAtFirst);
+    if (view.coarse.cols() == 0 || (isUsual && !isShaken)) return best;
     step.searched = true;
-    consider(map_.placeTurned(view.coarse, predicted));
-    if (isFound(least)) return best;
-    consider(relocalised(view, predicted, reach_m));
     consider(map_.place(view.coarse, predicted, options.first_kernel));
-    best.valid = isFound(isAnywhere ? least : kL * usualShare_);
+    consider(map_.placeTurned(view.coarse, predicted));
+    // After an interruption it may be anywhere: another place, which shares the ground with the
+    // map's, must not be taken for it.
+    constexpr double kSomewhere = 0.35;
+    const bool isAnywhere = !prediction_.hasMotion();
+    const double enough = (isAnywhere ? kUsual : tracker.lost_share) * usualShare_;
+    if (isFound(enough)) return best;
+    consider(relocalised(view, predicted, reach_m));
+    best.valid = isFound(isAnywhere ? enough : kSomewhere * usualShare_);
     return best;
 }
 

@@ -139,7 +139,7 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
 PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
                           const Eigen::Isometry3d& guess, const PointRegistrationOptions& options) {
     constexpr double kReach = 0.55, kStep = 0.11;  // rad
-    constexpr Eigen::Index kFew = 500;
+    constexpr Eigen::Index kFew = 250;
     const double start = options.first_kernel / 2;
     const auto starts =
         bestOf(turnsAbout(guess, kReach, kStep), map, scan::sample(points, kFew), start / 2);

@@ -12,6 +12,9 @@ class AdaptiveKernel {
     /** What the pose turned out to be beside its prediction. */
     void observe(const Eigen::Isometry3d& found, const Eigen::Isometry3d& predicted);
 
+    /** False while little is known. */
+    bool isKnown() const;
+
     /** Three standard deviations, within these limits; `most` while little is known. Metres. */
     double width(double least, double most) const;
 
