@@ -42,8 +42,16 @@ test::CellRun runOf(const Cell& cell, const std::string& profile = "accurate") {
 
 class Anywhere : public testing::TestWithParam<Cell> {};
 INSTANTIATE_TEST_SUITE_P(Tenth, Anywhere, testing::ValuesIn(tenth()), nameOf);
-INSTANTIATE_TEST_SUITE_P(Forest, Anywhere,
-                         testing::Values(Cell{"os1-64", "forest", "", "upright", 9}), nameOf);
+INSTANTIATE_TEST_SUITE_P(Elsewhere, Anywhere,
+                         testing::Values(Cell{"os1-64", "forest", "", "upright", 9},
+                                         Cell{"hdl32e", "indoor", "", "upright", 204}),
+                         nameOf);
+// Swings of up to 25 deg between two scans, which no prediction foresees.
+INSTANTIATE_TEST_SUITE_P(Handheld, Anywhere,
+                         testing::Values(Cell{"vlp16", "indoor", "", "upright", 204, "handheld"},
+                                         Cell{"hdl32e", "urban", "", "upright", 205, "handheld"},
+                                         Cell{"os1-64", "forest", "", "upright", 206, "handheld"}),
+                         nameOf);
 
 TEST_P(Anywhere, IsRegistered) {
     const auto run = runOf(GetParam());

@@ -35,7 +35,7 @@ bool warnedOf(const run::Summary& summary) {
 
 std::string Cell::name() const {
     std::string text = sensor + "_" + scene;
-    for (const auto& word : {start, mount})
+    for (const auto& word : {start, mount, motion})
         if (!word.empty()) text += "_" + word;
     return text + "_" + std::to_string(seed);
 }
@@ -47,7 +47,7 @@ std::vector<Cell> cellsOf(const std::vector<int>& seeds) {
             for (const std::string start : {"rest", "moving"})
                 for (const std::string mount : {"upright", "pitched", "rolled"})
                     for (const int seed : seeds)
-                        cells.push_back({sensor, scene, start, mount, seed});
+                        cells.push_back({sensor, scene, start, mount, seed, {}});
     return cells;
 }
 
@@ -71,6 +71,7 @@ CellDrive makeDrive(const Cell& cell, int scans, const std::filesystem::path& fo
         "--mount",  anglesOf(cell.mount),  "--threads", "1",
         "--force"};
     if (!cell.start.empty()) words.insert(words.end(), {"--start", cell.start});
+    if (!cell.motion.empty()) words.insert(words.end(), {"--motion", cell.motion});
     const auto made = runTool("synth2rawlog", words);
     if (made.exitCode != 0) throw Error(cell.name() + ": synth2rawlog: " + made.err);
     return drive;

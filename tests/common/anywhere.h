@@ -14,6 +14,7 @@ struct Cell {
     std::string start;  //!< synth2rawlog's --start; empty: as the seed has it
     std::string mount;  //!< upright, pitched (25 deg down ahead) or rolled (by 90 deg)
     int seed = 0;
+    std::string motion = {};  //!< synth2rawlog's --motion; empty: a vehicle's
 
     std::string name() const;
 };

@@ -171,6 +171,29 @@ TEST(PlaneOdometry, ScansWhosePointsHaveTimesAreDeskewedFromTheFirstOn) {
     EXPECT_LT(medianError_m(scans, options), 0.004);
 }
 
+// As a hand swings it: each turn is a quarter of the way to the other side, and none is foreseen.
+TEST(PlaneOdometry, ASensorThatSwingsInTheHandIsRegistered) {
+    constexpr double kSwing = 0.26, kPerScan = 2 * M_PI * 0.15;
+    test::Noise noise;
+    PlaneOdometry odometry(accurate());
+    Isometry3d first = Isometry3d::Identity(), found = first;
+    for (int i = 0; i < 40; ++i) {
+        Isometry3d pose = poseAt(0.1 * i, 0, 0);
+        pose.linear() = rotationExp(kSwing * Eigen::Vector3d(std::sin(kPerScan * i),
+                                                             std::sin(1.1 * kPerScan * i + 1),
+                                                             std::sin(0.9 * kPerScan * i + 2)));
+        Scan scan = test::scanOf(pointsSeenFrom(test::yard(), pose, noise));
+        scan.stamp_s = 0.1 * i;
+        const auto result = odometry.process(scan);
+        EXPECT_FALSE(result.predicted);
+        if (i == 0) first = pose;
+        found = found * result.increment.pose;
+        const Isometry3d truth = first.inverse() * pose;
+        EXPECT_LT(metresBetween(found, truth), 0.05) << i;
+        EXPECT_LT(degreesBetween(found, truth), 0.3) << i;
+    }
+}
+
 TEST(PlaneOdometry, AHundredScansOfStandstill) {
     test::Noise noise;
     PlaneOdometry odometry(accurate());

@@ -69,6 +69,25 @@ TEST(PointSearch, RingsOnTheGroundDoNotHideAMotionOfMetres) {
     }
 }
 
+TEST(PointSearch, ATurnOfTwentyDegreesAboutAnyAxisIsFound) {
+    constexpr double kFound_m = 0.1, kFound_deg = 1, kMistaken_deg = 3, kTurn = 0.35;
+    for (const Vector3d& axis : {Vector3d(0, 0, 1), Vector3d(0, 1, 0), Vector3d(-1, 0, 0),
+                                 Vector3d(1, -1, 1).normalized()}) {
+        Isometry3d moved = poseAt(0.1, 0, 0);
+        moved.linear() = rotationExp(kTurn * axis);
+        const Pair pair = pairIn(test::yard(), moved);
+        const auto nearest = points::registerToPoints(pair.map, pair.scan, Isometry3d::Identity(),
+                                                      kOptions.least_kernel, kOptions);
+        EXPECT_GT(test::degreesBetween(nearest.pose, moved), kMistaken_deg)
+            << "nothing to search for";
+        const auto found =
+            points::searchTurns(pair.map, pair.scan, Isometry3d::Identity(), kOptions);
+        EXPECT_TRUE(found.valid);
+        EXPECT_LT(offBy(found, moved), kFound_m) << axis.transpose();
+        EXPECT_LT(test::degreesBetween(found.pose, moved), kFound_deg) << axis.transpose();
+    }
+}
+
 // The disc of starts lies level, whatever the axes of the points.
 TEST(PointSearch, TheDiscIsLevelWhereUprightSaysSo) {
     constexpr double kFound_m = 0.25, kReach_m = 5;
