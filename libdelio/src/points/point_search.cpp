@@ -21,7 +21,7 @@ PointEstimate registerInSteps(const PointMap& map, const Eigen::Matrix3Xd& point
                               const Eigen::Isometry3d& guess, double kernel,
                               const PointRegistrationOptions& options) {
     const Eigen::Matrix3Xd part = scan::sample(points, kDense);
-    const auto rough = registerToPoints(map, part, guess, kernel, options);
+    auto rough = registerToPoints(map, part, guess, kernel, options);
     if (part.cols() == points.cols()) return rough;
     auto estimate = registerToPoints(map, points, rough.pose, options.last_kernel, options);
     estimate.iterations += rough.iterations;
@@ -36,6 +36,7 @@ std::vector<Eigen::Isometry3d> bestOf(const std::vector<Eigen::Isometry3d>& star
                                       double distance) {
     constexpr std::size_t kBest = 8;
     std::vector<std::pair<double, Eigen::Isometry3d>> all;
+    all.reserve(starts.size());
     for (const auto& start : starts) all.emplace_back(0, start);
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
         all[i].first = shareAt(map, points, all[i].second, distance);
