@@ -18,7 +18,7 @@ namespace {
 /** By the sensor's pose on the vehicle where the source knows that it is tilted, else about the
  * axis that it spins about. */
 Eigen::Matrix3f uprightOf(const Scan& scan, const Eigen::Matrix3Xf& points) {
-    const Eigen::Matrix3f mounted = scan::turnedUp(scan.sensorPose.linear().row(2));
+    Eigen::Matrix3f mounted = scan::turnedUp(scan.sensorPose.linear().row(2));
     if (!mounted.isIdentity()) return mounted;
     return scan::uprightOf(points).value_or(mounted);
 }
