@@ -40,6 +40,7 @@ inline double yawOf(const Eigen::Isometry3d& pose) { return std::atan2(pose(1, 0
 /** Each as seen from the first. */
 inline std::vector<Eigen::Isometry3d> fromFirst(const std::vector<Eigen::Isometry3d>& poses) {
     std::vector<Eigen::Isometry3d> result;
+    result.reserve(poses.size());
     for (const auto& pose : poses) result.push_back(poses.front().inverse() * pose);
     return result;
 }

@@ -49,7 +49,8 @@ Place RangeImage::at(const Eigen::Vector3f& point, float margin) const {
     int seen = 0, passed = 0;
     for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r)
         for (const int c : columns) {
-            const float nearest = nearest_[static_cast<std::size_t>(r * columns_ + c)];
+            const int cell = r * columns_ + c;
+            const float nearest = nearest_[static_cast<std::size_t>(cell)];
             if (nearest == 0) continue;
             if (std::abs(nearest - range) <= margin) return Place::kTaken;
             ++seen;
