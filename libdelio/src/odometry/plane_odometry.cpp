@@ -61,8 +61,8 @@ std::vector<OptionField> PlaneTrackerOptions::fields() const {
          "m; points that are registered against planes are so far apart", 0.01, 10},
         {"point_spacing", &Me::point_spacing,
          "m; points that are registered against points are so far apart", 0.01, 10},
-        {"first_reach", &Me::first_reach,
-         "m; a motion of which nothing is known is looked for up to this", 0, 50},
+        {"first_speed", &Me::first_speed,
+         "m/s; a motion of which nothing is known is looked for up to this", 0, 1000},
         {"acceleration", &Me::acceleration, "m/s2; of the hardest start or stop", 0, 1000},
         {"doubt_spacing", &Me::doubt_spacing,
          "m; scans that are weakly observed go into the map in such steps, not each", 0, 1000},
@@ -146,10 +146,12 @@ PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d
     const auto& options = options_.points;
     const auto& tracker = options_.tracker;
     step.searched = lost_ || doubted_ || !prediction_.hasMotion();
+    // What was driven in more time than this, surfaces have to find.
+    constexpr double kLongest_s = 0.5;
     const double since_s = timeline_.sinceStart_s() - reference_.time_s,
+                 driven_m = tracker.first_speed * std::min(since_s, kLongest_s),
                  gained_m = tracker.acceleration / 2 * since_s * since_s,
-                 start_m =
-                     std::min(prediction_.hasMotion() ? gained_m : reach_m, tracker.first_reach);
+                 start_m = prediction_.hasMotion() ? std::min(gained_m, driven_m) : driven_m;
     const double width = kernel_.width(options.least_kernel, options.first_kernel);
     auto best = step.searched ? map_.placeAnywhere(view.coarse, predicted, start_m, upright_)
                               : map_.place(view.coarse, predicted, width);

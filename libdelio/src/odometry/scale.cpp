@@ -25,7 +25,7 @@ double scaleOf(const Scan& scan) {
 PlaneOdometryOptions atScale(PlaneOdometryOptions options, double scale) {
     for (double* length :
          {&options.scan.min_range, &options.tracker.map_spacing, &options.tracker.scan_spacing,
-          &options.tracker.point_spacing, &options.tracker.first_reach,
+          &options.tracker.point_spacing, &options.tracker.first_speed,
           &options.tracker.doubt_spacing, &options.scanToMap.probe, &options.pointMap.voxel_size,
           &options.pointMap.spacing, &options.points.first_kernel, &options.points.least_kernel,
           &options.points.last_kernel, &options.points.converged_m, &options.map.voxel_size,

@@ -51,13 +51,15 @@ std::vector<Eigen::Isometry3d> bestOf(const std::vector<Eigen::Isometry3d>& star
 /** On a level disc about `guess`. */
 std::vector<Eigen::Isometry3d> startsAbout(const Eigen::Isometry3d& guess, double reach,
                                            const Eigen::Matrix3f& upright, double step) {
-    const int steps = static_cast<int>(reach / step);
+    // (Times between scans are never quite even: half a step is not worth a ring of starts.)
+    const auto steps = static_cast<int>(std::lround(reach / step));
     std::vector<Eigen::Isometry3d> starts;
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y) {
             const Eigen::Vector3d level(x * step, y * step, 0),
                 offset = upright.transpose().cast<double>() * level;
-            if (level.norm() <= reach) starts.push_back(guess * Eigen::Translation3d(offset));
+            if (level.norm() <= steps * step)
+                starts.push_back(guess * Eigen::Translation3d(offset));
         }
     return starts;
 }

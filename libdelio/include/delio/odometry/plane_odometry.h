@@ -18,7 +18,7 @@ struct PlaneTrackerOptions : public StageOptions {
     double map_spacing = 0.25;
     double scan_spacing = 0.5;
     double point_spacing = 1.0;
-    double first_reach = 4;
+    double first_speed = 40;
     double acceleration = 15;
     double doubt_spacing = 10;
     double scale = 0;
