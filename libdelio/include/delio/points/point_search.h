@@ -10,8 +10,8 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& guess, double reach,
                            const Eigen::Matrix3f& upright, const PointRegistrationOptions& options);
 
-/** Registration where the rotation of `guess` may be off by up to 30 deg about any axis: by the hand
- *  that carries the sensor, or a bump. */
+/** Registration where the rotation of `guess` may be off by up to 30 deg about any axis: by the
+ * hand that carries the sensor, or a bump. */
 PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
                           const Eigen::Isometry3d& guess, const PointRegistrationOptions& options);
 
