@@ -76,13 +76,15 @@ bool solve(const Eigen::Matrix3Xd& points, const std::vector<Pair>& pairs, unsig
 
 /** Iterations with pairs that are anew the nearest ones creep towards where they end, each step a
  *  share of the one before: where two went one way, what is left of that row is gone at once
- *  (Aitken). False where they did not. */
-bool extrapolate(const Vector6& before, const Vector6& step, Eigen::Isometry3d& pose) {
+ *  (Aitken), but no farther than `most`, within which pairs stay much the same. False where they
+ *  did not. */
+bool extrapolate(const Vector6& before, const Vector6& step, double most, Eigen::Isometry3d& pose) {
     constexpr double kOneWay = 0.9, kMost = 5;
     const double along = step.dot(before);
     if (along < kOneWay * step.norm() * before.norm()) return false;
     const double ratio = along / before.squaredNorm();
-    const double left = ratio < 1 ? std::min(ratio / (1 - ratio), kMost) : kMost;
+    const double left =
+        std::min(ratio < 1 ? std::min(ratio / (1 - ratio), kMost) : kMost, most / step.norm());
     pose.translation() += left * step.head<3>();
     pose.linear() = normalised(
         Eigen::Matrix3d(pose.linear() * rotationExp(left / kTypicalRange_m * step.tail<3>())));
@@ -105,7 +107,7 @@ bool iterate(const PointMap& map, const Eigen::Matrix3Xd& points, double width, 
         estimate.converged = step.head<3>().norm() + step.tail<3>().norm() < enough;
         if (estimate.converged) break;
         const bool isOn = extrapolated < kExtrapolations && !latest.isZero() &&
-                          extrapolate(latest, step, estimate.pose);
+                          extrapolate(latest, step, width / 2, estimate.pose);
         extrapolated += isOn;
         latest = isOn ? Vector6::Zero() : step;
     }
