@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Elsewhere, Anywhere,
 INSTANTIATE_TEST_SUITE_P(Handheld, Anywhere,
                          testing::Values(Cell{"vlp16", "indoor", "", "upright", 204, "handheld"},
                                          Cell{"hdl32e", "urban", "", "upright", 205, "handheld"},
-                                         Cell{"vlp16", "forest", "", "upright", 206, "handheld"}),
+                                         Cell{"os1-64", "forest", "", "upright", 206, "handheld"}),
                          nameOf);
 
 TEST_P(Anywhere, IsRegistered) {
