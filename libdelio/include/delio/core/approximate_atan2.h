@@ -3,8 +3,8 @@
 #include <cmath>
 
 namespace delio {
-/** atan2 to within 4e-6 rad, several times faster, and to the bit the same on every machine (the C
- *  library's depends on the processor). Of (0, 0): 0. */
+/** atan2 to within 4e-6 rad, faster, and the same for a build on whichever processor it runs (the C
+ *  library takes its own for each). Of (0, 0): 0. */
 inline float approximateAtan2(float y, float x) {
     constexpr float kQuarter = 1.5707963F;
     const float most = std::max(std::abs(x), std::abs(y)),
