@@ -59,6 +59,19 @@ Scene room() {
             {{7, -6, -2}, {8, -4, 4}}};
 }
 
+Scene highway(bool bushes) {
+    Scene scene{{{-500, -300, -2.8}, {500, 300, -1.8}},
+                {{-500, 8, -1.8}, {500, 8.3, -1}},
+                {{-500, -8.3, -1.8}, {500, -8, -1}}};
+    Noise noise(5);
+    for (int i = 0; bushes && i < 300; ++i) {
+        const double x = 80 * noise.uniform(), y = 18 + 8 * noise.uniform(), side = i % 2 ? 1 : -1,
+                     height = 2 + 1.5 * noise.uniform();
+        scene.push_back({{x, side * y - 0.4, -1.8}, {x + 0.8, side * y + 0.4, height}});
+    }
+    return scene;
+}
+
 Scene corridor() {
     return {{{-1e4, -9, -3}, {1e4, 9, -1.8}},
             {{-1e4, -7, -2}, {1e4, -6, 30}},

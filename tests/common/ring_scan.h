@@ -36,6 +36,8 @@ Scene yard();
 Scene room();
 /** A ground and two parallel walls along x, without an end. */
 Scene corridor();
+/** Ground and rails along x, which look the same from anywhere on the road, and bushes or none. */
+Scene highway(bool bushes);
 
 struct Sensor {
     unsigned rings = 32;

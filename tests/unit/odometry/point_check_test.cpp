@@ -10,20 +10,6 @@ using namespace delio::odometry_test;
 
 const test::Sensor kSensor{16, 900, -15, 15, 0.02};
 
-/** Ground and rails along x, which look the same from anywhere on the road, and bushes. */
-test::Scene highway(bool bushes) {
-    test::Scene scene{{{-500, -300, -2.8}, {500, 300, -1.8}},
-                      {{-500, 8, -1.8}, {500, 8.3, -1}},
-                      {{-500, -8.3, -1.8}, {500, -8, -1}}};
-    test::Noise noise(5);
-    for (int i = 0; bushes && i < 300; ++i) {
-        const double x = 80 * noise.uniform(), y = 18 + 8 * noise.uniform(), side = i % 2 ? 1 : -1,
-                     height = 2 + 1.5 * noise.uniform();
-        scene.push_back({{x, side * y - 0.4, -1.8}, {x + 0.8, side * y + 0.4, height}});
-    }
-    return scene;
-}
-
 CheckPoints at(const Eigen::Isometry3d& pose, std::uint32_t seed, const test::Scene& scene) {
     test::Noise noise(seed);
     return checkPointsOf(test::ringScan(scene, pose, kSensor, noise).points,
@@ -41,7 +27,7 @@ TEST(PointCheck, AStandstillOnAHighwayIsDenied) {
     for (const double metres : {2.2, 3.0, 3.7}) {
         const auto moved = poseAtDeg(metres, 0, 0, 0.3);
         const auto placed =
-            check(highway(true), highway(true), moved, Eigen::Isometry3d::Identity());
+            check(test::highway(true), test::highway(true), moved, Eigen::Isometry3d::Identity());
         ASSERT_TRUE(placed.valid) << metres;
         expectPose(placed.pose, moved, 0.1, 0.5);
     }
@@ -51,19 +37,19 @@ TEST(PointCheck, AStandstillOnAHighwayIsDenied) {
 TEST(PointCheck, ARotationThatIsFarOffIsDenied) {
     const auto moved = poseAtDeg(2.2, 0, 0, 0.3);
     const auto placed =
-        check(highway(true), highway(true), moved, moved * poseAtDeg(0.1, 0.5, 0, 10));
+        check(test::highway(true), test::highway(true), moved, moved * poseAtDeg(0.1, 0.5, 0, 10));
     ASSERT_TRUE(placed.valid);
     expectPose(placed.pose, moved, 0.1, 0.5);
 }
 
 TEST(PointCheck, WhatIsRightIsConfirmed) {
     const auto moved = poseAtDeg(2.2, 0, 0, 0.3);
-    const auto placed = check(highway(true), highway(true), moved, moved);
+    const auto placed = check(test::highway(true), test::highway(true), moved, moved);
     EXPECT_TRUE(!placed.valid || agree(placed.pose, moved, {})) << placed.pose.matrix();
 }
 
 TEST(PointCheck, WhereNothingTellsItDoesNot) {
-    EXPECT_FALSE(check(highway(false), highway(false), poseAtDeg(2.2, 0, 0, 0),
+    EXPECT_FALSE(check(test::highway(false), test::highway(false), poseAtDeg(2.2, 0, 0, 0),
                        Eigen::Isometry3d::Identity())
                      .valid);
     const CheckPoints nothing =
@@ -75,7 +61,7 @@ TEST(PointCheck, WhereNothingTellsItDoesNot) {
 
 // A vehicle that stands does not go with the cars that pass it.
 TEST(PointCheck, StandingBetweenMovingCarsIsStanding) {
-    auto before = highway(true), now = before;
+    auto before = test::highway(true), now = before;
     for (const double x : {-12.0, 3.0, 17.0}) {
         before.push_back({{x, 3, -1.6}, {x + 4.5, 4.8, 0}});
         now.push_back({{x + 2, 3, -1.6}, {x + 6.5, 4.8, 0}});
