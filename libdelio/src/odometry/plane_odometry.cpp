@@ -4,11 +4,9 @@
 #include <string_view>
 
 #include "delio/core/stopwatch.h"
-#include "delio/odometry/relocalisation.h"
 #include "delio/odometry/scale.h"
 #include "delio/scan/spin_axis.h"
 #include "delio/scan/voxel_grid.h"
-#include "delio/surfaces/surfaces.h"
 
 namespace delio {
 using planes::PlaneEstimate;
@@ -52,30 +50,6 @@ std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate&
 }
 }  // namespace
 
-std::vector<OptionField> PlaneTrackerOptions::fields() const {
-    using Me = PlaneTrackerOptions;
-    return {
-        {"map_spacing", &Me::map_spacing,
-         "m; points of a scan that go into the map are so far apart", 0.01, 10},
-        {"scan_spacing", &Me::scan_spacing,
-         "m; points that are registered against planes are so far apart", 0.01, 10},
-        {"point_spacing", &Me::point_spacing,
-         "m; points that are registered against points are so far apart", 0.01, 10},
-        {"first_speed", &Me::first_speed,
-         "m/s; a motion of which nothing is known is looked for up to this", 0, 1000},
-        {"acceleration", &Me::acceleration, "m/s2; of the hardest start or stop", 0, 1000},
-        {"doubt_spacing", &Me::doubt_spacing,
-         "m; scans that are weakly observed go into the map in such steps, not each", 0, 1000},
-        {"scale", &Me::scale,
-         "size of the place, by which all lengths that depend on it are multiplied: 1 for "
-         "streets, less for rooms; 0: from the scan",
-         0, 1},
-        {"lost_share", &Me::lost_share,
-         "share of the usual share of points on those of the map; with less it is searched for by "
-         "surfaces, too",
-         0, 1}};
-}
-
 PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
     : given_(options),
       options_(options),
@@ -101,10 +75,6 @@ bool PlaneOdometry::isOtherScale() {
     return otherScale_ >= kPatience;
 }
 
-surfaces::SurfaceNormals PlaneOdometry::surfacesOf(const Eigen::Matrix3Xf& points) const {
-    return surfaces::surfacesOf(points, options_.normals, options_.bilateral);
-}
-
 void PlaneOdometry::thinned(ScanView& view) const {
     thin(view, options_.tracker.map_spacing, options_.tracker.scan_spacing);
 }
@@ -127,55 +97,28 @@ void PlaneOdometry::leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
     view.fine = unmarked(view.fine, dynamic);
 }
 
-/** Where the prediction is off by metres: found by surfaces, then placed by points. */
-PointEstimate PlaneOdometry::relocalised(const ScanView& view, const Eigen::Isometry3d& guess,
-                                         double reach_m) const {
-    const auto& registration = options_.registration;
-    const Eigen::Matrix3Xd thinned =
-        scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
-    const auto found =
-        relocalise(map_.planes(), surfacesOf(reference_.points), reference_.pose, thinned,
-                   surfacesOf(view.points), guess, reach_m, registration, options_.pattern);
-    return map_.place(view.coarse, found.pose(), registration.search_step);
-}
-
-/** By points, from the prediction; where that is not known, or fits worse than usual, from other
- *  starts too, and the one is taken where most points fit. */
-PointEstimate PlaneOdometry::place(const ScanView& view, const Eigen::Isometry3d& predicted,
-                                   double reach_m, Step& step) const {
-    const auto& options = options_.points;
+/** What is known of the next scan's place, of which `since_s` is the time since the latest one that
+ *  was registered. */
+Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, double since_s,
+                                       bool believed) const {
     const auto& tracker = options_.tracker;
-    step.searched = lost_ || doubted_ || !prediction_.hasMotion();
+    const auto& points = options_.points;
+    const auto& registration = options_.registration;
     // What was driven in more time than this, surfaces have to find.
     constexpr double kLongest_s = 0.5;
-    const double since_s = timeline_.sinceStart_s() - reference_.time_s,
-                 driven_m = tracker.first_speed * std::min(since_s, kLongest_s),
-                 gained_m = tracker.acceleration / 2 * since_s * since_s,
-                 start_m = prediction_.hasMotion() ? std::min(gained_m, driven_m) : driven_m;
-    const double width = kernel_.width(options.least_kernel, options.first_kernel);
-    auto best = step.searched ? map_.placeAnywhere(view.coarse, predicted, start_m, upright_)
-                              : map_.place(view.coarse, predicted, width);
-    const auto isFound = [&](double share) { return best.valid && best.share >= share; };
-    const auto consider = [&](const PointEstimate& other) {
-        if (other.valid && (!best.valid || other.share > best.share)) best = other;
-    };
-    // A prediction that is off by more than any kernel (a hand's swings) is no start.
-    constexpr double kUsual = 0.75, kUsualAtFirst = 0.25;
-    const bool isShaken = kernel_.isKnown() && width >= options.first_kernel,
-               isUsual = isFound(usualShare_ > 0 ? kUsual * usualShare_ : kUsualAtFirst);
-    if (view.coarse.cols() == 0 || (isUsual && !isShaken)) return best;
-    step.searched = true;
-    consider(map_.place(view.coarse, predicted, options.first_kernel));
-    consider(map_.placeTurned(view.coarse, predicted));
-    // After an interruption it may be anywhere: another place, which shares the ground with the
-    // map's, must not be taken for it.
-    constexpr double kSomewhere = 0.35;
-    const bool isAnywhere = !prediction_.hasMotion();
-    const double enough = (isAnywhere ? kUsual : tracker.lost_share) * usualShare_;
-    if (isFound(enough)) return best;
-    consider(relocalised(view, predicted, reach_m));
-    best.valid = isFound(isAnywhere ? enough : kSomewhere * usualShare_);
-    return best;
+    const double driven_m = tracker.first_speed * std::min(since_s, kLongest_s),
+                 gained_m = tracker.acceleration / 2 * since_s * since_s;
+    Expectation expected{predicted, reference_, upright_};
+    expected.motionIsKnown = prediction_.hasMotion();
+    expected.isGuess = lost_ || doubted_ || !expected.motionIsKnown;
+    expected.start_m = expected.motionIsKnown ? std::min(gained_m, driven_m) : driven_m;
+    expected.reach_m =
+        believed ? std::min(registration.search_speed * since_s, registration.search_radius)
+                 : registration.search_radius;
+    expected.kernel_m = kernel_.width(points.least_kernel, points.first_kernel);
+    expected.isShaken = kernel_.isKnown() && expected.kernel_m >= points.first_kernel;
+    expected.usualShare = usualShare_;
+    return expected;
 }
 
 /** Once more, with the points where the motion that was found puts them. (It is the mean since the
@@ -186,7 +129,7 @@ void PlaneOdometry::undistortAgain(const scan::PointCloud& cloud, double since_s
     if (skewed_) {
         ScanView first = undistorted(*skewed_, motion);
         thinned(first);
-        map_.clear();
+        map_.clear(upAt(reference_.pose));
         insert(first, reference_.pose);
         skewed_.reset();
     }
@@ -212,6 +155,11 @@ void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& 
     prediction_.observe(reference_.pose.inverse() * pose_, since_s);
 }
 
+/** In the map's frame, of a sensor at `pose`. */
+Eigen::Vector3d PlaneOdometry::upAt(const Eigen::Isometry3d& pose) const {
+    return pose.linear() * upright_.row(2).transpose().cast<double>();
+}
+
 void PlaneOdometry::insert(const ScanView& view, const Eigen::Isometry3d& pose) {
     map_.add(view.fine, pose);
     reference_ = {view.points, pose, timeline_.sinceStart_s()};
@@ -223,7 +171,7 @@ ScanView PlaneOdometry::beginMap(const scan::PointCloud& cloud) {
     constexpr double kDense = 0.2;
     ScanView view = undistorted(cloud, {});
     thin(view, kDense * options_.tracker.map_spacing, options_.tracker.scan_spacing);
-    map_.clear();
+    map_.clear(upAt(pose_));
     dynamics_.clear();
     usualShare_ = 0;
     insert(view, pose_);
@@ -259,18 +207,17 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
         return undistorted(cloud, Motion::of(motion, interval.duration_s));
     });
     const auto voxels = timed(timeOf(step, "thinning"), [&] { return thinAll(view); });
-    const auto& registration = options_.registration;
-    const double reach_m = interval.believed ? std::min(registration.search_speed * since_s,
-                                                        registration.search_radius)
-                                             : registration.search_radius;
-    const auto placed =
-        timed(timeOf(step, "points"), [&] { return place(view, predicted, reach_m, step); });
+    const auto [placed, searched] = timed(timeOf(step, "points"), [&] {
+        return placeScan(map_, view, expectation(predicted, since_s, interval.believed), options_);
+    });
+    step.searched = searched;
     const bool detecting = options_.dynamics.enabled && !lost_ && placed.valid;
     if (detecting)
         timed(timeOf(step, "dynamic"), [&] { leaveOutDynamicObjects(voxels, placed.pose, view); });
     const auto estimate = timed(timeOf(step, "planes"), [&] {
         if (!placed.valid)
-            return planes::predictedEstimate(predicted, registration, errorGrowth(unregistered_s_));
+            return planes::predictedEstimate(predicted, options_.registration,
+                                             errorGrowth(unregistered_s_));
         view.thinned =
             scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
         auto found = map_.refine(view, placed, predicted, reference_.pose);

@@ -44,8 +44,8 @@ void ScanToMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pos
     points_.forgetFarFrom(swept_m_);
 }
 
-void ScanToMap::clear() {
-    planes_.clear();
+void ScanToMap::clear(const Eigen::Vector3d& up) {
+    planes_.clear(up);
     points_.clear();
 }
 

@@ -15,6 +15,8 @@ std::vector<OptionField> PlaneMapOptions::fields() const {
             {"levels", &PlaneMapOptions::levels,
              "of voxels, each twice as large: where the smaller one holds no plane, the larger may",
              1, 6},
+            {"ground_levels", &PlaneMapOptions::ground_levels,
+             "more of them, again twice as large each, whose planes have to be level", 0, 6},
             {"min_points", &PlaneMapOptions::min_points, "points that a plane needs", 3, 1e6},
             {"max_thickness", &PlaneMapOptions::max_thickness,
              "m; standard deviation of a plane's points across it", 1e-4, 10},
@@ -30,9 +32,12 @@ std::vector<OptionField> PlaneMapOptions::fields() const {
              1, 1e4}};
 }
 
-PlaneMap::PlaneMap(const PlaneMapOptions& options) : options_(options) {
+PlaneMap::PlaneMap(const PlaneMapOptions& options, const Eigen::Vector3d& up)
+    : options_(options), up_(up) {
+    constexpr double kLevel = 0.9;  // 26 deg: what a sensor's axis and the ground are off together
     double edge = options_.voxel_size;
-    for (unsigned i = 0; i < options_.levels; ++i, edge *= 2) levels_.push_back({edge, {}});
+    for (unsigned i = 0; i < options_.levels + options_.ground_levels; ++i, edge *= 2)
+        levels_.push_back({edge, i < options_.levels ? 0 : kLevel, {}});
 }
 
 double Plane::varianceAt(const Eigen::Vector3d& point) const {
@@ -41,7 +46,7 @@ double Plane::varianceAt(const Eigen::Vector3d& point) const {
            (1 + (1 + d[1] * d[1] / variances[1] + d[2] * d[2] / variances[2]) / count);
 }
 
-void PlaneMap::fit(double edge, Cell& cell) const {
+void PlaneMap::fit(const Level& level, Cell& cell) const {
     cell.touched = false;
     if (cell.count < options_.min_points) return;
     const Eigen::Vector3d mean = cell.sum / cell.count;
@@ -49,10 +54,11 @@ void PlaneMap::fit(double edge, Cell& cell) const {
     pca.computeDirect(cell.squares / cell.count - mean * mean.transpose());
     // Never thinner than rounding allows.
     const Eigen::Vector3d variances = pca.eigenvalues().cwiseMax(1e-9);
-    const double least = options_.min_breadth * edge;
+    const double least = options_.min_breadth * level.edge;
     cell.isPlane = std::sqrt(variances[0]) < options_.max_thickness &&
                    variances[0] < options_.max_flatness * variances[1] &&
-                   variances[1] > least * least;
+                   variances[1] > least * least &&
+                   std::abs(pca.eigenvectors().col(0).dot(up_)) >= level.steepest;
     cell.plane = {cell.origin + mean, variances, pca.eigenvectors(),
                   static_cast<double>(cell.count)};
 }
@@ -73,7 +79,7 @@ void PlaneMap::add(const Eigen::Matrix3Xd& points, Level& level) const {
         cell.touched = true;
     }
     tbb::parallel_for(std::size_t{0}, touched.size(),
-                      [&](std::size_t i) { fit(level.edge, level.cells[touched[i]]); });
+                      [&](std::size_t i) { fit(level, level.cells[touched[i]]); });
 }
 
 void PlaneMap::add(const Eigen::Matrix3Xd& points) {
@@ -87,7 +93,8 @@ void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
             [&](const Cell& cell) { return (cell.origin - centre).norm() > options_.radius; });
 }
 
-void PlaneMap::clear() {
+void PlaneMap::clear(const Eigen::Vector3d& up) {
+    up_ = up;
     for (auto& level : levels_) level.cells.clear();
 }
 

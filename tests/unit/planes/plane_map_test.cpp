@@ -28,6 +28,7 @@ PlaneMapOptions oneMetre() {
     PlaneMapOptions options;
     options.voxel_size = 1;
     options.levels = 1;
+    options.ground_levels = 0;
     options.min_breadth = 0.1;
     return options;
 }
@@ -113,9 +114,32 @@ TEST(PlaneMap, WhereTheSmallVoxelHasNoPlaneTheLargerOneMay) {
     dense.add(0.5 * patch({0.5, 0.5, 0.5}, {0, 0, 1}, 0.001, 30, noise));  // in one small voxel
     ASSERT_TRUE(dense.at(inside));
     EXPECT_NE(dense.at(inside), dense.at(beside));
-    map.clear();
+    map.clear(Eigen::Vector3d::UnitZ());
     EXPECT_EQ(map.planes(), 0U);
     EXPECT_EQ(map.voxels(), 0U);
+}
+
+// Two rings on the ground, 1.2 m apart, and on a wall.
+TEST(PlaneMap, BetweenRingsThatLieFarApartIsGroundOrNothing) {
+    test::Noise noise;
+    Eigen::Matrix3Xd ground(3, 80), wall(3, 80);
+    for (Eigen::Index i = 0; i < ground.cols(); ++i) {
+        const double along = 0.05 * static_cast<double>(i / 2), across = i % 2 ? 0.4 : 1.6;
+        ground.col(i) << along, across, 0.5 + 0.01 * noise.normal();
+        wall.col(i) << along + 10, 0.5 + 0.01 * noise.normal(), across;
+    }
+    const Eigen::Vector3d onGround(1, 1, 0.5), onWall(11, 0.5, 1);
+    PlaneMap upright(PlaneMapOptions{});
+    upright.add(ground);
+    upright.add(wall);
+    ASSERT_TRUE(upright.at(onGround));
+    EXPECT_GT(std::abs(upright.at(onGround)->normal().z()), 0.99);
+    EXPECT_FALSE(upright.at(onWall));
+    PlaneMap rolled(PlaneMapOptions{}, Eigen::Vector3d::UnitY());
+    rolled.add(ground);
+    rolled.add(wall);
+    EXPECT_FALSE(rolled.at(onGround));
+    EXPECT_TRUE(rolled.at(onWall));
 }
 
 TEST(PlaneMap, AFullVoxelStaysAndAFarOneGoes) {

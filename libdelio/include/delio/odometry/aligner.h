@@ -37,6 +37,7 @@ struct AlignerOptions : public StageOptions {
         // Dense clouds have no rows that could be taken for planes.
         planeMap.voxel_size = 1;
         planeMap.levels = 1;
+        planeMap.ground_levels = 0;  // which way is up is not known
         planeMap.min_breadth = 0.1;
     }
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,

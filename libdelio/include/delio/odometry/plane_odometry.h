@@ -2,50 +2,12 @@
 #include <optional>
 
 #include "delio/core/timeline.h"
-#include "delio/movers/dynamic_objects.h"
 #include "delio/odometry/adaptive_kernel.h"
 #include "delio/odometry/odometry.h"
-#include "delio/odometry/prediction.h"
-#include "delio/odometry/scan_to_map.h"
-#include "delio/odometry/scan_view.h"
-#include "delio/paper/pattern_registration.h"
+#include "delio/odometry/placement.h"
 #include "delio/scan/voxel_grid.h"
-#include "delio/surfaces/bilateral_filter.h"
-#include "delio/surfaces/normals.h"
 
 namespace delio {
-struct PlaneTrackerOptions : public StageOptions {
-    double map_spacing = 0.25;
-    double scan_spacing = 0.5;
-    double point_spacing = 1.0;
-    double first_speed = 40;
-    double acceleration = 15;
-    double doubt_spacing = 10;
-    double scale = 0;
-    double lost_share = 0.5;
-
- protected:
-    std::vector<OptionField> fields() const override;
-};
-
-/** The options of each stage of PlaneOdometry. */
-struct PlaneOdometryOptions {
-    scan::PreprocessOptions scan;
-    PredictionOptions prediction;
-    PlaneTrackerOptions tracker;
-    ScanToMapOptions scanToMap;
-    points::PointMapOptions pointMap;
-    points::PointRegistrationOptions points;
-    planes::PlaneMapOptions map;
-    planes::PlaneRegistrationOptions registration;
-    movers::DynamicObjectsOptions dynamics;
-    movers::SegmentOptions segments;
-    /** Of the surfaces by which a scan is relocalised. */
-    surfaces::NormalsOptions normals;
-    surfaces::BilateralFilterOptions bilateral;
-    paper::PatternRegistrationOptions pattern;
-};
-
 /** Scan against map, rotation and translation decoupled: first against the points of the scans
  *  before, from the prediction on, then against their planes (ScanToMap). Dynamic objects, found at
  *  the pose by points, are left out of the planes and of the map. Where three scans in a row that
@@ -59,13 +21,6 @@ class PlaneOdometry : public Odometry {
     Step process(const Scan& scan) override;
 
  private:
-    /** The latest scan that was registered. */
-    struct Reference {
-        Eigen::Matrix3Xf points;                                 //!< sensor's frame
-        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
-        double time_s = 0;
-    };
-
     void takeScale(double scale);
     bool isOtherScale();
     void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
@@ -73,20 +28,18 @@ class PlaneOdometry : public Odometry {
     scan::VoxelNumbers thinAll(ScanView& view) const;
     void leaveOutDynamicObjects(const scan::VoxelNumbers& voxels, const Eigen::Isometry3d& pose,
                                 ScanView& view);
-    points::PointEstimate place(const ScanView& view, const Eigen::Isometry3d& predicted,
-                                double reach_m, Step& step) const;
-    points::PointEstimate relocalised(const ScanView& view, const Eigen::Isometry3d& guess,
-                                      double reach_m) const;
+    Expectation expectation(const Eigen::Isometry3d& predicted, double since_s,
+                            bool believed) const;
     void undistortAgain(const scan::PointCloud& cloud, double since_s, ScanView& view,
                         planes::PlaneEstimate& estimate);
     void learn(const points::PointEstimate& placed, const Eigen::Isometry3d& predicted,
                double since_s);
+    Eigen::Vector3d upAt(const Eigen::Isometry3d& pose) const;
     void insert(const ScanView& view, const Eigen::Isometry3d& pose);
     ScanView beginMap(const scan::PointCloud& cloud);
     void giveUp(const scan::PointCloud& cloud);
     void report(const planes::PlaneEstimate& estimate, const Eigen::Isometry3d& before,
                 ScanView& view, Step& step) const;
-    surfaces::SurfaceNormals surfacesOf(const Eigen::Matrix3Xf& points) const;
     void thinned(ScanView& view) const;
 
     const PlaneOdometryOptions given_;
@@ -100,7 +53,7 @@ class PlaneOdometry : public Odometry {
     ScanToMap map_;
     movers::DynamicObjects dynamics_;
     AdaptiveKernel kernel_;
-    Reference reference_;
+    ReferenceScan reference_;
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
     double unregistered_s_ = 0;  //!< since the latest scan that was registered
     bool first_ = true;          //!< no scan was seen yet

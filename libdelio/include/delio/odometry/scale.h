@@ -1,5 +1,5 @@
 #pragma once
-#include "delio/odometry/plane_odometry.h"
+#include "delio/odometry/plane_odometry_options.h"
 #include "delio/scan/scan.h"
 
 namespace delio {

@@ -35,7 +35,8 @@ class ScanToMap {
           points_(pointMap) {}
 
     void add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
-    void clear();
+    /** `up`: the unit vector that does, in the map's frame. */
+    void clear(const Eigen::Vector3d& up);
     const planes::PlaneMap& planes() const { return planes_; }
     /** False where there are too few points to register anything against. */
     bool isUsable() const { return points_.size() >= pointOptions_.min_matches; }

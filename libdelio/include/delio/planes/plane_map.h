@@ -10,6 +10,7 @@ namespace delio::planes {
 struct PlaneMapOptions : public StageOptions {
     double voxel_size = 0.5;
     unsigned levels = 2;
+    unsigned ground_levels = 1;
     unsigned min_points = 8;
     double max_thickness = 0.1;
     double max_flatness = 0.05;
@@ -37,10 +38,14 @@ struct Plane {
 };
 
 /** What the last scans saw, as one plane a voxel, with running mean and scatter; on several levels,
- *  each of voxels twice as large as the one before. Memory is bounded by `radius`. */
+ *  each of voxels twice as large as the one before. The largest hold level planes only: the ground
+ *  between a few rings that lie metres apart. (Whatever else is flat over metres, give or take
+ *  10 cm, is mostly a row of bushes.) Memory is bounded by `radius`. */
 class PlaneMap {
  public:
-    explicit PlaneMap(const PlaneMapOptions& options);
+    /** `up`: the unit vector that does, in the map's frame. */
+    explicit PlaneMap(const PlaneMapOptions& options,
+                      const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
 
     /** Takes points (metres, the map's frame) in. A voxel that has `max_points` stays as it is: it
      *  is what drift is held against. */
@@ -53,8 +58,8 @@ class PlaneMap {
      *  changes. */
     const Plane* at(const Eigen::Vector3d& point) const;
 
-    /** Drops everything. */
-    void clear();
+    /** Drops everything, for a map in which `up` is up. */
+    void clear(const Eigen::Vector3d& up);
 
     /** Of all levels. */
     std::size_t voxels() const;
@@ -70,13 +75,15 @@ class PlaneMap {
         Plane plane;
     };
     struct Level {
-        double edge;  //!< of its voxels, metres
+        double edge;      //!< of its voxels, metres
+        double steepest;  //!< least that its planes' normals look up, cosine
         scan::VoxelTable<Cell> cells;
     };
     void add(const Eigen::Matrix3Xd& points, Level& level) const;
-    void fit(double edge, Cell& cell) const;
+    void fit(const Level& level, Cell& cell) const;
 
     PlaneMapOptions options_;
+    Eigen::Vector3d up_;
     std::vector<Level> levels_;  //!< the finest first
 };
 }  // namespace delio::planes
