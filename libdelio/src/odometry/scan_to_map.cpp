@@ -124,17 +124,32 @@ void ScanToMap::settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Is
     translation.unobservedAxes = unseen;
 }
 
+bool ScanToMap::believes(const PlaneEstimate& found, const PointEstimate& placed) const {
+    const Eigen::Isometry3d off = placed.pose.inverse() * found.pose();
+    return found.valid && off.translation().norm() <= options_.believed &&
+           angleOf(off.linear()) <= options_.believed_deg * kDeg;
+}
+
 PlaneEstimate ScanToMap::refine(const ScanView& view, const PointEstimate& placed,
                                 const Eigen::Isometry3d& predicted,
                                 const Eigen::Isometry3d& latest) const {
-    const Eigen::Matrix3d turn = turnCovariance(view.coarse, placed);
-    const auto prior = planes::Prior::of(placed.pose, options_.point_sigma, turn);
-    auto found = planes::registerToPlanes(planes_, view.thinned, prior, planeOptions_.last_kernel,
-                                          planeOptions_);
-    const Eigen::Isometry3d off = placed.pose.inverse() * found.pose();
-    if (!found.valid || off.translation().norm() > options_.believed ||
-        angleOf(off.linear()) > options_.believed_deg * kDeg)
-        found = byPoints(placed, turn);
+    const auto byPlanes = [&](const PointEstimate& from) {
+        const auto prior =
+            planes::Prior::of(from.pose, options_.point_sigma, turnCovariance(view.coarse, from));
+        return planes::registerToPlanes(planes_, view.thinned, prior, planeOptions_.last_kernel,
+                                        planeOptions_);
+    };
+    PointEstimate from = placed;
+    auto found = byPlanes(from);
+    // The points were placed wrongly where more of them fit where planes lead.
+    constexpr unsigned kPatience = 4;
+    for (unsigned i = 0; i < kPatience && found.valid && !believes(found, from); ++i) {
+        const auto there = place(view.coarse, found.pose(), pointOptions_.least_kernel);
+        if (!there.valid || there.share <= from.share) break;
+        from = there;
+        found = byPlanes(from);
+    }
+    if (!believes(found, from)) found = byPoints(from, turnCovariance(view.coarse, from));
     found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
     settleUnobserved(view.coarse, predicted, latest, found);
     return found;

@@ -55,7 +55,8 @@ class ScanToMap {
     points::PointEstimate placeTurned(const Eigen::Matrix3Xd& coarse,
                                       const Eigen::Isometry3d& predicted) const;
 
-    /** By planes, from where the points were placed. An axis that the planes see no better than the
+    /** By planes, from where the points were placed; from where planes lead once more, if more
+     *  points fit there. An axis that the planes see no better than the
      *  points stays where these put it, if they see it, else where the prediction does. Where
      * points alone say that the scan stands where the map's `latest` does it is named as
      * unobserved, too: a sensor's own rings say that anywhere. */
@@ -64,6 +65,7 @@ class ScanToMap {
                                  const Eigen::Isometry3d& latest) const;
 
  private:
+    bool believes(const planes::PlaneEstimate& found, const points::PointEstimate& placed) const;
     Eigen::Matrix3d turnCovariance(const Eigen::Matrix3Xd& points,
                                    const points::PointEstimate& placed) const;
     planes::PlaneEstimate byPoints(const points::PointEstimate& placed,

@@ -1,0 +1,65 @@
+#include "delio/odometry/scan_to_map.h"
+
+#include <gtest/gtest.h>
+
+#include "delio/odometry/plane_odometry_options.h"
+#include "delio/scan/voxel_grid.h"
+#include "poses.h"
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using test::metresBetween;
+using test::poseAt;
+
+/** A map of the yard as two scans saw it, and a scan of which the true pose is `there`. */
+class AScanInAYard : public testing::Test {
+ protected:
+    AScanInAYard() {
+        test::Noise noise;
+        const auto fineAt = [&](const Eigen::Isometry3d& pose) -> Eigen::Matrix3Xf {
+            return scan::voxelCentroids(
+                test::ringScan(test::yard(), pose, {48, 900, -24, 8, 0.01}, noise).points,
+                options.tracker.map_spacing);
+        };
+        for (const double x : {0.0, 1.0}) map.add(fineAt(poseAt(x, 0, 0)), poseAt(x, 0, 0));
+        view.fine = fineAt(there);
+        view.coarse = scan::firstOfVoxels(view.fine, options.tracker.point_spacing).cast<double>();
+        view.thinned = scan::voxelCentroids(view.fine, options.tracker.scan_spacing).cast<double>();
+    }
+
+    /** As points would have placed it, of which `share` fitted. */
+    Eigen::Isometry3d refined(const Eigen::Isometry3d& placedAt, double share) const {
+        points::PointEstimate placed;
+        placed.pose = placedAt;
+        placed.share = share;
+        placed.matches = 500;
+        placed.residual_m = 0.1;
+        placed.valid = true;
+        return map.refine(view, placed, placedAt, poseAt(1, 0, 0)).pose();
+    }
+
+    PlaneOdometryOptions options;
+    ScanToMap map{options.scanToMap, options.map, options.registration, options.pointMap,
+                  options.points};
+    ScanView view;
+    const Eigen::Isometry3d there = poseAt(2, 0.1, 0);
+};
+
+TEST_F(AScanInAYard, IsRefinedByPlanes) {
+    const auto placed = map.place(view.coarse, there * poseAt(0.2, 0.2, 0), 1);
+    ASSERT_TRUE(placed.valid);
+    EXPECT_LT(metresBetween(map.refine(view, placed, placed.pose, poseAt(1, 0, 0)).pose(), there),
+              0.01);
+}
+
+// Farther than planes are believed, but there more points fit than where they were placed.
+TEST_F(AScanInAYard, IsTakenFromWherePointsPlacedItWrongly) {
+    EXPECT_LT(metresBetween(refined(there * poseAt(0.15, 0.15, 0), 0.3), there), 0.01);
+}
+
+TEST_F(AScanInAYard, StaysWherePointsFitBetterThanWherePlanesLead) {
+    const auto placed = there * poseAt(0.15, 0.15, 0);
+    EXPECT_LT(metresBetween(refined(placed, 1), placed), 1e-9);
+}
+}  // namespace
