@@ -55,7 +55,7 @@ void measure(const std::string& rawlog, const Options& options) {
     while (const auto scan = reader.next()) {
         const Step step = odometry->process(*scan);
         for (const auto& [stage, time_ms] : step.times_ms)
-            if (stage == "dynamic") ms += time_ms;
+            if (std::string_view(stage) == "dynamic") ms += time_ms;
         ++scans;
         if (scan->stamp_s < kStart_s || step.used.dynamic.empty()) continue;
         const auto labels = labelsOf(rawlog, scan->index);
