@@ -3,12 +3,14 @@
 // told from less).
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <string_view>
 
 #include "delio/core/error.h"
 #include "delio/io/drive_meta.h"
