@@ -44,12 +44,14 @@ class Anywhere : public testing::TestWithParam<Cell> {};
 INSTANTIATE_TEST_SUITE_P(Tenth, Anywhere, testing::ValuesIn(tenth()), nameOf);
 INSTANTIATE_TEST_SUITE_P(Elsewhere, Anywhere,
                          testing::Values(Cell{"os1-64", "forest", "", "upright", 9},
+                                         Cell{"vlp16", "forest", "", "upright", 204},
                                          Cell{"hdl32e", "indoor", "", "upright", 204}),
                          nameOf);
 // Swings of up to 25 deg between two scans, which no prediction foresees.
 INSTANTIATE_TEST_SUITE_P(Handheld, Anywhere,
                          testing::Values(Cell{"vlp16", "indoor", "", "upright", 204, "handheld"},
                                          Cell{"hdl32e", "urban", "", "upright", 205, "handheld"},
+                                         Cell{"vlp16", "forest", "", "upright", 205, "handheld"},
                                          Cell{"os1-64", "forest", "", "upright", 206, "handheld"}),
                          nameOf);
 
