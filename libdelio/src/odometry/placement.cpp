@@ -47,7 +47,8 @@ Placement placeScan(const ScanToMap& map, const ScanView& view, const Expectatio
     const bool isUsual = best.has(usual > 0 ? kUsual * usual : kUsualAtFirst);
     if (points.cols() == 0 || (isUsual && !expected.isShaken))
         return {best.estimate, expected.isGuess};
-    best.consider(map.place(points, expected.pose, options.points.first_kernel));
+    if (!expected.isGuess)  // of a guess that was a start already
+        best.consider(map.place(points, expected.pose, options.points.first_kernel));
     best.consider(map.placeTurned(points, expected.pose));
     // After an interruption it may be anywhere: another place, which shares the ground with the
     // map's, must not be taken for it.

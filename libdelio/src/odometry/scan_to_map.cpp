@@ -142,7 +142,7 @@ PlaneEstimate ScanToMap::refine(const ScanView& view, const PointEstimate& place
     PointEstimate from = placed;
     auto found = byPlanes(from);
     // The points were placed wrongly where more of them fit where planes lead.
-    constexpr unsigned kPatience = 4;
+    constexpr unsigned kPatience = 2;
     for (unsigned i = 0; i < kPatience && found.valid && !believes(found, from); ++i) {
         const auto there = place(view.coarse, found.pose(), pointOptions_.least_kernel);
         if (!there.valid || there.share <= from.share) break;

@@ -37,10 +37,22 @@ struct Iterate {
     unsigned iterations = 0;  //!< how often correspondences were sought
 };
 
+/** True where iterations come by a pose again: they go round between matches that exclude each
+ *  other, and would for ever. */
+bool isAmong(const std::vector<Eigen::Isometry3d>& poses, const Eigen::Isometry3d& pose,
+             const PlaneRegistrationOptions& options) {
+    return std::any_of(poses.begin(), poses.end(), [&](const Eigen::Isometry3d& other) {
+        const Eigen::Isometry3d off = other.inverse() * pose;
+        return off.translation().norm() < options.converged_m &&
+               angleOf(off.linear()) < options.converged_rad;
+    });
+}
+
 /** With one kernel, until both stand still. False where they do not. */
 bool iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& known, double kernel,
              const PlaneRegistrationOptions& options, Iterate& now) {
     auto& [pose, matches, iterations] = now;
+    std::vector<Eigen::Isometry3d> passed;
     for (unsigned i = 0; i < options.max_iterations; ++i) {
         ++iterations;
         matches = findCorrespondences(map, points, pose, kernel, options.point_sigma);
@@ -52,6 +64,8 @@ bool iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& k
         pose.translation() += move.step;
         if (turn.step.norm() < options.converged_rad && move.step.norm() < options.converged_m)
             return true;
+        if (isAmong(passed, pose, options)) return false;
+        passed.push_back(pose);
     }
     return false;
 }
