@@ -9,9 +9,9 @@
 namespace delio {
 struct ScanToMapOptions : public StageOptions {
     double point_sigma = 0.05;
-    double point_sigma_deg = 0.3;
+    double point_sigma_deg = 1.0;
     double believed = 0.1;
-    double believed_deg = 1.0;
+    double believed_deg = 3.0;
     double probe = 0.5;
 
  protected:

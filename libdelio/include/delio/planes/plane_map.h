@@ -10,7 +10,7 @@ namespace delio::planes {
 struct PlaneMapOptions : public StageOptions {
     double voxel_size = 0.5;
     unsigned levels = 2;
-    unsigned ground_levels = 1;
+    unsigned ground_levels = 3;
     unsigned min_points = 8;
     double max_thickness = 0.1;
     double max_flatness = 0.05;
