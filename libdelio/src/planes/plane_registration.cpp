@@ -111,6 +111,16 @@ Eigen::Vector3d shares(const Eigen::Matrix3d& information, double weight) {
 /** Of the prior's information counts so much in covariances: it comes from the same points. */
 constexpr double kPriorShare = 0.01;
 
+/** Of the information about the translation (of which `alone` is what there is with the rotation
+ *  known) what the rotation's own uncertainty takes: H_tr H_rr^-1 H_rt. The height over a patch of
+ *  ground that lies on one side only is no better known than the tilt. */
+Eigen::Matrix3d lostToRotation(const PlaneRotation& turn, const PlaneTranslation& move,
+                               const Prior& prior, const Eigen::Matrix3d& alone) {
+    const Eigen::Matrix3d Hrt = move.mixed.transpose(),
+                          Hrr = turn.information + Hrt * alone.inverse() * move.mixed;
+    return move.mixed * (Hrr + prior.rotation).inverse() * Hrt;
+}
+
 /** Covariances and diagnostics of where the iteration ended. */
 void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const Prior& known,
             const PlaneRegistrationOptions& options, PlaneEstimate& estimate) {
@@ -132,14 +142,15 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
     // Normals are known from no more independent points than residuals are; and where an edge was
     // taken for a plane, worse.
     constexpr double kEdges = 3;
-    const auto& unseen = translation.unobservedAxes =
-        unobservedAxes(move.information - kEdges / options.independent_share * move.pretended,
-                       prior.translation * identity);
+    const Eigen::Matrix3d priorHere = prior.translation * identity,
+                          alone = move.information + kPriorShare * priorHere,
+                          clear = move.information -
+                                  kEdges / options.independent_share * move.pretended;
+    const auto unseen = unobservedAxes(clear, priorHere);
+    translation.unobservedAxes =
+        unobservedAxes(clear - lostToRotation(turn, move, prior, alone), priorHere);
     const Eigen::Matrix3d before = unseen * unseen.transpose(), seen = identity - before,
-                          inverse = seen *
-                                    (move.information + kPriorShare * prior.translation * identity)
-                                        .inverse() *
-                                    seen;
+                          inverse = seen * alone.inverse() * seen;
     translation.translation = seen * pose.translation() + before * known.pose.translation();
     translation.covariance = noise * inverse + before / known.translation;
     // t follows an error w of the rotation by -H_tt^-1 H_tr w, where it is seen at all; here w is
