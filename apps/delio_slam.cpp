@@ -66,6 +66,8 @@ struct CommandLine {
     Text truthFrame{"", "ground-truth-frame", "Frame of the true poses", false, "cam0", &frameNames,
                     cmd};
     Switch noMap{"", "no-map", "Leave out map, scene and map.png", cmd};
+    Switch loops{"", "loops", "Search for places that the drive comes back to, and close its loops",
+                 cmd};
     Switch noGraph{"", "no-graph", "Leave out the pose graph's optimisation", cmd};
     Switch gui{"", "gui", "Show the drive in a window while it is processed", cmd};
     Switch force{"", "force", "Overwrite what exists", cmd};
@@ -111,6 +113,7 @@ run::RunSettings settingsFor(CommandLine& line, int argc, char** argv) {
     settings.folder = line.output.getValue();
     settings.graph = !line.noGraph.getValue();
     settings.map = !line.noMap.getValue();
+    settings.loops = line.loops.getValue();
     settings.onWarning = cli::warn;
     return settings;
 }
@@ -225,6 +228,8 @@ int slam(CommandLine& line, int argc, char** argv) {
     cli::catchInterrupts();
     try {
         optionsFor(line, {});
+        if (line.loops.getValue() && line.noGraph.getValue())
+            throw Error("--loops needs the pose graph that --no-graph leaves out");
         if (line.every.getValue() == 0) throw Error("--every has to be 1 or more");
         if (line.printConfig.getValue()) {
             printConfig(line);

@@ -72,12 +72,14 @@ TEST_F(DelioSlam, ItsConfigHasTheSectionsInUseOnly) {
               Words({"[odometry]", "[scan]", "[prediction]", "[plane_tracker]", "[scan_to_map]",
                      "[point_map]", "[point_registration]", "[plane_map]", "[plane_registration]",
                      "[moving_objects]", "[segments]", "[normals]", "[bilateral_filter]",
-                     "[pattern_registration]", "[graph]", "[map]"}));
-    EXPECT_EQ(sections("paper"),
-              Words({"[odometry]", "[scan]", "[normals]", "[bilateral_filter]", "[outlier_removal]",
-                     "[mean_shift]", "[pattern_registration]", "[rotation_in_place]",
-                     "[line_cloud]", "[line_registration]", "[prediction]", "[point_check]",
-                     "[point_map]", "[point_registration]", "[graph]", "[map]"}));
+                     "[pattern_registration]", "[graph]", "[map]", "[submaps]", "[loops]",
+                     "[closures]"}));
+    EXPECT_EQ(
+        sections("paper"),
+        Words({"[odometry]", "[scan]", "[normals]", "[bilateral_filter]", "[outlier_removal]",
+               "[mean_shift]", "[pattern_registration]", "[rotation_in_place]", "[line_cloud]",
+               "[line_registration]", "[prediction]", "[point_check]", "[point_map]",
+               "[point_registration]", "[graph]", "[map]", "[submaps]", "[loops]", "[closures]"}));
 }
 
 /** Every option of `ini` has its meaning in the line above it. Returns how many there are. */

@@ -13,14 +13,6 @@ using planes::PlaneEstimate;
 using points::PointEstimate;
 
 namespace {
-/** By the sensor's pose on the vehicle where the source knows that it is tilted, else about the
- * axis that it spins about. */
-Eigen::Matrix3f uprightOf(const Scan& scan, const Eigen::Matrix3Xf& points) {
-    Eigen::Matrix3f mounted = scan::turnedUp(scan.sensorPose.linear().row(2));
-    if (!mounted.isIdentity()) return mounted;
-    return scan::uprightOf(points).value_or(mounted);
-}
-
 Eigen::Isometry3d turnedBack(const Eigen::Matrix3f& upright) {
     return Eigen::Isometry3d(upright.transpose().cast<double>());
 }
@@ -280,7 +272,7 @@ Step PlaneOdometry::process(const Scan& scan) {
         timed(timeOf(step, "preprocess"), [&] { return scan::preprocess(scan, options_.scan); });
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
-    if (!started_) upright_ = uprightOf(scan, cloud.points);
+    if (!started_) upright_ = scan::uprightOf(scan.sensorPose, cloud.points);
     if (started_)
         processNext(cloud, interval, step);
     else

@@ -29,6 +29,10 @@ Run::Run(const Options& options, const RunSettings& settings)
     record_.command = settings.command;
     record_.options = options;
     attach(graph_);
+    if (settings.loops && settings.graph) {
+        loops_ = std::make_shared<LoopCloser>(options.submaps, options.loops, options.closures);
+        attach(loops_);
+    }
     if (!settings.map) return;
     map_ = std::make_shared<MapListener>(
         map::MapBuilder(options.map, settings.sensorLabel, settings.folder));
@@ -86,16 +90,30 @@ const RunRow& Run::process(const Scan& scan, double read_ms) {
     return rows.back();
 }
 
+/** Where there are none, the graph stays as it was. */
+void Run::closeLoops() {
+    auto closed = loops_->close(record_.graph, graphOptions(record_.options, settings_));
+    record_.searchedLoops = true;
+    record_.loops = std::move(closed.candidates);
+    if (closed.accepted == 0) return;
+    record_.graph = std::move(closed.graph);
+    record_.optimisation = closed.optimisation;
+}
+
 void Run::optimise() {
     Stopwatch watch;
+    record_.graph = graph_->graph();
     try {
-        if (settings_.graph) record_.optimisation = graph_->optimise();
+        if (loops_) closeLoops();
+        if (settings_.graph && record_.loopsClosed() == 0) {
+            record_.optimisation = graph_->optimise();
+            record_.graph = graph_->graph();
+        }
     } catch (const std::exception& e) {
         // What the odometry found is worth keeping.
         fail("the pose graph was not optimised: " + plainMessage(e));
     }
     record_.optimise_ms = watch.lap_ms();
-    record_.graph = graph_->graph();
     record_.odometry = slam_.trajectory();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
     if (!record_.stampsRise) record_.final.stamps_s.clear();

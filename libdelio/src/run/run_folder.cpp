@@ -13,6 +13,7 @@
 #include "delio/io/output_file.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
+#include "delio/run/loop_table.h"
 
 namespace delio::run {
 namespace fs = std::filesystem;
@@ -122,6 +123,8 @@ std::string RunFolder::write(RunRecord record, const map::MapBuilder* map,
     io::saveMrptText(record.graph, path(kMrptGraph));
     remove(kScans);
     if (!record.rows.empty()) writeScans(record.rows, path(kScans));
+    remove(kLoops);
+    if (record.searchedLoops) writeLoopTable(record.loops, path(kLoops));
     io::replaceTextFile(path(kConfig), [&](std::ostream& out) { record.options.write(out); });
     Stopwatch watch;
     for (const char* name : {kSimplemap, kPly, kScene, kMapPicture, kTrajectoryPicture})

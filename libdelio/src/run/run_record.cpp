@@ -19,6 +19,12 @@ std::size_t RunRecord::predicted() const {
         rows.begin(), rows.end(), [](const RunRow& row) { return row.report.step.predicted; }));
 }
 
+std::size_t RunRecord::loopsClosed() const {
+    return static_cast<std::size_t>(
+        std::count_if(loops.begin(), loops.end(),
+                      [](const loops::LoopCandidate& loop) { return loop.accepted(); }));
+}
+
 double RunRecord::path_m() const { return evaluation::pathLength_m(final.poses); }
 
 double RunRecord::msPerScan() const {

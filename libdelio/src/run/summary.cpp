@@ -132,6 +132,9 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.weakly_observed_about = doubts.weakAbout;
     summary.searched = countOf(record, &Step::searched);
     summary.longest_searched = doubts.searched.longest;
+    summary.searched_loops = record.searchedLoops;
+    summary.loop_candidates = record.loops.size();
+    summary.loops_closed = record.loopsClosed();
     summary.deskewed = countOf(record, &Step::deskewed);
     summary.path_m = record.path_m();
     summary.vertical_correction_deg = record.options.scan().vertical_correction_deg;
@@ -172,6 +175,10 @@ void writeSummary(const Summary& s, const std::string& path) {
     write(yaml, "searched", s.searched);
     write(yaml, "longest_searched", s.longest_searched);
     write(yaml, "interrupted", s.interrupted);
+    if (s.searched_loops) {
+        write(yaml, "loop_candidates", s.loop_candidates);
+        write(yaml, "loops_closed", s.loops_closed);
+    }
     write(yaml, "path_m", s.path_m);
     write(yaml, "vertical_correction_deg", s.vertical_correction_deg);
     write(yaml, "deskewed", s.deskewed);
@@ -215,6 +222,9 @@ Summary readSummary(const std::string& path) {
         s.searched = node["searched"].as<std::size_t>(0);
         s.longest_searched = node["longest_searched"].as<std::size_t>(0);
         s.interrupted = node["interrupted"].as<std::size_t>(0);
+        s.searched_loops = static_cast<bool>(node["loops_closed"]);
+        s.loop_candidates = node["loop_candidates"].as<std::size_t>(0);
+        s.loops_closed = node["loops_closed"].as<std::size_t>(0);
         s.deskewed = node["deskewed"].as<std::size_t>();
         s.path_m = node["path_m"].as<double>();
         s.vertical_correction_deg = node["vertical_correction_deg"].as<double>();

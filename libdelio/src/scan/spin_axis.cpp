@@ -71,4 +71,10 @@ std::optional<Eigen::Matrix3f> uprightOf(const Eigen::Matrix3Xf& points) {
                           : 2 * (along.array() < 0).count() > along.size();  // ground is below
     return turnedUp(isUp ? *axis : -*axis);
 }
+
+Eigen::Matrix3f uprightOf(const Eigen::Isometry3d& sensorPose, const Eigen::Matrix3Xf& points) {
+    const Eigen::Matrix3f mounted = turnedUp(sensorPose.linear().row(2));
+    if (!mounted.isIdentity()) return mounted;
+    return uprightOf(points).value_or(mounted);
+}
 }  // namespace delio::scan

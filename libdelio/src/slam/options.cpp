@@ -66,7 +66,8 @@ void Options::adaptTo(const io::DriveMeta& meta) {
 }
 
 StageList Options::allStages() {
-    StageList all{{"odometry", &method}, {"graph", &graph}, {"map", &map}};
+    StageList all{{"odometry", &method}, {"graph", &graph}, {"map", &map},
+                  {"submaps", &submaps}, {"loops", &loops}, {"closures", &closures}};
     for (const auto& stage : stagesOf(planes)) all.push_back(stage);
     for (const auto& stage : stagesOf(paper)) all.push_back(stage);
     return all;
@@ -76,6 +77,9 @@ ConstStageList Options::stages() const {
     auto used = stagesOf(*this);
     used.emplace_back("graph", &graph);
     used.emplace_back("map", &map);
+    used.emplace_back("submaps", &submaps);
+    used.emplace_back("loops", &loops);
+    used.emplace_back("closures", &closures);
     return used;
 }
 

@@ -7,6 +7,7 @@
 
 #include "delio/run/run_record.h"
 #include "delio/slam/graph_builder.h"
+#include "delio/slam/loop_closer.h"
 #include "delio/slam/map_listener.h"
 
 namespace delio::run {
@@ -17,8 +18,9 @@ struct RunSettings {
     /** Where keyframes are put aside while the drive goes on; empty: the system's folder for
      *  temporary files. */
     std::string folder;
-    bool graph = true;  //!< false: the chain of increments alone, not optimised
-    bool map = true;    //!< false: memory grows by the poses alone
+    bool graph = true;   //!< false: the chain of increments alone, not optimised
+    bool map = true;     //!< false: memory grows by the poses alone
+    bool loops = false;  //!< places that the drive comes back to are searched for at its end
     /** Told of every warning as it comes. */
     std::function<void(const std::string&)> onWarning;
 };
@@ -55,6 +57,7 @@ class Run {
 
  private:
     void optimise();
+    void closeLoops();
     void score();
     evaluation::Comparison compared(const io::Trajectory& vehicle) const;
 
@@ -63,6 +66,7 @@ class Run {
     Slam slam_;
     std::shared_ptr<GraphBuilder> graph_;
     std::shared_ptr<MapListener> map_;
+    std::shared_ptr<LoopCloser> loops_;
     std::optional<io::Trajectory> truth_;
     bool truthIsCam0_ = true, truthWasAskedFor_ = false;
 };

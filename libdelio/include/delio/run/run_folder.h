@@ -27,6 +27,7 @@ class RunFolder {
     static constexpr const char* kGraph = "posegraph.g2o";
     static constexpr const char* kMrptGraph = "posegraph.graph";
     static constexpr const char* kScans = "scans.csv";
+    static constexpr const char* kLoops = "loops.csv";  //!< where loops were searched for
     static constexpr const char* kConfig = "config.ini";
     static constexpr const char* kSimplemap = "map.simplemap";
     static constexpr const char* kPly = "map.ply";

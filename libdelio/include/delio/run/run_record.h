@@ -6,6 +6,7 @@
 #include "delio/evaluation/comparison.h"
 #include "delio/graph/pose_graph.h"
 #include "delio/io/trajectory.h"
+#include "delio/loops/loop_search.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"
 
@@ -40,6 +41,8 @@ struct RunRecord {
     graph::PoseGraph graph;
     graph::OptimisationResult optimisation;
     double optimise_ms = 0;
+    bool searchedLoops = false;
+    std::vector<loops::LoopCandidate> loops;  //!< and what became of them
 
     io::Calibration calibration;
     /** Beside true poses, where they are known: the final trajectory, and, where the graph had
@@ -51,6 +54,7 @@ struct RunRecord {
     /** The chain alone is what the odometry's poses were made of: then nothing is optimised. */
     bool optimised() const { return graph.edges().size() + 1 > graph.poses().size(); }
     std::size_t predicted() const;
+    std::size_t loopsClosed() const;
     double path_m() const;
     double msPerScan() const;
 };

@@ -23,6 +23,8 @@ struct Summary {
     std::array<std::size_t, 3> weakly_observed_along{}, weakly_observed_about{};
     std::size_t searched = 0, longest_searched = 0;
     std::size_t interrupted = 0;
+    bool searched_loops = false;
+    std::size_t loop_candidates = 0, loops_closed = 0;
     double path_m = 0;
     double vertical_correction_deg = 0;
     double ms_per_scan = 0;         //!< reading, odometry and the graph's window

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 
 namespace delio::scan {
@@ -16,4 +17,8 @@ Eigen::Matrix3f turnedUp(const Eigen::Vector3d& up);
 /** Turns the points' frame such that the sensor spins about z, with most of the points below it
  *  where the frame's own z does not say what is up. */
 std::optional<Eigen::Matrix3f> uprightOf(const Eigen::Matrix3Xf& points);
+
+/** The same by the sensor's pose on the vehicle where the source knows that it is tilted, else
+ * about the axis that it spins about; the identity where neither says anything. */
+Eigen::Matrix3f uprightOf(const Eigen::Isometry3d& sensorPose, const Eigen::Matrix3Xf& points);
 }  // namespace delio::scan

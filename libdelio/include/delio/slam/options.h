@@ -7,6 +7,7 @@
 
 #include "delio/graph/pose_graph.h"
 #include "delio/io/drive_meta.h"
+#include "delio/loops/loop_search.h"
 #include "delio/map/map_builder.h"
 #include "delio/odometry/make_odometry.h"
 
@@ -16,6 +17,9 @@ namespace delio {
 struct Options : public OdometryOptions {
     graph::PoseGraphOptions graph;
     map::MapOptions map;
+    loops::SubmapOptions submaps;
+    loops::LoopOptions loops;
+    loops::ClosureOptions closures;
 
     /** share/config/NAME.ini, which travels inside the library. Error for an unknown name. */
     static Options ofProfile(const std::string& name);

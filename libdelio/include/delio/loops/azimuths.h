@@ -1,0 +1,25 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "delio/surfaces/normals.h"
+
+namespace delio::loops {
+/** Which way the walls of a levelled cloud look, whichever place it was seen from: a histogram of
+ *  the azimuths of the normals that are nearly level, over half a turn (a wall is seen from either
+ *  side), smoothed. */
+class Azimuths {
+ public:
+    explicit Azimuths(const surfaces::SurfaceNormals& surfaces);
+
+    /** Rotations about z (radians) of `other`, by which it looks most like this one, the best
+     * first: the highest `most` maxima of the circular correlation within `reach` of `expected`,
+     * and the nearest ends of that interval are none. Rotations half a turn apart are told apart by
+     *  `expected` alone. Empty where one of the two has no walls. */
+    std::vector<double> turnsOf(const Azimuths& other, double expected, double reach,
+                                std::size_t most) const;
+
+ private:
+    Eigen::VectorXd weights_;
+};
+}  // namespace delio::loops

@@ -1,0 +1,55 @@
+#pragma once
+#include <string>
+
+#include "delio/core/increment.h"
+#include "delio/loops/submap.h"
+#include "delio/planes/plane_map.h"
+#include "delio/planes/plane_registration.h"
+#include "delio/points/point_map.h"
+#include "delio/points/point_registration.h"
+
+namespace delio::loops {
+struct ClosureOptions : public StageOptions {
+    double min_overlap = 0.3;
+    double min_share = 0.5;
+    double agreed = 0.2;
+    double agreed_deg = 0.5;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** A submap as others are registered to it: points that place, and planes that refine. Its level
+ *  frame. */
+class RegistrableSubmap {
+ public:
+    explicit RegistrableSubmap(const Submap& submap);
+
+    /** `other` to this, from `guess` on, which may be off by 2 m: by points, then by planes. */
+    planes::PlaneEstimate registered(const RegistrableSubmap& other,
+                                     const Eigen::Isometry3d& guess) const;
+
+    /** Of the one that fills fewer voxels of 0.5 m above the ground the share that both fill:
+     *  Szymkiewicz and Simpson's coefficient, 0 to 1. (Ground lies on ground anywhere.) */
+    double overlap(const RegistrableSubmap& other, const Eigen::Isometry3d& pose) const;
+
+ private:
+    planes::PlaneMap planes_;
+    points::PointMap points_;
+    Eigen::Matrix3Xd coarse_, thinned_, standing_;
+};
+
+/** What became of an attempt to bring two submaps together. */
+struct Closure {
+    Eigen::Isometry3d level = Eigen::Isometry3d::Identity();  //!< `to` to `from`, level frames
+    Increment increment;  //!< `to` to `from`, the vehicle's frames at the key nodes
+    double overlap = 0;
+    double share = 0;    //!< of the points in voxels with a plane those that lie on it
+    std::string reason;  //!< why it is none; empty: it is one
+};
+
+/** Registers `to` to `from` and `from` to `to`: the same has to come out. */
+Closure closureOf(const Submap& from, const RegistrableSubmap& fromMap, const Submap& to,
+                  const RegistrableSubmap& toMap, const Eigen::Isometry3d& guess,
+                  const ClosureOptions& options);
+}  // namespace delio::loops

@@ -1,0 +1,46 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "delio/scan/voxel_table.h"
+
+namespace delio::loops {
+/** A levelled cloud seen from above: of each cell, at which heights above the ground beside there
+ *  is something (a bit each). What drifts most, the height, is not in it. */
+class HeightImage {
+ public:
+    static constexpr double kCell_m = 0.5;
+
+    explicit HeightImage(const Eigen::Matrix3Xf& points);
+
+    /** Where something stands; x and y of the cell's centre, in metres. */
+    const Eigen::Matrix2Xd& cells() const { return cells_; }
+    const std::vector<std::uint8_t>& bands() const { return bands_; }
+    /** Height of the ground about that place, metres; NaN where none was seen. */
+    double groundAt(double x, double y) const;
+    /** Centres of the blocks whose ground was seen. */
+    const Eigen::Matrix2Xd& grounds() const { return grounds_; }
+
+ private:
+    Eigen::Matrix2Xd cells_, grounds_;
+    std::vector<std::uint8_t> bands_;
+    std::vector<double> heights_;
+    scan::VoxelIndex groundIndex_;
+};
+
+/** Where the other image, turned by `yaw`, lies on this one. */
+struct Shift {
+    double yaw = 0;
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();  //!< other to this, metres
+    /** Of the bands of that one which has fewer, so many meet some of the other's; 0 to 1. */
+    double share = 0;
+};
+
+/** Shifts of `other` onto `image` within `reach` metres of `expected`: the best, and others at
+ * least `apart` metres from better ones, the best first, `most` of them; heights by the ground that
+ * both see. */
+std::vector<Shift> shiftsOf(const HeightImage& image, const HeightImage& other, double yaw,
+                            const Eigen::Vector2d& expected, double reach, double apart,
+                            std::size_t most);
+}  // namespace delio::loops

@@ -1,0 +1,128 @@
+#include "delio/loops/closure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "delio/loops/height_image.h"
+#include "delio/scan/voxel_grid.h"
+#include "delio/scan/voxel_table.h"
+
+namespace delio::loops {
+namespace {
+constexpr double kDeg = M_PI / 180;
+constexpr double kCoarse_m = 1, kThinned_m = 0.5;  // between points that are registered
+/** What points say of where a submap lies, as an odometry takes it. */
+constexpr double kPointSigma_m = 0.05, kPointSigma_deg = 1;
+/** Of an axis that planes do not see: as good as nothing is known. */
+constexpr double kUnseen_m = 10;
+
+planes::PlaneMapOptions denseMap() {
+    planes::PlaneMapOptions options;
+    options.ground_levels = 0;  // many scans leave no gaps
+    return options;
+}
+
+Eigen::Matrix3Xd aboveGround(const Eigen::Matrix3Xf& points) {
+    constexpr double kGround_m = 0.3;
+    const HeightImage image(points);
+    Eigen::Matrix3Xd above(3, points.cols());
+    Eigen::Index count = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector3d point = points.col(i).cast<double>();
+        if (point.z() - image.groundAt(point.x(), point.y()) > kGround_m)
+            above.col(count++) = point;
+    }
+    above.conservativeResize(3, count);
+    return above;
+}
+
+Eigen::Matrix3Xd thinned(const Submap& submap, double spacing) {
+    return scan::firstOfVoxels(submap.points, spacing).cast<double>();
+}
+}  // namespace
+
+std::vector<OptionField> ClosureOptions::fields() const {
+    return {
+        {"min_overlap", &ClosureOptions::min_overlap,
+         "share of the smaller submap's voxels of 0.5 m that both submaps fill", 0, 1},
+        {"min_share", &ClosureOptions::min_share,
+         "share of the points in voxels with a plane that have to lie on it", 0, 1},
+        {"agreed", &ClosureOptions::agreed,
+         "m; registered one to the other and the other to the one, submaps have to agree so far",
+         1e-3, 10},
+        {"agreed_deg", &ClosureOptions::agreed_deg, "deg; the same of the rotation", 1e-3, 90}};
+}
+
+RegistrableSubmap::RegistrableSubmap(const Submap& submap)
+    : planes_(denseMap()),
+      points_(points::PointMapOptions{}),
+      coarse_(thinned(submap, kCoarse_m)),
+      thinned_(thinned(submap, kThinned_m)),
+      standing_(aboveGround(submap.points)) {
+    const Eigen::Matrix3Xd all = submap.points.cast<double>();
+    planes_.add(all);
+    points_.add(all);
+}
+
+planes::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& other,
+                                                    const Eigen::Isometry3d& guess) const {
+    const points::PointRegistrationOptions points;
+    const planes::PlaneRegistrationOptions planes;
+    const auto placed =
+        points::registerToPoints(points_, other.coarse_, guess, points.first_kernel, points);
+    if (!placed.valid) return planes::predictedEstimate(guess, planes);
+    const auto prior =
+        planes::Prior::of(placed.pose, kPointSigma_m,
+                          std::pow(kPointSigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity());
+    auto found =
+        planes::registerToPlanes(planes_, other.thinned_, prior, points.last_kernel, planes);
+    const auto& unseen = found.translation.unobservedAxes;
+    found.translation.covariance += std::pow(kUnseen_m, 2) * unseen * unseen.transpose();
+    return found;
+}
+
+double RegistrableSubmap::overlap(const RegistrableSubmap& other,
+                                  const Eigen::Isometry3d& pose) const {
+    scan::VoxelIndex mine, theirs, both;
+    for (Eigen::Index i = 0; i < standing_.cols(); ++i)
+        mine.insert(scan::voxelKey(standing_.col(i), kThinned_m));
+    for (Eigen::Index i = 0; i < other.standing_.cols(); ++i) {
+        const auto key = scan::voxelKey(pose * other.standing_.col(i), kThinned_m);
+        theirs.insert(key);
+        if (mine.find(key) != scan::VoxelIndex::kNone) both.insert(key);
+    }
+    const std::size_t fewer = std::min(mine.size(), theirs.size());
+    return fewer == 0 ? 0 : static_cast<double>(both.size()) / static_cast<double>(fewer);
+}
+
+Closure closureOf(const Submap& from, const RegistrableSubmap& fromMap, const Submap& to,
+                  const RegistrableSubmap& toMap, const Eigen::Isometry3d& guess,
+                  const ClosureOptions& options) {
+    Closure closure;
+    closure.level = guess;
+    const auto there = fromMap.registered(toMap, guess);
+    if (!there.valid) {
+        closure.reason = "not registered";
+        return closure;
+    }
+    closure.level = there.pose();
+    closure.share = there.share;
+    closure.overlap = fromMap.overlap(toMap, there.pose());
+    const Increment levelled = incrementOf(there.rotation, there.translation);
+    closure.increment = ofVehicle(levelled, isometry(from.level, Eigen::Vector3d::Zero()),
+                                  isometry(to.level, Eigen::Vector3d::Zero()));
+    const auto back = toMap.registered(fromMap, there.pose().inverse());
+    const Eigen::Isometry3d off = back.pose() * there.pose();
+    const auto& unseen = back.translation.unobservedAxes;
+    const Eigen::Vector3d apart =
+        off.translation() - unseen * (unseen.transpose() * off.translation());
+    if (!back.valid || apart.norm() > options.agreed ||
+        angleOf(off.linear()) > options.agreed_deg * kDeg)
+        closure.reason = "not the same both ways";
+    else if (closure.share < options.min_share)
+        closure.reason = "off the planes";
+    else if (closure.overlap < options.min_overlap)
+        closure.reason = "too little overlap";
+    return closure;
+}
+}  // namespace delio::loops

@@ -1,0 +1,126 @@
+#include "delio/loops/close_loops.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <sstream>
+
+#include "town.h"
+
+namespace {
+using namespace delio;
+using namespace delio::loops_test;
+using loops::ClosedLoops;
+
+double farthest(const Poses& a, const Poses& b) {
+    double most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        most = std::max(most, test::metresBetween(a[i], b[i]));
+    return most;
+}
+
+ClosedLoops closed(const std::vector<loops::Submap>& submaps, const Poses& believed) {
+    return loops::closeLoops(chainOf(believed), submaps, {}, {}, {});
+}
+
+/** What became of the candidates, for a test that fails. */
+std::string textOf(const ClosedLoops& result) {
+    std::ostringstream text;
+    for (const auto& loop : result.candidates)
+        text << loop.fromNode << " to " << loop.toNode << ", " << loop.path_m << " m: images "
+             << loop.share << ", planes " << loop.closure.share << ", overlap "
+             << loop.closure.overlap << ", moved " << loop.moved_m << " m: " << loop.closure.reason
+             << "\n";
+    return text.str();
+}
+
+/** Round the block and half round again, with a drift of metres, upwards too. */
+class ADriveRoundTheBlock : public testing::Test {
+ protected:
+    static const Poses& truth() {
+        static const Poses poses = roundTheBlock(20);
+        return poses;
+    }
+    static const Poses& believed() {
+        static const Poses poses = drifted(truth(), 0.03, 0.004, 0.02);
+        return poses;
+    }
+    static const std::vector<loops::Submap>& submaps() {
+        static const auto made = submapsOf(town(), truth(), believed());
+        return made;
+    }
+};
+
+TEST_F(ADriveRoundTheBlock, IsClosed) {
+    const double before = farthest(believed(), truth());
+    ASSERT_GT(before, 1.5);
+    const auto result = closed(submaps(), believed());
+    ASSERT_GE(result.accepted, 2U) << textOf(result);
+    EXPECT_LT(farthest(result.graph.poses(), truth()), before / 3);
+    EXPECT_EQ(result.graph.edges().size(), truth().size() - 1 + result.accepted);
+    EXPECT_GT(result.drift_factor, 2);
+    for (const auto& loop : result.candidates) {
+        if (!loop.accepted()) continue;
+        const Eigen::Isometry3d seen = truth()[loop.fromNode].inverse() * truth()[loop.toNode];
+        EXPECT_LT(test::metresBetween(loop.closure.increment.pose, seen), 0.2);
+        EXPECT_LT(test::degreesBetween(loop.closure.increment.pose, seen), 0.5);
+        const auto& poses = result.graph.poses();
+        const Eigen::Isometry3d now = poses[loop.fromNode].inverse() * poses[loop.toNode];
+        EXPECT_LT(test::metresBetween(now, seen), 0.2);
+    }
+}
+
+TEST_F(ADriveRoundTheBlock, HasTheSameLoopsForAnyNumberOfThreads) {
+    const auto many = closed(submaps(), believed());
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const auto single = closed(submaps(), believed());
+    ASSERT_EQ(many.graph.poses().size(), single.graph.poses().size());
+    for (std::size_t i = 0; i < many.graph.poses().size(); ++i)
+        ASSERT_EQ(many.graph.poses()[i].matrix(), single.graph.poses()[i].matrix()) << i;
+}
+
+// Poses of which nothing is wrong stay.
+TEST_F(ADriveRoundTheBlock, ThatDidNotDriftStaysWhereItIs) {
+    const auto result = closed(submapsOf(town(), truth(), truth()), truth());
+    EXPECT_GE(result.accepted, 2U) << textOf(result);
+    EXPECT_LT(farthest(result.graph.poses(), truth()), 0.02);
+    EXPECT_LT(result.drift_factor, 1.5);
+}
+
+TEST(CloseLoops, ThereAndBackAgain) {
+    Poses truth;
+    for (int i = 0; i < 40; ++i) truth.push_back(test::poseAt(2 * i - 30, 0, 0));
+    for (int i = 0; i < 12; ++i) truth.push_back(truth.back() * test::poseAtDeg(0.4, 0, 0, 15));
+    for (int i = 0; i < 38; ++i) truth.push_back(truth.back() * test::poseAt(2, 0, 0));
+    const auto believed = drifted(truth, 0.03, 0.004, 0.02);
+    const double before = farthest(believed, truth);
+    const auto result = closed(submapsOf(town(), truth, believed), believed);
+    EXPECT_GE(result.accepted, 2U) << textOf(result);
+    EXPECT_LT(farthest(result.graph.poses(), truth), before / 2);
+}
+
+TEST(CloseLoops, AStraightDriveHasNone) {
+    Poses truth;
+    for (int i = 0; i < 60; ++i) truth.push_back(test::poseAt(2 * i - 40, 0, 0));
+    const auto result = closed(submapsOf(town(), truth, truth), truth);
+    EXPECT_EQ(result.accepted, 0U) << textOf(result);
+    for (std::size_t i = 0; i < truth.size(); ++i)
+        EXPECT_EQ(result.graph.poses()[i].matrix(), truth[i].matrix());
+}
+
+// The next street looks the same: it is another one.
+TEST(CloseLoops, AStreetLikeAnotherIsNone) {
+    Poses truth;
+    for (int i = 0; i < 30; ++i) truth.push_back(test::poseAt(2 * i, 0, 0));
+    for (const int straight : {0, 17}) {
+        for (int i = 0; i < straight; ++i) truth.push_back(truth.back() * test::poseAt(2, 0, 0));
+        for (int i = 0; i < 6; ++i) truth.push_back(truth.back() * test::poseAtDeg(0.5, 0, 0, 15));
+    }
+    while (truth.back().translation().x() > 0)
+        truth.push_back(truth.back() * test::poseAt(2, 0, 0));
+    const auto result = closed(submapsOf(town(true), truth, truth), truth);
+    EXPECT_EQ(result.accepted, 0U) << textOf(result);
+}
+
+TEST(CloseLoops, OfNoDriveAreNone) { EXPECT_EQ(closed({}, {test::poseAt(0, 0, 0)}).accepted, 0U); }
+}  // namespace
