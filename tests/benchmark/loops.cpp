@@ -165,6 +165,9 @@ void measure(const std::string& rawlog, const Settings& settings) {
                 closer.submaps().size());
     printLoops(closed, truth, settings.list);
     printRecall(closed, closer.submaps(), truth);
+    std::printf("  drift factor %.1f, cost %.4g -> %.4g in %u iterations\n", closed.drift_factor,
+                closed.optimisation.initial_cost, closed.optimisation.final_cost,
+                closed.optimisation.iterations);
     std::printf("  APE %.3f m (at most %.3f) -> %.3f m (%.3f), %.3f %% of the path\n",
                 before.rmse_m, before.max_m, after.rmse_m, after.max_m,
                 100 * after.rmse_m / path_m);
