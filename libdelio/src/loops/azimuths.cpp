@@ -59,6 +59,7 @@ std::vector<double> Azimuths::turnsOf(const Azimuths& other, double expected, do
                      [&](Eigen::Index a, Eigen::Index b) { return scores[a] > scores[b]; });
     if (peaks.size() > most) peaks.resize(most);
     std::vector<double> turns;
+    turns.reserve(peaks.size());
     for (const auto peak : peaks) turns.push_back(static_cast<double>(first + peak) * kWidth);
     return turns;
 }

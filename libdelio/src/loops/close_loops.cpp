@@ -59,6 +59,7 @@ std::vector<graph::Edge> edgesOf(const std::vector<LoopCandidate>& candidates) {
 double driftFactor(const graph::PoseGraph& graph, const std::vector<graph::Edge>& loops) {
     const Chain chain(graph);
     std::vector<double> excess;
+    excess.reserve(loops.size());
     for (const auto& loop : loops) excess.push_back(chain.excess(loop));
     const auto middle = excess.begin() + static_cast<std::ptrdiff_t>(excess.size() / 2);
     std::nth_element(excess.begin(), middle, excess.end());

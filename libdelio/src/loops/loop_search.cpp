@@ -32,19 +32,27 @@ class Search {
 
     std::vector<LoopCandidate> all(const std::vector<LoopCandidate>& known) {
         std::vector<LoopCandidate> candidates;
+        std::vector<std::size_t> lastUse(submaps_.size(), 0);
         for (std::size_t to = 0; to < submaps_.size(); ++to)
             for (std::size_t from = 0; from < to; ++from)
-                if (auto candidate = mayMeet(from, to)) {
-                    const auto before =
-                        std::find_if(known.begin(), known.end(), [&](const LoopCandidate& other) {
-                            return other.from == from && other.to == to && other.accepted();
-                        });
-                    if (before == known.end())
-                        search(*candidate);
-                    else
-                        *candidate = *before;
-                    candidates.push_back(std::move(*candidate));
+                if (const auto candidate = mayMeet(from, to)) {
+                    lastUse[from] = lastUse[to] = candidates.size();
+                    candidates.push_back(*candidate);
                 }
+        for (std::size_t i = 0; i < candidates.size(); ++i) {
+            auto& candidate = candidates[i];
+            const auto before =
+                std::find_if(known.begin(), known.end(), [&](const LoopCandidate& other) {
+                    return other.from == candidate.from && other.to == candidate.to &&
+                           other.accepted();
+                });
+            if (before == known.end())
+                search(candidate);
+            else
+                candidate = *before;
+            for (const auto submap : {candidate.from, candidate.to})
+                if (lastUse[submap] == i) places_[submap] = {};  // memory
+        }
         return candidates;
     }
 

@@ -24,8 +24,10 @@ const Eigen::Matrix3Xf& yard() {
 
 TEST(HeightImage, LeavesOutTheGround) {
     Eigen::Matrix3Xf points(3, 1600);
-    for (int i = 0; i < 1600; ++i)
-        points.col(i) << 0.25F * static_cast<float>(i % 40), 0.25F * static_cast<float>(i / 40), 2;
+    for (int i = 0; i < 40; ++i)
+        for (int k = 0; k < 40; ++k)
+            points.col(40 * i + k) << 0.25F * static_cast<float>(k), 0.25F * static_cast<float>(i),
+                2;
     EXPECT_EQ(HeightImage(points).cells().cols(), 0);
     EXPECT_NEAR(HeightImage(points).groundAt(5, 5), 2, 1e-6);
     EXPECT_TRUE(std::isnan(HeightImage(points).groundAt(50, 5)));
