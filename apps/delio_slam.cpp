@@ -246,10 +246,12 @@ int slam(CommandLine& line, int argc, char** argv) {
     if (!fs::is_regular_file(input))
         throw Error("cannot read '" + input +
                     "': " + (fs::exists(input) ? "it is no file" : "no such file"));
+    const bool isGraph = fs::path(input).extension() == ".g2o";
+    if (isGraph && line.loops.getValue())
+        throw Error("--loops needs scans; '" + input + "' has none");
     const OutputFolder folder(line.output.getValue(), line.force.getValue());
     const auto settings = settingsFor(line, argc, argv);
-    return fs::path(input).extension() == ".g2o" ? optimiseGraph(line, settings)
-                                                 : slamDrive(line, settings);
+    return isGraph ? optimiseGraph(line, settings) : slamDrive(line, settings);
 }
 }  // namespace
 

@@ -62,6 +62,11 @@ TEST_F(DelioSlamLoops, AStraightDriveHasNone) {
     EXPECT_EQ(readText(out_ / "posegraph.g2o"), graph);
 }
 
+TEST_F(DelioSlamLoops, NeedScans) {
+    test::writeText(folder_ / "g.g2o", "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n");
+    expectRefused(slamOf(folder_ / "g.g2o", {"--loops"}), 1, {"--loops", "g.g2o"});
+}
+
 TEST_F(DelioSlamLoops, NeedTheGraph) {
     writeDrive(2);
     expectRefused(slam({"--loops", "--no-graph"}), 2, {"--loops", "--no-graph"});

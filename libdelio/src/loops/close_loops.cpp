@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "delio/graph/residual.h"
+#include "support.h"
 
 namespace delio::loops {
 namespace {
@@ -96,6 +97,7 @@ ClosedLoops closeLoops(const graph::PoseGraph& graph, const std::vector<Submap>&
     for (int i = 0; i < kSearches; ++i) {
         const auto before = result.graph.poses();
         auto candidates = searchLoops(submaps, before, options, closure, result.candidates);
+        refuseUnsupported(candidates, submaps, graph.poses(), options);
         const auto loops = edgesOf(candidates);
         if (i > 0 && loops.size() < result.accepted) break;
         result.candidates = std::move(candidates);

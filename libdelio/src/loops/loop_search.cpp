@@ -7,7 +7,6 @@
 
 #include "delio/loops/azimuths.h"
 #include "delio/loops/height_image.h"
-#include "support.h"
 
 namespace delio::loops {
 namespace {
@@ -56,15 +55,11 @@ class Search {
         return candidates;
     }
 
-    Eigen::Isometry3d levelPose(std::size_t submap) const {
-        return poses_[submaps_[submap].key] *
-               isometry(submaps_[submap].level, Eigen::Vector3d::Zero());
-    }
-
  private:
     /** Where the poses say that `to` lies in `from`. */
     Eigen::Isometry3d expected(const LoopCandidate& pair) const {
-        return levelPose(pair.from).inverse() * levelPose(pair.to);
+        return levelPose(submaps_[pair.from], poses_).inverse() *
+               levelPose(submaps_[pair.to], poses_);
     }
 
     std::optional<LoopCandidate> mayMeet(std::size_t from, std::size_t to) const {
@@ -124,6 +119,7 @@ class Search {
     void search(LoopCandidate& pair) {
         const Place &from = place(pair.from), &to = place(pair.to);
         pair.closure.reason = "nothing alike";
+        pair.closure.level = expected(pair);
         double rival = 0;  // overlap of the best one elsewhere
         for (const auto& shift : shifts(pair, from, to)) {
             const Eigen::Isometry3d guess = Eigen::Translation3d(shift.translation) *
@@ -178,8 +174,6 @@ std::vector<LoopCandidate> searchLoops(const std::vector<Submap>& submaps,
                                        const std::vector<Eigen::Isometry3d>& poses,
                                        const LoopOptions& options, const ClosureOptions& closure,
                                        const std::vector<LoopCandidate>& known) {
-    auto candidates = Search(submaps, poses, options, closure).all(known);
-    refuseUnsupported(candidates, submaps, poses, options);
-    return candidates;
+    return Search(submaps, poses, options, closure).all(known);
 }
 }  // namespace delio::loops

@@ -1,5 +1,6 @@
 #include "delio/loops/submap.h"
 
+#include "delio/core/geometry.h"
 #include "delio/scan/spin_axis.h"
 #include "delio/scan/voxel_grid.h"
 
@@ -11,6 +12,10 @@ std::vector<OptionField> SubmapOptions::fields() const {
             {"spacing", &SubmapOptions::spacing, "m; its points are so far apart", 0.05, 2},
             {"radius", &SubmapOptions::radius, "m; what lies farther from the sensor is left out",
              5, 1e4}};
+}
+
+Eigen::Isometry3d levelPose(const Submap& submap, const std::vector<Eigen::Isometry3d>& poses) {
+    return poses[submap.key] * isometry(submap.level, Eigen::Vector3d::Zero());
 }
 
 void SubmapBuilder::add(std::size_t node, const Eigen::Isometry3d& pose,
@@ -47,15 +52,12 @@ Submap SubmapBuilder::merged() const {
     submap.last = parts_.back().node;
     submap.path_m = key.path_m;
     submap.level = scan::turnedUp(key.up).cast<double>().transpose();
-    submap.path.resize(3, static_cast<Eigen::Index>(parts_.size()));
     Eigen::Index count = 0, used = 0;
     for (const auto& part : parts_) count += part.points.cols();
     Eigen::Matrix3Xf all(3, count);
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-        const Part& part = parts_[i];
+    for (const Part& part : parts_) {
         const Eigen::Isometry3f placed =
             (submap.level.transpose() * (key.pose.inverse() * part.pose)).cast<float>();
-        submap.path.col(static_cast<Eigen::Index>(i)) = placed.translation();
         for (Eigen::Index k = 0; k < part.points.cols(); ++k)
             if (part.points.col(k).norm() <= options_.radius)
                 all.col(used++) = placed * part.points.col(k);

@@ -60,13 +60,9 @@ class Support {
     }
 
  private:
-    Eigen::Isometry3d levelPose(std::size_t submap) const {
-        return poses_[submaps_[submap].key] *
-               isometry(submaps_[submap].level, Eigen::Vector3d::Zero());
-    }
     /** By the chain: the level frame of `to` to that of `from`. */
     Eigen::Isometry3d between(std::size_t from, std::size_t to) const {
-        return levelPose(from).inverse() * levelPose(to);
+        return levelPose(submaps_[from], poses_).inverse() * levelPose(submaps_[to], poses_);
     }
 
     const std::vector<LoopCandidate>& candidates_;

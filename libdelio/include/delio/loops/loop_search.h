@@ -33,10 +33,10 @@ struct LoopCandidate {
 
 /** Looks for places that a drive came back to: of all pairs of submaps that may lie one over the
  *  other, as far as the drive may have drifted, rotation first (azimuths, free of the translation),
- *  then the shift (height images), then by registration both ways. What contradicts the chain, or
- *  stands alone, is refused. `poses`: of the graph's nodes, as well as they are known. `known`: of
- * an earlier search, when they were known worse; what was accepted is taken over. In the order of
- *  `to`, then `from`; the same bytes for any number of threads. */
+ *  then the shift (height images), then by registration both ways. `poses`: of the graph's nodes,
+ * as well as they are known. `known`: of an earlier search, when they were known worse; what was
+ * accepted is taken over. In the order of `to`, then `from`; the same bytes for any number of
+ * threads. */
 std::vector<LoopCandidate> searchLoops(const std::vector<Submap>& submaps,
                                        const std::vector<Eigen::Isometry3d>& poses,
                                        const LoopOptions& options, const ClosureOptions& closure,

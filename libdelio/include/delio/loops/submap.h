@@ -24,8 +24,10 @@ struct Submap {
     double path_m = 0;                         //!< from the drive's first scan to the key node
     Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
     Eigen::Matrix3Xf points;  //!< one in `spacing`
-    Eigen::Matrix3Xf path;    //!< where the nodes were
 };
+
+/** Its level frame where these poses of the graph's nodes put it. */
+Eigen::Isometry3d levelPose(const Submap& submap, const std::vector<Eigen::Isometry3d>& poses);
 
 /** Cuts a drive into submaps: one ends after so much path, or as far from where it began as
  *  `straight`, whichever comes first, so that small loops close, too. */

@@ -20,7 +20,7 @@ struct RunSettings {
     std::string folder;
     bool graph = true;   //!< false: the chain of increments alone, not optimised
     bool map = true;     //!< false: memory grows by the poses alone
-    bool loops = false;  //!< places that the drive comes back to are searched for at its end
+    bool loops = false;  //!< are searched for at its end and closed, if `graph`
     /** Told of every warning as it comes. */
     std::function<void(const std::string&)> onWarning;
 };
