@@ -66,9 +66,8 @@ struct CommandLine {
     Text truthFrame{"", "ground-truth-frame", "Frame of the true poses", false, "cam0", &frameNames,
                     cmd};
     Switch noMap{"", "no-map", "Leave out map, scene and map.png", cmd};
-    Switch loops{"", "loops", "Search for places that the drive comes back to, and close its loops",
-                 cmd};
-    Switch noGraph{"", "no-graph", "Leave out the pose graph's optimisation", cmd};
+    Switch noLoops{"", "no-loops", "Do not search for places that the drive comes back to", cmd};
+    Switch noGraph{"", "no-graph", "Leave out the pose graph's optimisation, and loops", cmd};
     Switch gui{"", "gui", "Show the drive in a window while it is processed", cmd};
     Switch force{"", "force", "Overwrite what exists", cmd};
     Switch verbose{"", "verbose", "A line for each scan, and all the text of errors", cmd};
@@ -113,7 +112,7 @@ run::RunSettings settingsFor(CommandLine& line, int argc, char** argv) {
     settings.folder = line.output.getValue();
     settings.graph = !line.noGraph.getValue();
     settings.map = !line.noMap.getValue();
-    settings.loops = line.loops.getValue();
+    settings.loops = !line.noLoops.getValue();
     settings.onWarning = cli::warn;
     return settings;
 }
@@ -228,8 +227,6 @@ int slam(CommandLine& line, int argc, char** argv) {
     cli::catchInterrupts();
     try {
         optionsFor(line, {});
-        if (line.loops.getValue() && line.noGraph.getValue())
-            throw Error("--loops needs the pose graph that --no-graph leaves out");
         if (line.every.getValue() == 0) throw Error("--every has to be 1 or more");
         if (line.printConfig.getValue()) {
             printConfig(line);
@@ -246,12 +243,10 @@ int slam(CommandLine& line, int argc, char** argv) {
     if (!fs::is_regular_file(input))
         throw Error("cannot read '" + input +
                     "': " + (fs::exists(input) ? "it is no file" : "no such file"));
-    const bool isGraph = fs::path(input).extension() == ".g2o";
-    if (isGraph && line.loops.getValue())
-        throw Error("--loops needs scans; '" + input + "' has none");
     const OutputFolder folder(line.output.getValue(), line.force.getValue());
     const auto settings = settingsFor(line, argc, argv);
-    return isGraph ? optimiseGraph(line, settings) : slamDrive(line, settings);
+    return fs::path(input).extension() == ".g2o" ? optimiseGraph(line, settings)
+                                                 : slamDrive(line, settings);
 }
 }  // namespace
 

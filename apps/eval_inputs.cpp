@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <set>
 
 #include "cli.h"
@@ -20,10 +21,12 @@ using run::RunFolder;
 namespace {
 /** The pose file of an estimate: a folder that delio-slam has written stands for the trajectory in
  *  it that is, or after --calib will be, in the frame of cam0. */
-std::string poseFile(const std::string& path, bool calibrationGiven) {
+std::string poseFile(const std::string& path, bool calibrationGiven, bool odometry = false) {
     if (!fs::is_directory(path)) return path;
     const RunFolder folder(path);
-    if (folder.has(RunFolder::kCam0) && !calibrationGiven) return folder.path(RunFolder::kCam0);
+    const char* const cam0 = odometry ? RunFolder::kOdometryCam0 : RunFolder::kCam0;
+    if (folder.has(cam0) && !calibrationGiven) return folder.path(cam0);
+    if (odometry && folder.has(RunFolder::kOdometry)) return folder.path(RunFolder::kOdometry);
     if (folder.has(RunFolder::kTrajectory)) return folder.path(RunFolder::kTrajectory);
     throw Error("'" + path + "' is a folder without a " + RunFolder::kTrajectory +
                 "; give --ref a folder too to score "
@@ -33,13 +36,13 @@ std::string poseFile(const std::string& path, bool calibrationGiven) {
 /** A sequence of which there is a reference and an estimate. */
 struct Sequence {
     std::string reference;  // pose files
-    std::string estimate;
+    std::string estimate;   // a pose file, or a folder that delio-slam has written
 };
 
 /** The sequences NN of two folders: NN.txt in the one, NN.txt or a folder NN that delio-slam has
  *  written in the other. */
-std::vector<Sequence> sharedSequences(const fs::path& reference, const fs::path& estimate,
-                                      bool calibrationGiven) {
+std::vector<Sequence> sharedSequences(const fs::path& reference, const fs::path& estimate) {
+    if (!fs::is_directory(reference)) return {{reference.string(), estimate.string()}};
     if (!fs::is_directory(estimate))
         throw Error("'" + estimate.string() + "' is no folder, but the reference is one ('" +
                     reference.string() + "'); give two folders or two files");
@@ -53,7 +56,7 @@ std::vector<Sequence> sharedSequences(const fs::path& reference, const fs::path&
         if (fs::exists(own))
             sequences.push_back({file.string(), own.string()});
         else if (RunFolder(folder).has(RunFolder::kTrajectory))
-            sequences.push_back({file.string(), poseFile(folder.string(), calibrationGiven)});
+            sequences.push_back({file.string(), folder.string()});
     }
     if (sequences.empty())
         throw Error("'" + estimate.string() + "' has no pose file (NN.txt) that is in '" +
@@ -167,13 +170,21 @@ Comparison compareFiles(const std::string& name, const std::string& referenceFil
 std::vector<Comparison> compareSequences(const std::string& reference, const Estimate& estimate,
                                          const EvalSettings& settings) {
     const bool calibrationGiven = settings.Tr.has_value();
-    if (!fs::is_directory(reference))
-        return {compareFiles(estimate.name, reference, poseFile(estimate.path, calibrationGiven),
-                             settings)};
-    std::vector<Comparison> comparisons;
-    for (const auto& sequence : sharedSequences(reference, estimate.path, calibrationGiven))
-        comparisons.push_back(
-            compareFiles(estimate.name, sequence.reference, sequence.estimate, settings));
+    std::vector<Comparison> comparisons, odometry;
+    bool loopsWereClosed = false;
+    for (const auto& sequence : sharedSequences(reference, estimate.path)) {
+        comparisons.push_back(compareFiles(estimate.name, sequence.reference,
+                                           poseFile(sequence.estimate, calibrationGiven),
+                                           settings));
+        const RunFolder folder(sequence.estimate);
+        if (!folder.has(RunFolder::kSummary) || !folder.has(RunFolder::kOdometry)) continue;
+        loopsWereClosed = loopsWereClosed || folder.summary().loops_closed > 0;
+        odometry.push_back(compareFiles(estimate.name + " (odometry)", sequence.reference,
+                                        poseFile(sequence.estimate, calibrationGiven, true),
+                                        settings));
+    }
+    if (loopsWereClosed)
+        std::move(odometry.begin(), odometry.end(), std::back_inserter(comparisons));
     return comparisons;
 }
 }  // namespace delio

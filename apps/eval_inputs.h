@@ -36,7 +36,8 @@ evaluation::Comparison compareFiles(const std::string& name, const std::string& 
                                     const std::string& estimateFile, const EvalSettings& settings);
 
 /** All sequences of one estimate. `reference` is a pose file, and the estimate one too or a folder
- *  of delio-slam; or it is a folder of NN.txt, and the estimate one of NN.txt or of folders NN. */
+ *  of delio-slam; or it is a folder of NN.txt, and the estimate one of NN.txt or of folders NN.
+ *  Where delio-slam closed loops, the odometry alone is scored, too, after them. */
 std::vector<evaluation::Comparison> compareSequences(const std::string& reference,
                                                      const Estimate& estimate,
                                                      const EvalSettings& settings);

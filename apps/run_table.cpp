@@ -57,8 +57,8 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
         run::textOf(doubts.weak, doubts.weak.scans) + (axes.empty() ? "" : ", " + axes));
     row("searched", run::textOf(doubts.searched, doubts.searched.scans));
     if (record.searchedLoops)
-        row("loops",
-            format("%zu closed of %zu candidates", record.loopsClosed(), record.loops.size()));
+        row("loops", format("%zu closed of %zu candidates", record.closedLoops().size(),
+                            record.loops.size()));
     row("path", format("%.1f m", record.path_m()));
     row("time per scan", format("%.1f ms", record.msPerScan()));
     row("peak memory", format("%.0f MB", run::peakMemory_mb()));

@@ -1,13 +1,16 @@
 // How well loops close: true poses that drift as asked, and what is left of that when the loops are
 // closed. DRIVE.rawlog with DRIVE.poses.txt and DRIVE.calib.txt beside it (share/doc/loops.md).
-//   benchmark_loops [--drift PLANAR_PERCENT,DEG_PER_100M] [--seed N] [--list] DRIVE.rawlog...
+//   benchmark_loops [--drift PLANAR_PERCENT,UP_PERCENT] [--seed N] [--list] DRIVE.rawlog...
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "chain.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/evaluation/absolute_error.h"
@@ -15,6 +18,7 @@
 #include "delio/io/drive_meta.h"
 #include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
+#include "delio/run/summary.h"
 #include "delio/slam/loop_closer.h"
 
 namespace {
@@ -23,7 +27,7 @@ using Eigen::Isometry3d;
 using Poses = std::vector<Isometry3d>;
 
 struct Settings {
-    double planar = 0.005, deg_per_100m = 0.6;
+    double planar = 0.005, up = 0.01;  // of the path
     unsigned seed = 1;
     bool list = false;
 };
@@ -36,39 +40,67 @@ Poses truePoses(const std::string& rawlog) {
     return poses;
 }
 
-/** Stretched, turned and pitched by what changes over some 100 m, as an odometry is off. */
-Poses drifted(const Poses& truth, const Settings& settings) {
+/** Mean error of segments of 100 to 800 m, as a share of their length: planar, and of the height.
+ */
+std::pair<double, double> driftOf(const Poses& truth, const Poses& poses) {
+    std::vector<double> path_m{0};
+    for (std::size_t i = 1; i < truth.size(); ++i)
+        path_m.push_back(path_m.back() +
+                         (truth[i].translation() - truth[i - 1].translation()).norm());
+    double planar = 0, up = 0, segments = 0;
+    for (std::size_t i = 0; i < truth.size(); i += 10)
+        for (double length = 100; length <= 800; length += 100) {
+            const auto end = std::lower_bound(path_m.begin(), path_m.end(), path_m[i] + length);
+            if (end == path_m.end()) break;
+            const auto k = static_cast<std::size_t>(end - path_m.begin());
+            const Eigen::Vector3d off = (poses[i].inverse() * poses[k]).translation() -
+                                        (truth[i].inverse() * truth[k]).translation();
+            planar += off.head<2>().norm() / length;
+            up += std::abs(off.z()) / length;
+            ++segments;
+        }
+    return {planar / std::max(segments, 1.0), up / std::max(segments, 1.0)};
+}
+
+/** Stretched, turned and pitched by what changes over some 100 m, as an odometry is off; turns in
+ *  radians in 100 m. */
+Poses drifted(const Poses& truth, unsigned seed, double stretch, double yaw, double pitch) {
     constexpr double kLength_m = 100;
-    std::mt19937 engine(settings.seed);
+    std::mt19937 engine(seed);
     const auto normal = [&] {
         double sum = 0;
         for (int i = 0; i < 12; ++i) sum += static_cast<double>(engine()) / 4294967296.0;
         return sum - 6;
     };
-    Eigen::Vector3d bias(normal(), normal(), normal());
+    const auto bias = [&] {
+        const double a = normal(), b = normal();
+        return Eigen::Vector3d(a, b, normal());
+    };
+    Eigen::Vector3d now = bias();
     Poses poses{truth.front()};
     for (std::size_t i = 1; i < truth.size(); ++i) {
         Isometry3d step = truth[i - 1].inverse() * truth[i];
-        const double length = step.translation().norm(), kept = std::exp(-length / kLength_m),
-                     turn = settings.deg_per_100m * M_PI / 180 * length / 100;
-        bias = kept * bias +
-               std::sqrt(1 - kept * kept) * Eigen::Vector3d(normal(), normal(), normal());
-        step.translation() *= 1 + settings.planar * bias[0];
-        step.linear() = step.linear() * rotationExp({0, turn * bias[1], turn * bias[2]});
+        const double length = step.translation().norm(), kept = std::exp(-length / kLength_m);
+        now = kept * now + std::sqrt(1 - kept * kept) * bias();
+        step.translation() *= 1 + stretch * now[0];
+        step.linear() = step.linear() * rotationExp({0, pitch * length / 100 * now[1],
+                                                     yaw * length / 100 * now[2]});
         poses.push_back(poses.back() * step);
     }
     return poses;
 }
 
-graph::PoseGraph chainOf(const Poses& poses) {
-    graph::PoseGraph graph;
-    for (const auto& pose : poses) graph.addNode(pose);
-    for (std::size_t i = 1; i < poses.size(); ++i) {
-        Increment step{poses[i - 1].inverse() * poses[i], Matrix6::Identity()};
-        step.covariance.diagonal() << 1e-6, 1e-6, 1e-6, 1e-9, 1e-9, 1e-9;
-        graph.addEdge({i - 1, i, step});
+/** With the drift that is asked for, in segments. */
+Poses drifted(const Poses& truth, const Settings& settings) {
+    double yaw = settings.planar, pitch = settings.up;
+    Poses poses;
+    for (int i = 0; i < 5; ++i) {
+        poses = drifted(truth, settings.seed, settings.planar / 2, yaw, pitch);
+        const auto [planar, up] = driftOf(truth, poses);
+        yaw *= settings.planar / planar;
+        pitch *= settings.up / up;
     }
-    return graph;
+    return poses;
 }
 
 /** Nodes that come within 4 m of a place left at least 50 m of path ago: 0 none, 1 in the same
@@ -124,8 +156,9 @@ void printLoops(const loops::ClosedLoops& closed, const Poses& truth, bool list)
             std::printf(
                 "    %5zu %5zu %6.0f m apart %5.1f m moved %5.1f m overlap %.2f: off %.3f m "
                 "%.3f deg %s\n",
-                loop.fromNode, loop.toNode, loop.path_m, between.translation().norm(), loop.moved_m,
-                loop.closure.overlap, off_m, off_rad * 180 / M_PI, loop.closure.reason.c_str());
+                loop.fromNode, loop.toNode, loop.path_m, between.translation().norm(),
+                loop.moved_m(), loop.closure.overlap, off_m, off_rad * 180 / M_PI,
+                loop.closure.reason.c_str());
     }
     std::printf("  loops closed %zu of %zu candidates, wrong (%.1f m, %.0f deg) %zu\n",
                 closed.accepted, closed.candidates.size(), kWrong_m, kWrong_rad * 180 / M_PI,
@@ -151,28 +184,36 @@ void measure(const std::string& rawlog, const Settings& settings) {
         }
         step.used.points.conservativeResize(3, count);
         Stopwatch watch;
-        closer.add({node, *scan, step, {}, believed[node]});
+        Increment increment{Isometry3d::Identity(), 1e-6 * Matrix6::Identity()};
+        if (node > 0) increment.pose = believed[node - 1].inverse() * believed[node];
+        closer.add({node, *scan, step, increment, believed[node]});
         submaps_ms += watch.lap_ms();
     }
     truth.resize(node);
     const Poses used(believed.begin(), believed.begin() + static_cast<std::ptrdiff_t>(node));
     Stopwatch watch;
-    const auto closed = closer.close(chainOf(used), {});
+    const auto closed = closer.close(test::chainOf(used), {});
     const double closing_ms = watch.lap_ms(), path_m = evaluation::pathLength_m(truth);
     const auto before = evaluation::absoluteError(truth, used),
                after = evaluation::absoluteError(truth, closed.graph.poses());
-    std::printf("%s: %zu scans, %.0f m, %zu submaps\n", rawlog.c_str(), node, path_m,
-                closer.submaps().size());
+    const auto [planar, up] = driftOf(truth, used);
+    std::printf("%s: %zu scans, %.0f m, drift %.2f %% and %.2f %% in height, %zu submaps\n",
+                rawlog.c_str(), node, path_m, 100 * planar, 100 * up,
+                closer.search().submaps().size());
     printLoops(closed, truth, settings.list);
-    printRecall(closed, closer.submaps(), truth);
+    printRecall(closed, closer.search().submaps(), truth);
     std::printf("  drift factor %.1f, cost %.4g -> %.4g in %u iterations\n", closed.drift_factor,
                 closed.optimisation.initial_cost, closed.optimisation.final_cost,
                 closed.optimisation.iterations);
     std::printf("  APE %.3f m (at most %.3f) -> %.3f m (%.3f), %.3f %% of the path\n",
                 before.rmse_m, before.max_m, after.rmse_m, after.max_m,
                 100 * after.rmse_m / path_m);
-    std::printf("  ms a scan: submaps %.2f, search and graph %.2f\n",
-                submaps_ms / static_cast<double>(node), closing_ms / static_cast<double>(node));
+    const auto perScan = [&](double ms) { return ms / static_cast<double>(node); };
+    std::printf(
+        "  ms a scan: submaps %.2f, search %.2f beside the drive; then %.0f ms, of them %.0f "
+        "for the graph; peak %.0f MB\n",
+        perScan(submaps_ms), perScan(closer.search_ms()), closing_ms, closed.optimise_ms,
+        run::peakMemory_mb());
 }
 }  // namespace
 
@@ -188,7 +229,7 @@ int main(int argc, char** argv) {
             else if (word == "--drift" && i + 1 < argc) {
                 const std::string drift = argv[++i];
                 settings.planar = std::stod(drift) / 100;
-                settings.deg_per_100m = std::stod(drift.substr(drift.find(',') + 1));
+                settings.up = std::stod(drift.substr(drift.find(',') + 1)) / 100;
             } else
                 measure(word, settings);
         }

@@ -1,7 +1,9 @@
 #include <cmath>
 
 #include "delio/core/numbers.h"
+#include "delio/io/trajectory.h"
 #include "delio_slam_fixture.h"
+#include "poses.h"
 
 namespace {
 using namespace delio;
@@ -35,7 +37,7 @@ class DelioSlamLoops : public test::DelioSlam {
 
 TEST_F(DelioSlamLoops, ARoundDriveIsClosed) {
     writeRoundDrive();
-    const auto run = slam({"--loops"});
+    const auto run = slam();
     ASSERT_EQ(run.exitCode, 0) << run.err;
     const auto lines = linesOf(readText(out_ / "loops.csv"));
     ASSERT_GE(lines.size(), 2U);
@@ -46,29 +48,49 @@ TEST_F(DelioSlamLoops, ARoundDriveIsClosed) {
     EXPECT_LT(summary()["metrics"]["ape_m"].as<double>(), 0.05);
     EXPECT_NE(readText(out_ / "trajectory_kitti.txt"),
               readText(out_ / "trajectory_odometry_kitti.txt"));
+    EXPECT_NE(readText(out_ / "posegraph.graph").find("\n# loop "), std::string::npos);
+
+    const auto eval = test::runTool(
+        "delio-eval", {"--ref", folder_ / "d.poses.txt", "--est", "mine=" + out_.string()});
+    ASSERT_EQ(eval.exitCode, 0) << eval.err;
+    EXPECT_NE(eval.out.find("mine (odometry)"), std::string::npos) << eval.out;
+
+    // Its graph given back stays as it is.
+    const auto again = folder_ / "again";
+    const auto second = test::runTool("delio-slam", {"-i", out_ / "posegraph.g2o", "-o", again});
+    ASSERT_EQ(second.exitCode, 0) << second.err;
+    const auto before = io::readTrajectory(out_ / "trajectory_kitti.txt").poses,
+               after = io::readTrajectory(again / "trajectory_kitti.txt").poses;
+    ASSERT_EQ(before.size(), after.size());
+    for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_LT(test::metresBetween(before[i], after[i]), 0.01) << i;
+
+    // So is what one thread finds, in the drive.
+    const fs::path one = folder_ / "one";
+    ASSERT_EQ(test::runTool("delio-slam", {"-i", rawlog_, "-o", one, "--no-map", "--threads", "1"})
+                  .exitCode,
+              0);
+    for (const char* name : {"loops.csv", "posegraph.g2o", "trajectory_kitti.txt"})
+        EXPECT_TRUE(readText(out_ / name) == readText(one / name)) << name;
 }
 
 // Nothing to find: all is as without a search.
 TEST_F(DelioSlamLoops, AStraightDriveHasNone) {
     writeDrive(4);
-    ASSERT_EQ(slam({"--loops"}).exitCode, 0);
+    ASSERT_EQ(slam().exitCode, 0);
     EXPECT_EQ(readText(out_ / "loops.csv"), std::string(kColumns) + "\n");
     EXPECT_EQ(summary()["loops_closed"].as<int>(), 0);
     const std::string trajectory = readText(out_ / "trajectory_kitti.txt"),
                       graph = readText(out_ / "posegraph.g2o");
-    ASSERT_EQ(slam({"--force"}).exitCode, 0);
+    ASSERT_EQ(slam({"--force", "--no-loops"}).exitCode, 0);
     EXPECT_FALSE(fs::exists(out_ / "loops.csv"));
     EXPECT_EQ(readText(out_ / "trajectory_kitti.txt"), trajectory);
     EXPECT_EQ(readText(out_ / "posegraph.g2o"), graph);
 }
 
-TEST_F(DelioSlamLoops, NeedScans) {
-    test::writeText(folder_ / "g.g2o", "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n");
-    expectRefused(slamOf(folder_ / "g.g2o", {"--loops"}), 1, {"--loops", "g.g2o"});
-}
-
-TEST_F(DelioSlamLoops, NeedTheGraph) {
+TEST_F(DelioSlamLoops, AreLeftOutWithTheGraph) {
     writeDrive(2);
-    expectRefused(slam({"--loops", "--no-graph"}), 2, {"--loops", "--no-graph"});
+    ASSERT_EQ(slam({"--no-graph"}).exitCode, 0);
+    EXPECT_FALSE(fs::exists(out_ / "loops.csv"));
 }
 }  // namespace

@@ -39,7 +39,7 @@ class SnapshotTool : public testing::Test {
         const auto points = builder.points(poses);
         count_ = points.size();
         map::savePly(points, at("map.ply"));
-        picture::saveScene(*picture::mapScene(points, {poses, {}, {}}), at("map.3Dscene"));
+        picture::saveScene(*picture::mapScene(points, {poses, {}, {}, {}}), at("map.3Dscene"));
     }
     std::string at(const std::string& name) const { return folder_ / name; }
 

@@ -75,7 +75,7 @@ void expectAPictureOfStreets(const std::string& name, std::size_t minKeyframes) 
     EXPECT_GE(drive.builder.keyframes(), minKeyframes);
     const auto points = drive.builder.points(drive.poses);
     EXPECT_GT(points.size(), 50000U);
-    const auto scene = picture::mapScene(points, {drive.poses, {}, {}});
+    const auto scene = picture::mapScene(points, {drive.poses, {}, {}, {}});
     const auto coverage = coverageOf(picture::picture(*scene, {}));
     EXPECT_GT(coverage.share, 0.1);
     EXPECT_GT(coverage.colours, 1000U);
@@ -85,7 +85,7 @@ void expectAPictureOfStreets(const std::string& name, std::size_t minKeyframes) 
         picture::saveScene(*scene, stem + ".3Dscene");
         picture::savePicture(*scene, {}, stem + "_map.png");
         picture::savePicture(*scene, picture::topView(), stem + "_top.png");
-        const auto way = picture::trajectoryScene(drive.poses);
+        const auto way = picture::trajectoryScene({drive.poses, {}, {}, {}});
         picture::savePicture(*way, picture::topView(), stem + "_trajectory.png");
     }
 }

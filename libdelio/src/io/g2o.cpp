@@ -218,7 +218,8 @@ void saveG2o(const PoseGraph& graph, const std::string& path) {
     });
 }
 
-void saveMrptText(const PoseGraph& graph, const std::string& path) {
+void saveMrptText(const PoseGraph& graph, const std::string& path,
+                  const std::vector<std::pair<std::size_t, std::size_t>>& loops) {
     mrpt::graphs::CNetworkOfPoses3DInf network;
     network.root = 0;
     for (std::size_t i = 0; i < graph.poses().size(); ++i)
@@ -234,6 +235,7 @@ void saveMrptText(const PoseGraph& graph, const std::string& path) {
     replaceTextFile(path, [&](std::ostream& out) {
         out.precision(17);
         network.writeAsText(out);
+        for (const auto& [from, to] : loops) out << "# loop " << from << ' ' << to << '\n';
     });
 }
 }  // namespace delio::io

@@ -1,11 +1,15 @@
 #include "delio/io/rawlog_reader.h"
 
+#include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <stdexcept>
 #include <vector>
 
 #include "delio/core/error.h"
@@ -29,6 +33,34 @@ struct External : CObservationPointCloud {
         cloud.*(&External::m_external_file) = file;
     }
 };
+
+/** The first float of one in 65536 scans of KITTI's format begins like a gzip file, and zlib takes
+ *  it for one; the method, the third byte, tells (RFC 1952). */
+bool isTakenForGzip(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::array<unsigned char, 3> begin{};
+    in.read(reinterpret_cast<char*>(begin.data()), begin.size());
+    constexpr unsigned char kDeflate = 8;
+    return in && begin[0] == 0x1F && begin[1] == 0x8B && begin[2] != kDeflate;
+}
+
+/** KITTI's format, uncompressed: x, y, z and intensity of each point. */
+mrpt::maps::CPointsMap::Ptr readKittiPoints(const std::string& file) {
+    std::vector<float> floats(fs::file_size(file) / sizeof(float));
+    std::ifstream in(file, std::ios::binary);
+    in.read(reinterpret_cast<char*>(floats.data()),
+            static_cast<std::streamsize>(floats.size() * sizeof(float)));
+    if (!in) throw std::runtime_error("the file ends early");
+    auto points = mrpt::maps::CPointsMapXYZI::Create();
+    points->resize(floats.size() / 4);
+    for (std::size_t i = 0; i < points->size(); ++i) {
+        const float* p = &floats[4 * i];
+        points->setPointFast(i, p[0], p[1], p[2]);
+        points->setPointIntensity(i, p[3]);
+    }
+    points->mark_as_modified();
+    return points;
+}
 
 double secondsSince(double epoch_s, const mrpt::Clock::time_point& stamp) {
     // In MRPT's ticks of 100 ns, so that the digits of times.txt come back.
@@ -145,11 +177,17 @@ std::string RawlogReader::loadExternal(CObservation& observation) const {
         try {
             // MRPT does not see that compressed data is damaged or cut off, and KITTI's format has
             // no header: only its size can tell.
-            const auto size = unpackedSize(file.string());
-            if (External::formatOf(*cloud) == External::ExternalStorageFormat::KittiBinFile &&
-                size % (4 * sizeof(float)) != 0)
+            const bool isKitti =
+                External::formatOf(*cloud) == External::ExternalStorageFormat::KittiBinFile;
+            const bool isPlain = isKitti && isTakenForGzip(file.string());
+            const auto size = isPlain ? fs::file_size(file) : unpackedSize(file.string());
+            if (isKitti && size % (4 * sizeof(float)) != 0)
                 throw Error("'" + file.string() +
                             "' is cut off: its size is no multiple of 16 bytes");
+            if (isPlain) {
+                cloud->pointcloud = readKittiPoints(file.string());
+                return file.string();
+            }
             // A relative name MRPT would look for in a folder that is the whole process's.
             External::setFile(*cloud, fs::absolute(file).string());
             cloud->load();

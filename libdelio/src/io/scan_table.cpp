@@ -10,37 +10,10 @@
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/io/output_file.h"
+#include "table_cells.h"
 
 namespace delio::io {
 namespace {
-std::vector<std::string> cellsOf(const std::string& line) {
-    std::vector<std::string> cells(1);
-    for (const char c : line) {
-        if (c == ',')
-            cells.emplace_back();
-        else if (c != '\r')
-            cells.back() += c;
-    }
-    return cells;
-}
-
-std::size_t columnOf(const std::vector<std::string>& heading, const std::string& name,
-                     const std::string& path) {
-    const auto found = std::find(heading.begin(), heading.end(), name);
-    if (found == heading.end())
-        throw Error("'" + path + "' has no column '" + name + "'; is it delio-slam's scans.csv?");
-    return static_cast<std::size_t>(found - heading.begin());
-}
-
-/** A text that stays in its cell. */
-std::string cellOf(std::string text) {
-    for (char& c : text) {
-        if (c == ',') c = ';';
-        if (c == '\n' || c == '\r') c = ' ';
-    }
-    return text;
-}
-
 bool sameColumns(const ScanRow& a, const ScanRow& b) {
     return std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
                       [](const auto& one, const auto& other) { return one.first == other.first; });
@@ -53,9 +26,9 @@ ScanTable readScanTable(const std::string& path) {
     std::string text;
     std::getline(in, text);
     const auto heading = cellsOf(text);
-    const std::size_t columns[] = {columnOf(heading, "scan", path),
-                                   columnOf(heading, "stamp_s", path),
-                                   columnOf(heading, "predicted", path)};
+    const std::size_t columns[] = {columnOf(heading, "scan", path, "scans.csv"),
+                                   columnOf(heading, "stamp_s", path, "scans.csv"),
+                                   columnOf(heading, "predicted", path, "scans.csv")};
     ScanTable table;
     for (std::size_t line = 2; std::getline(in, text); ++line) {
         // The reason, the last column, may hold commas: what comes after the wanted ones is free.

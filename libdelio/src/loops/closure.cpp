@@ -5,7 +5,6 @@
 
 #include "delio/loops/height_image.h"
 #include "delio/scan/voxel_grid.h"
-#include "delio/scan/voxel_table.h"
 
 namespace delio::loops {
 namespace {
@@ -36,8 +35,8 @@ Eigen::Matrix3Xd aboveGround(const Eigen::Matrix3Xf& points) {
     return above;
 }
 
-Eigen::Matrix3Xd thinned(const Submap& submap, double spacing) {
-    return scan::firstOfVoxels(submap.points, spacing).cast<double>();
+Eigen::Matrix3Xd thinned(const Eigen::Matrix3Xf& points, double spacing) {
+    return scan::firstOfVoxels(points, spacing).cast<double>();
 }
 }  // namespace
 
@@ -53,15 +52,17 @@ std::vector<OptionField> ClosureOptions::fields() const {
         {"agreed_deg", &ClosureOptions::agreed_deg, "deg; the same of the rotation", 1e-3, 90}};
 }
 
-RegistrableSubmap::RegistrableSubmap(const Submap& submap)
+RegistrableSubmap::RegistrableSubmap(const Eigen::Matrix3Xf& points)
     : planes_(denseMap()),
       points_(points::PointMapOptions{}),
-      coarse_(thinned(submap, kCoarse_m)),
-      thinned_(thinned(submap, kThinned_m)),
-      standing_(aboveGround(submap.points)) {
-    const Eigen::Matrix3Xd all = submap.points.cast<double>();
+      coarse_(thinned(points, kCoarse_m)),
+      thinned_(thinned(points, kThinned_m)),
+      standing_(aboveGround(points)) {
+    const Eigen::Matrix3Xd all = points.cast<double>();
     planes_.add(all);
     points_.add(all);
+    for (Eigen::Index i = 0; i < standing_.cols(); ++i)
+        filled_.insert(scan::voxelKey(standing_.col(i), kThinned_m));
 }
 
 planes::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& other,
@@ -83,46 +84,47 @@ planes::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& oth
 
 double RegistrableSubmap::overlap(const RegistrableSubmap& other,
                                   const Eigen::Isometry3d& pose) const {
-    scan::VoxelIndex mine, theirs, both;
-    for (Eigen::Index i = 0; i < standing_.cols(); ++i)
-        mine.insert(scan::voxelKey(standing_.col(i), kThinned_m));
+    scan::VoxelIndex theirs, both;
     for (Eigen::Index i = 0; i < other.standing_.cols(); ++i) {
         const auto key = scan::voxelKey(pose * other.standing_.col(i), kThinned_m);
         theirs.insert(key);
-        if (mine.find(key) != scan::VoxelIndex::kNone) both.insert(key);
+        if (filled_.find(key) != scan::VoxelIndex::kNone) both.insert(key);
     }
-    const std::size_t fewer = std::min(mine.size(), theirs.size());
+    const std::size_t fewer = std::min(filled_.size(), theirs.size());
     return fewer == 0 ? 0 : static_cast<double>(both.size()) / static_cast<double>(fewer);
 }
 
-Closure closureOf(const Submap& from, const RegistrableSubmap& fromMap, const Submap& to,
-                  const RegistrableSubmap& toMap, const Eigen::Isometry3d& guess,
+Closure closureOf(const ClosureEnd& from, const ClosureEnd& to, const Eigen::Isometry3d& guess,
                   const ClosureOptions& options) {
     Closure closure;
     closure.level = guess;
-    const auto there = fromMap.registered(toMap, guess);
-    if (!there.valid) {
+    const auto found = from.map.registered(to.map, guess);
+    if (!found.valid) {
         closure.reason = "not registered";
         return closure;
     }
-    closure.level = there.pose();
-    closure.share = there.share;
-    closure.overlap = fromMap.overlap(toMap, there.pose());
-    const Increment levelled = incrementOf(there.rotation, there.translation);
-    closure.increment = ofVehicle(levelled, isometry(from.level, Eigen::Vector3d::Zero()),
-                                  isometry(to.level, Eigen::Vector3d::Zero()));
-    const auto back = toMap.registered(fromMap, there.pose().inverse());
-    const Eigen::Isometry3d off = back.pose() * there.pose();
+    closure.level = found.pose();
+    closure.share = found.share;
+    closure.overlap = from.map.overlap(to.map, closure.level);
+    closure.increment = ofVehicle(incrementOf(found.rotation, found.translation),
+                                  isometry(from.submap.level, Eigen::Vector3d::Zero()),
+                                  isometry(to.submap.level, Eigen::Vector3d::Zero()));
+    if (closure.share < options.min_share)
+        closure.reason = "off the planes";
+    else if (closure.overlap < options.min_overlap)
+        closure.reason = "too little overlap";
+    return closure;
+}
+
+void confirm(Closure& closure, const ClosureEnd& from, const ClosureEnd& to,
+             const ClosureOptions& options) {
+    const auto back = to.map.registered(from.map, closure.level.inverse());
+    const Eigen::Isometry3d off = back.pose() * closure.level;
     const auto& unseen = back.translation.unobservedAxes;
     const Eigen::Vector3d apart =
         off.translation() - unseen * (unseen.transpose() * off.translation());
     if (!back.valid || apart.norm() > options.agreed ||
         angleOf(off.linear()) > options.agreed_deg * kDeg)
         closure.reason = "not the same both ways";
-    else if (closure.share < options.min_share)
-        closure.reason = "off the planes";
-    else if (closure.overlap < options.min_overlap)
-        closure.reason = "too little overlap";
-    return closure;
 }
 }  // namespace delio::loops

@@ -1,10 +1,21 @@
 #include "delio/loops/submap.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "delio/core/geometry.h"
 #include "delio/scan/spin_axis.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio::loops {
+namespace {
+/** Who stands still sees nothing more, drives no path and has no end of scans. */
+bool isMuch(const Eigen::Isometry3d& moved) {
+    constexpr double kMuch_m = 0.5, kMuch_rad = 0.2;
+    return moved.translation().norm() >= kMuch_m || angleOf(moved.linear()) >= kMuch_rad;
+}
+}  // namespace
+
 std::vector<OptionField> SubmapOptions::fields() const {
     return {{"path", &SubmapOptions::path, "m; a submap ends after so much path", 1, 1e4},
             {"straight", &SubmapOptions::straight,
@@ -14,33 +25,65 @@ std::vector<OptionField> SubmapOptions::fields() const {
              5, 1e4}};
 }
 
-Eigen::Isometry3d levelPose(const Submap& submap, const std::vector<Eigen::Isometry3d>& poses) {
-    return poses[submap.key] * isometry(submap.level, Eigen::Vector3d::Zero());
+void Stretch::add(const Increment& increment, double moved_m) {
+    path_m += moved_m;
+    variance_m2 += increment.covariance.diagonal().head<3>().maxCoeff();
+    variance_rad2 += increment.covariance.diagonal().tail<3>().maxCoeff();
 }
 
-void SubmapBuilder::add(std::size_t node, const Eigen::Isometry3d& pose,
-                        const Eigen::Matrix3Xf& points, const Eigen::Vector3d& up) {
-    if (isComplete()) {
-        submaps_.push_back(merged());
-        ended_path_m_ = parts_.back().path_m;
-        ended_m_ = parts_.back().pose.translation();
+Stretch Stretch::operator+(const Stretch& other) const {
+    return {path_m + other.path_m, variance_m2 + other.variance_m2,
+            variance_rad2 + other.variance_rad2};
+}
+
+Stretch between(const Stretch& a, const Stretch& b) {
+    return {std::abs(a.path_m - b.path_m), std::abs(a.variance_m2 - b.variance_m2),
+            std::abs(a.variance_rad2 - b.variance_rad2)};
+}
+
+std::optional<Submap> SubmapBuilder::add(std::size_t node, const Increment& increment,
+                                         const Eigen::Matrix3Xf& points,
+                                         const Eigen::Vector3d& up) {
+    std::optional<Submap> ended;
+    if (isComplete() || isBeyondGap(increment)) {
+        ended = merged();
+        ended_ = parts_.back().driven;
         parts_.clear();
     }
-    const bool isFirst = parts_.empty() && submaps_.empty();
-    const Eigen::Vector3d& before = parts_.empty() ? ended_m_ : parts_.back().pose.translation();
-    const double path_m = parts_.empty() ? ended_path_m_ : parts_.back().path_m;
-    parts_.push_back(
-        {node, pose, points, up, isFirst ? 0 : path_m + (pose.translation() - before).norm()});
+    Part part{node, Eigen::Isometry3d::Identity(), {}, up, ended_};
+    if (!parts_.empty()) {
+        part.pose = parts_.back().pose * increment.pose;
+        part.driven = parts_.back().driven;
+    }
+    const auto seen = std::find_if(parts_.rbegin(), parts_.rend(),
+                                   [](const Part& other) { return other.showsMore; });
+    const Eigen::Isometry3d moved =
+        seen == parts_.rend() ? increment.pose : seen->pose.inverse() * part.pose;
+    part.showsMore = parts_.empty() || isMuch(moved);
+    if (part.showsMore) part.points = points;
+    if (node > 0) part.driven.add(increment, part.showsMore ? moved.translation().norm() : 0);
+    parts_.push_back(std::move(part));
+    return ended;
 }
 
 void SubmapBuilder::undo() noexcept {
     if (!parts_.empty()) parts_.pop_back();
 }
 
+bool SubmapBuilder::isBeyondGap(const Increment& increment) const {
+    constexpr double kGap_m = 2;
+    const auto seen = std::find_if(parts_.rbegin(), parts_.rend(),
+                                   [](const Part& part) { return part.points.cols() > 0; });
+    if (seen == parts_.rend()) return false;
+    Stretch since = between(parts_.back().driven, seen->driven);
+    since.add(increment, 0);
+    return since.variance_m2 > kGap_m * kGap_m;
+}
+
 bool SubmapBuilder::isComplete() const {
     if (parts_.empty()) return false;
     const auto &begin = parts_.front(), &end = parts_.back();
-    return end.path_m - begin.path_m >= options_.path ||
+    return end.driven.path_m - begin.driven.path_m >= options_.path ||
            (end.pose.translation() - begin.pose.translation()).norm() >= options_.straight;
 }
 
@@ -50,7 +93,7 @@ Submap SubmapBuilder::merged() const {
     submap.first = parts_.front().node;
     submap.key = key.node;
     submap.last = parts_.back().node;
-    submap.path_m = key.path_m;
+    submap.driven = key.driven;
     submap.level = scan::turnedUp(key.up).cast<double>().transpose();
     Eigen::Index count = 0, used = 0;
     for (const auto& part : parts_) count += part.points.cols();
@@ -66,9 +109,10 @@ Submap SubmapBuilder::merged() const {
     return submap;
 }
 
-std::vector<Submap> SubmapBuilder::finish() {
-    if (!parts_.empty()) submaps_.push_back(merged());
+std::optional<Submap> SubmapBuilder::finish() {
+    if (parts_.empty()) return {};
+    Submap last = merged();
     parts_.clear();
-    return std::move(submaps_);
+    return last;
 }
 }  // namespace delio::loops

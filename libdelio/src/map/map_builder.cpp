@@ -3,8 +3,6 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
-#include <filesystem>
-
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "spooled_scan.h"
@@ -50,7 +48,7 @@ struct MapBuilder::Keyframe {
     Isometry3d sensorPose = Isometry3d::Identity();
     mrpt::Clock::time_point stamp;
     bool withIntensity = false;
-    ScanSpool::Place points;
+    io::Spool::Place points;
 };
 
 /** A scan's points, their place, and which of them move. */
@@ -80,14 +78,14 @@ bool MapBuilder::isFarFromLastKeyframe(const Isometry3d& pose) const {
            angleOf(turned) >= options_.keyframeAngle_deg * kDeg;
 }
 
-ScanSpool::Floats MapBuilder::sift(const Input& scan, bool isKeyframe, std::vector<Point>& fresh) {
+io::Spool::Floats MapBuilder::sift(const Input& scan, bool isKeyframe, std::vector<Point>& fresh) {
     const auto& x = scan.points.getPointsBufferRef_x();
     const auto& y = scan.points.getPointsBufferRef_y();
     const auto& z = scan.points.getPointsBufferRef_z();
     // Room for all, so that no point can be lost whose voxel is taken already.
     fresh.reserve(x.size());
     VoxelSet ofThisScan(options_.voxelSize_m);
-    ScanSpool::Floats whole;
+    io::Spool::Floats whole;
     for (std::size_t i = 0; i < x.size(); ++i) {
         const Eigen::Vector3d p(double{x[i]}, double{y[i]}, double{z[i]});
         const double range = p.norm();
@@ -104,11 +102,9 @@ ScanSpool::Floats MapBuilder::sift(const Input& scan, bool isKeyframe, std::vect
     return whole;
 }
 
-void MapBuilder::keep(Keyframe keyframe, const ScanSpool::Floats& points) {
+void MapBuilder::keep(Keyframe keyframe, const io::Spool::Floats& points) {
     try {
-        if (!spool_)
-            spool_ = std::make_shared<ScanSpool>(
-                folder_.empty() ? std::filesystem::temp_directory_path().string() : folder_);
+        if (!spool_) spool_ = std::make_shared<io::Spool>(folder_, "keyframes", "--no-map");
         keyframe.points = spool_->append(points);
     } catch (const Error& e) {
         spoolFault_ = e.what();

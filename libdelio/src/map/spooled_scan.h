@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "scan_spool.h"
+#include "../io/spool.h"
 
 namespace delio::map {
 /** A CObservationPointCloud whose points are fetched from the disk while they are needed: a
@@ -11,7 +11,7 @@ namespace delio::map {
  *  a plain CObservationPointCloud with its points embedded. */
 class SpooledScan : public mrpt::obs::CObservationPointCloud {
  public:
-    SpooledScan(std::shared_ptr<const ScanSpool> spool, ScanSpool::Place place, bool withIntensity)
+    SpooledScan(std::shared_ptr<const io::Spool> spool, io::Spool::Place place, bool withIntensity)
         : spool_(std::move(spool)), place_(place), withIntensity_(withIntensity) {}
 
     void load() const override;
@@ -22,8 +22,8 @@ class SpooledScan : public mrpt::obs::CObservationPointCloud {
     void serializeTo(mrpt::serialization::CArchive& out) const override;
 
  private:
-    std::shared_ptr<const ScanSpool> spool_;
-    ScanSpool::Place place_;
+    std::shared_ptr<const io::Spool> spool_;
+    io::Spool::Place place_;
     bool withIntensity_;
 };
 }  // namespace delio::map

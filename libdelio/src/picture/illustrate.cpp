@@ -8,8 +8,9 @@ namespace delio::picture {
 namespace {
 void drawTrajectory(const run::RunRecord& record, const std::string& path) {
     const auto view = topView();
+    const auto loops = record.closedLoops();
     const auto pictureOf = [&](const io::Trajectory& trajectory, const char* name) {
-        return picture(*trajectoryScene(trajectory.poses, record.truth, name), view);
+        return picture(*trajectoryScene({trajectory.poses, record.truth, {}, loops}, name), view);
     };
     mrpt::img::CImage sheet;
     if (record.optimised()) {
@@ -28,7 +29,8 @@ void illustrate(const run::RunRecord& record, const mrpt::maps::CPointsMapXYZI& 
                 const std::vector<Eigen::Isometry3d>& keyframes, const run::RunFolder& folder) {
     using run::RunFolder;
     if (!points.empty()) {
-        const auto scene = mapScene(points, {record.final.poses, record.truth, keyframes});
+        const auto scene =
+            mapScene(points, {record.final.poses, record.truth, keyframes, record.closedLoops()});
         saveScene(*scene, folder.path(RunFolder::kScene));
         savePicture(*scene, SnapshotOptions(), folder.path(RunFolder::kMapPicture));
     }

@@ -30,6 +30,7 @@ using mrpt::opengl::COpenGLScene;
 namespace {
 const TColor kWhite(255, 255, 255), kRed(214, 39, 40), kBlue(31, 119, 180);
 const TColor kGreen(60, 200, 80), kYellow(255, 210, 0), kGridGray(150, 150, 150);
+const TColor kOrange(255, 127, 14);
 
 /** Extent over the ground, and a height for the grid. */
 struct Extent {
@@ -78,6 +79,19 @@ void addWay(COpenGLScene& scene, const std::vector<Isometry3d>& poses, double ex
         appendWide(*way, poses[i - 1].translation(), poses[i].translation(), piece_m);
     way->setName(name);
     if (!way->empty()) scene.insert(way);
+}
+
+/** In the legend's row, too. Above the ways, so that it is seen on them from above. */
+void addLoops(COpenGLScene& scene, const MapWays& ways, double extent_m, unsigned row) {
+    if (ways.loops.empty()) return;
+    auto lines = wideLines(kOrange, 5);
+    const Eigen::Vector3d above(0, 0, std::clamp(extent_m / 600, 0.2, 1.2));
+    for (const auto& [from, to] : ways.loops)
+        appendWide(*lines, ways.trajectory.at(from).translation() + above,
+                   ways.trajectory.at(to).translation() + above, std::max(extent_m, 1.0) / 1500);
+    lines->setName("loops");
+    scene.insert(lines);
+    addLegendText(scene, row, std::to_string(ways.loops.size()) + " loops closed", kOrange);
 }
 
 void addMark(COpenGLScene& scene, const Isometry3d& pose, const TColor& colour, double extent_m,
@@ -173,6 +187,7 @@ COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& 
         addMark(*scene, ways.trajectory.front(), kGreen, extent.longer(), "start");
         addMark(*scene, ways.trajectory.back(), kYellow, extent.longer(), "end");
         addLegendText(*scene, ++row, "trajectory, from green to yellow", ink);
+        if (!ways.loops.empty()) addLoops(*scene, ways, extent.longer(), ++row);
     }
     addColourBar(*scene, row + 1, options.colormap, range, byHeight ? " m" : "",
                  byHeight ? "height above ground" : "intensity", ink);
@@ -205,9 +220,8 @@ void recolour(COpenGLScene& scene, Colormap colormap) {
     recolourBar(scene, colormap);
 }
 
-COpenGLScene::Ptr trajectoryScene(const std::vector<Isometry3d>& estimate,
-                                  const std::vector<Isometry3d>& groundTruth,
-                                  const std::string& name) {
+COpenGLScene::Ptr trajectoryScene(const MapWays& ways, const std::string& name) {
+    const auto &estimate = ways.trajectory, &groundTruth = ways.groundTruth;
     if (estimate.empty()) throw Error("the trajectory has no poses, so there is nothing to show");
     auto all = estimate;
     all.insert(all.end(), groundTruth.begin(), groundTruth.end());
@@ -233,6 +247,7 @@ COpenGLScene::Ptr trajectoryScene(const std::vector<Isometry3d>& estimate,
     }
     addWay(*scene, estimate, size_m, kBlue, 3, "trajectory");
     addLegendText(*scene, 1, name, kBlue);
+    addLoops(*scene, ways, size_m, groundTruth.empty() ? 2 : 3);
     addMark(*scene, estimate.front(), kGreen, size_m, "start");
     addMark(*scene, estimate.back(), kYellow, size_m, "end");
     return scene;

@@ -2,8 +2,12 @@
 
 #include <mrpt/core/format.h>
 
+#include <fstream>
 #include <ostream>
 
+#include "../io/table_cells.h"
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
 #include "delio/io/output_file.h"
 
 namespace delio::run {
@@ -18,9 +22,36 @@ void writeLoopTable(const std::vector<loops::LoopCandidate>& candidates, const s
             out << loop.fromNode << ',' << loop.toNode
                 << mrpt::format(",%.1f,%.1f,%.3f,%.3f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,", loop.path_m,
                                 loop.reach_m, loop.share, closure.share, closure.overlap,
-                                loop.moved_m, pose(0, 3), pose(1, 3), pose(2, 3), yaw_deg)
+                                loop.moved_m(), pose(0, 3), pose(1, 3), pose(2, 3), yaw_deg)
                 << loop.accepted() << ',' << closure.reason << '\n';
         }
     });
+}
+
+std::vector<LoopRow> readLoopTable(const std::string& path) {
+    std::ifstream in(path);
+    if (!in) throw Error("cannot read '" + path + "': no such file, or not readable");
+    std::string text;
+    std::getline(in, text);
+    const auto heading = io::cellsOf(text);
+    std::size_t columns[4];
+    const char* const names[] = {"from_node", "to_node", "accepted", "reason"};
+    for (int i = 0; i < 4; ++i) columns[i] = io::columnOf(heading, names[i], path, "loops.csv");
+    std::vector<LoopRow> rows;
+    for (std::size_t line = 2; std::getline(in, text); ++line) {
+        const auto cells = io::cellsOf(text);
+        std::size_t values[3] = {};
+        for (int i = 0; i < 3; ++i) {
+            const auto number =
+                numberIn<std::size_t>(columns[i] < cells.size() ? cells[columns[i]] : "");
+            if (!number)
+                throw Error("'" + path + "', line " + std::to_string(line) + ": '" + names[i] +
+                            "' is not a count");
+            values[i] = *number;
+        }
+        const std::string reason = columns[3] < cells.size() ? cells[columns[3]] : "";
+        rows.push_back({values[0], values[1], values[2] != 0, reason});
+    }
+    return rows;
 }
 }  // namespace delio::run

@@ -30,7 +30,8 @@ Run::Run(const Options& options, const RunSettings& settings)
     record_.options = options;
     attach(graph_);
     if (settings.loops && settings.graph) {
-        loops_ = std::make_shared<LoopCloser>(options.submaps, options.loops, options.closures);
+        loops_ = std::make_shared<LoopCloser>(options.submaps, options.loops, options.closures,
+                                              settings.folder);
         attach(loops_);
     }
     if (!settings.map) return;
@@ -94,6 +95,7 @@ const RunRow& Run::process(const Scan& scan, double read_ms) {
 void Run::closeLoops() {
     auto closed = loops_->close(record_.graph, graphOptions(record_.options, settings_));
     record_.searchedLoops = true;
+    record_.loop_search_ms = loops_->search_ms();
     record_.loops = std::move(closed.candidates);
     if (closed.accepted == 0) return;
     record_.graph = std::move(closed.graph);
@@ -105,7 +107,11 @@ void Run::optimise() {
     record_.graph = graph_->graph();
     try {
         if (loops_) closeLoops();
-        if (settings_.graph && record_.loopsClosed() == 0) {
+    } catch (const std::exception& e) {
+        fail("loops were not closed: " + plainMessage(e));
+    }
+    try {
+        if (settings_.graph && record_.closedLoops().empty()) {
             record_.optimisation = graph_->optimise();
             record_.graph = graph_->graph();
         }

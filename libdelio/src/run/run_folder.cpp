@@ -13,7 +13,6 @@
 #include "delio/io/output_file.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
-#include "delio/run/loop_table.h"
 
 namespace delio::run {
 namespace fs = std::filesystem;
@@ -94,9 +93,13 @@ void RunFolder::writeTrajectories(const RunRecord& record) const {
     remove(kTum);
     if (!record.final.stamps_s.empty()) io::writeTum(record.final, path(kTum));
     remove(kCam0);
-    if (record.calibration.hasTr && !record.rows.empty())
-        io::writeKitti(io::lidarToCam0(ofSensor(record.final, record.rows), record.calibration.Tr),
-                       path(kCam0));
+    remove(kOdometryCam0);
+    if (!record.calibration.hasTr || record.rows.empty()) return;
+    const auto inCam0 = [&](const io::Trajectory& vehicle) {
+        return io::lidarToCam0(ofSensor(vehicle, record.rows), record.calibration.Tr);
+    };
+    io::writeKitti(inCam0(record.final), path(kCam0));
+    if (record.optimised()) io::writeKitti(inCam0(record.odometry), path(kOdometryCam0));
 }
 
 void RunFolder::writeMap(const RunRecord& record, const map::MapBuilder* map,
@@ -120,7 +123,7 @@ std::string RunFolder::write(RunRecord record, const map::MapBuilder* map,
     remove(kSummary);
     writeTrajectories(record);
     io::saveG2o(record.graph, path(kGraph));
-    io::saveMrptText(record.graph, path(kMrptGraph));
+    io::saveMrptText(record.graph, path(kMrptGraph), record.closedLoops());
     remove(kScans);
     if (!record.rows.empty()) writeScans(record.rows, path(kScans));
     remove(kLoops);

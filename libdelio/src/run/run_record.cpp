@@ -19,10 +19,11 @@ std::size_t RunRecord::predicted() const {
         rows.begin(), rows.end(), [](const RunRow& row) { return row.report.step.predicted; }));
 }
 
-std::size_t RunRecord::loopsClosed() const {
-    return static_cast<std::size_t>(
-        std::count_if(loops.begin(), loops.end(),
-                      [](const loops::LoopCandidate& loop) { return loop.accepted(); }));
+std::vector<std::pair<std::size_t, std::size_t>> RunRecord::closedLoops() const {
+    std::vector<std::pair<std::size_t, std::size_t>> nodes;
+    for (const auto& loop : loops)
+        if (loop.accepted()) nodes.emplace_back(loop.fromNode, loop.toNode);
+    return nodes;
 }
 
 double RunRecord::path_m() const { return evaluation::pathLength_m(final.poses); }

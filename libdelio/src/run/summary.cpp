@@ -134,7 +134,8 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.longest_searched = doubts.searched.longest;
     summary.searched_loops = record.searchedLoops;
     summary.loop_candidates = record.loops.size();
-    summary.loops_closed = record.loopsClosed();
+    summary.loops_closed = record.closedLoops().size();
+    summary.loop_search_ms = record.loop_search_ms;
     summary.deskewed = countOf(record, &Step::deskewed);
     summary.path_m = record.path_m();
     summary.vertical_correction_deg = record.options.scan().vertical_correction_deg;
@@ -178,6 +179,7 @@ void writeSummary(const Summary& s, const std::string& path) {
     if (s.searched_loops) {
         write(yaml, "loop_candidates", s.loop_candidates);
         write(yaml, "loops_closed", s.loops_closed);
+        write(yaml, "loop_search_ms", s.loop_search_ms);
     }
     write(yaml, "path_m", s.path_m);
     write(yaml, "vertical_correction_deg", s.vertical_correction_deg);
@@ -225,6 +227,7 @@ Summary readSummary(const std::string& path) {
         s.searched_loops = static_cast<bool>(node["loops_closed"]);
         s.loop_candidates = node["loop_candidates"].as<std::size_t>(0);
         s.loops_closed = node["loops_closed"].as<std::size_t>(0);
+        s.loop_search_ms = node["loop_search_ms"].as<double>(0);
         s.deskewed = node["deskewed"].as<std::size_t>();
         s.path_m = node["path_m"].as<double>();
         s.vertical_correction_deg = node["vertical_correction_deg"].as<double>();

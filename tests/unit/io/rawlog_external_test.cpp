@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <mrpt/io/lazy_load_path.h>
 
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "rawlog_files.h"
@@ -50,6 +52,28 @@ TEST(RawlogReader, ExternalCloudsAndWhereTheyAreLookedFor) {
     writeBin(folder / "a_Images/0.bin", 30);
     io::RawlogReader cut(folder / "a.rawlog");
     EXPECT_NE(faultOf(cut, scans).find("multiple of 16"), std::string::npos);
+}
+
+// 1F 8B begins a gzip file, and a float of -0.216, too.
+TEST(RawlogReader, ExternalCloudsThatBeginLikeGzip) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "a_Images");
+    const std::uint32_t bits = 0xBE5D8B1F;
+    float x = 0;
+    std::memcpy(&x, &bits, sizeof(x));
+    writeValues<float>(folder / "a_Images/0.bin", {x, 2, 3, 0.5F, 4, 5, 6, 0.25F});
+    auto external = cloudObservation(0);
+    external->setAsExternalStorage("0.bin",
+                                   CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+    writeRawlog(folder / "a.rawlog", {external});
+    io::RawlogReader reader(folder / "a.rawlog");
+    const auto scan = reader.next();
+    ASSERT_TRUE(scan);
+    ASSERT_EQ(scan->points->size(), 2U);
+    EXPECT_EQ(scan->points->getPointsBufferRef_x()[0], x);
+    const auto* points = dynamic_cast<const mrpt::maps::CPointsMapXYZI*>(scan->points.get());
+    ASSERT_TRUE(points);
+    EXPECT_EQ(points->getPointIntensity_fast(1), 0.25F);
 }
 
 TEST(RawlogReader, RingsAndTimesOfPointsLieBesideTheExternalFiles) {

@@ -20,7 +20,11 @@ loops::Submap seenFrom(const test::Scene& scene, const Eigen::Isometry3d& start)
 
 loops::Closure closed(const loops::Submap& from, const loops::Submap& to,
                       const Eigen::Isometry3d& guess) {
-    return closureOf(from, RegistrableSubmap(from), to, RegistrableSubmap(to), guess, {});
+    const RegistrableSubmap fromMap(from.points), toMap(to.points);
+    const loops::ClosureEnd a{from, fromMap}, b{to, toMap};
+    auto closure = closureOf(a, b, guess, {});
+    if (closure.reason.empty()) confirm(closure, a, b, {});
+    return closure;
 }
 
 /** The middle one of the poses is the key. */

@@ -20,7 +20,7 @@ class Loops : public testing::Test {
             poses.push_back(i < 20 ? poseAt(x, 0, 0) : test::poseAtDeg(780 - x, 0, 0, 180));
             Submap submap;
             submap.first = submap.key = submap.last = i;
-            submap.path_m = x;
+            submap.driven.path_m = x;
             submaps.push_back(submap);
         }
     }
@@ -29,7 +29,7 @@ class Loops : public testing::Test {
         LoopCandidate loop;
         loop.from = from;
         loop.to = to;
-        loop.path_m = submaps[to].path_m - submaps[from].path_m;
+        loop.path_m = submaps[to].driven.path_m - submaps[from].driven.path_m;
         loop.closure.level = poses[from].inverse() * poses[to] * error;
         candidates.push_back(loop);
     }

@@ -1,7 +1,8 @@
 #pragma once
+#include <optional>
 #include <vector>
 
-#include "delio/graph/pose_graph.h"
+#include "chain.h"
 #include "delio/loops/submap.h"
 #include "poses.h"
 #include "ring_scan.h"
@@ -9,6 +10,7 @@
 /** Drives through a small town for tests of loops. */
 namespace delio::loops_test {
 using Poses = std::vector<Eigen::Isometry3d>;
+using test::chainOf;
 
 /** Ground and houses on both sides of the streets about a block of 60 m by 40 m, none like the
  *  other; `alike`: houses that repeat every 12 m. */
@@ -49,26 +51,25 @@ inline Poses drifted(const Poses& poses, double turn_deg, double stretch, double
     return result;
 }
 
-/** What was seen from the true poses, where `believed` puts it. */
+/** What was seen from the true poses, where `believed` puts it; `gap`: the increment to the scan
+ *  `gapBefore`, if any. */
 inline std::vector<loops::Submap> submapsOf(const test::Scene& scene, const Poses& truth,
-                                            const Poses& believed) {
+                                            const Poses& believed, std::size_t gapBefore = 0,
+                                            const Increment& gap = {}) {
     loops::SubmapBuilder builder{{}};
+    std::vector<loops::Submap> submaps;
+    const auto take = [&](std::optional<loops::Submap> ended) {
+        if (ended) submaps.push_back(std::move(*ended));
+    };
     test::Noise noise;
-    for (std::size_t i = 0; i < truth.size(); ++i)
-        builder.add(i, believed[i],
-                    test::ringScan(scene, truth[i], {24, 360, -24, 12, 0.01}, noise).points,
-                    Eigen::Vector3d::UnitZ());
-    return builder.finish();
-}
-
-inline graph::PoseGraph chainOf(const Poses& poses) {
-    graph::PoseGraph graph;
-    for (const auto& pose : poses) graph.addNode(pose);
-    for (std::size_t i = 1; i < poses.size(); ++i) {
-        Increment step{poses[i - 1].inverse() * poses[i], Matrix6::Identity()};
-        step.covariance.diagonal() << 1e-6, 1e-6, 1e-6, 1e-8, 1e-8, 1e-8;
-        graph.addEdge({i - 1, i, step});
+    Increment step{{}, 1e-6 * Matrix6::Identity()};
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        step.pose = i > 0 ? believed[i - 1].inverse() * believed[i] : Eigen::Isometry3d::Identity();
+        take(builder.add(i, i > 0 && i == gapBefore ? gap : step,
+                         test::ringScan(scene, truth[i], {24, 360, -24, 12, 0.01}, noise).points,
+                         Eigen::Vector3d::UnitZ()));
     }
-    return graph;
+    take(builder.finish());
+    return submaps;
 }
 }  // namespace delio::loops_test

@@ -116,7 +116,7 @@ TEST(Snapshot, EverythingFillsThePictureByDefault) {
 }
 
 TEST(Snapshot, AMapHasTheColoursOfItsHeights) {
-    const auto image = picture::picture(*picture::mapScene(someMap(), {someWay(), {}, {}}), {});
+    const auto image = picture::picture(*picture::mapScene(someMap(), {someWay(), {}, {}, {}}), {});
     std::set<Rgb> colours;
     std::size_t covered = 0;
     for (int row = 0; row < static_cast<int>(image.getHeight()); ++row)
@@ -130,7 +130,7 @@ TEST(Snapshot, AMapHasTheColoursOfItsHeights) {
 }
 
 TEST(Snapshot, RepeatsAndLeavesTheSceneAsItWas) {
-    auto scene = picture::mapScene(someMap(), {someWay(), {}, {}});
+    auto scene = picture::mapScene(someMap(), {someWay(), {}, {}, {}});
     SnapshotOptions options;
     options.width_px = 200;
     options.height_px = 150;

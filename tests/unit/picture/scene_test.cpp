@@ -21,7 +21,7 @@ using test::someWay;
 
 TEST(Scene, ReloadsWithTheSamePicture) {
     const test::TemporaryFolder folder;
-    auto scene = picture::mapScene(someMap(), {someWay(), {}, {}});
+    auto scene = picture::mapScene(someMap(), {someWay(), {}, {}, {}});
     picture::saveScene(*scene, folder / "map.3Dscene");
     auto loaded = picture::loadScene(folder / "map.3Dscene");
     EXPECT_TRUE(loaded->getByName("map"));
@@ -62,6 +62,14 @@ TEST(Scene, AMapShowsItsWaysAndALegend) {
               redPixels(picture::picture(*plain, options)) + 2000);
 }
 
+TEST(Scene, AMapShowsItsLoops) {
+    picture::MapWays ways;
+    ways.trajectory = someWay();
+    EXPECT_FALSE(picture::mapScene(someMap(), ways)->getByName("loops"));
+    ways.loops = {{0, 50}};
+    EXPECT_TRUE(picture::mapScene(someMap(), ways)->getByName("loops"));
+}
+
 TEST(Scene, IntensityColoursAMapThatHasIt) {
     mrpt::maps::CPointsMapXYZI points;
     for (int i = 0; i < 100; ++i)
@@ -85,14 +93,14 @@ TEST(Scene, IntensityColoursAMapThatHasIt) {
 TEST(Scene, TakesTheColoursOfAnotherMap) {
     picture::SceneOptions gray;
     gray.colormap = map::Colormap::Gray;
-    auto scene = picture::mapScene(someMap(), {someWay(), {}, {}});
+    auto scene = picture::mapScene(someMap(), {someWay(), {}, {}, {}});
     const auto before = bytesOf(picture::picture(*scene, {}));
     picture::recolour(*scene, map::Colormap::Gray);
     EXPECT_NE(bytesOf(picture::picture(*scene, {})), before);
     // The same as if the map had been drawn so, legend and all.
-    EXPECT_EQ(
-        bytesOf(picture::picture(*scene, {})),
-        bytesOf(picture::picture(*picture::mapScene(someMap(), {someWay(), {}, {}}, gray), {})));
+    EXPECT_EQ(bytesOf(picture::picture(*scene, {})),
+              bytesOf(picture::picture(*picture::mapScene(someMap(), {someWay(), {}, {}, {}}, gray),
+                                       {})));
     auto without = mrpt::opengl::COpenGLScene::Create();
     without->insert(mrpt::opengl::stock_objects::CornerXYZSimple(1));
     EXPECT_THROW(picture::recolour(*without, map::Colormap::Gray), Error);
@@ -111,10 +119,25 @@ TEST(Scene, CutOffIsAnError) {
     EXPECT_THROW(picture::loadScene(folder / "text.3Dscene"), Error);
 }
 
+TEST(Scene, LoopsAreSeenFromAbove) {
+    const auto orange = [](const std::vector<std::pair<std::size_t, std::size_t>>& loops) {
+        const auto image = picture::picture(*picture::trajectoryScene({someWay(), {}, {}, loops}),
+                                            picture::topView());
+        std::size_t count = 0;
+        for (int row = 0; row < static_cast<int>(image.getHeight()); ++row)
+            for (int column = 0; column < static_cast<int>(image.getWidth()); ++column) {
+                const auto p = pixel(image, column, row);
+                count += p[0] > 200 && p[1] > 90 && p[1] < 170 && p[2] < 90;
+            }
+        return count;
+    };
+    EXPECT_GT(orange({{0, 50}}), orange({}) + 1000);
+}
+
 TEST(Scene, BothTrajectoriesAreSeen) {
     auto truth = someWay();
     for (auto& pose : truth) pose.translation().z() += 30;  // would hide the estimate from above
-    auto scene = picture::trajectoryScene(someWay(), truth);
+    auto scene = picture::trajectoryScene({someWay(), truth, {}, {}});
     const auto image = picture::picture(*scene, picture::topView());
     std::size_t red = 0, blue = 0;
     for (int row = 0; row < static_cast<int>(image.getHeight()); ++row)

@@ -14,6 +14,7 @@ using Words = std::vector<std::string>;
 
 /** All that is left without pictures. */
 const Words kNames = {"config.ini",
+                      "loops.csv",
                       "map.ply",
                       "map.simplemap",
                       "posegraph.g2o",
@@ -132,8 +133,9 @@ TEST_F(ToyRun, FilesOfAnEarlierRunDoNotStay) {
     second.finish(false);
     folder.write(second.record());
     EXPECT_EQ(test::namesIn(out_),
-              Words({"config.ini", "mine.txt", "posegraph.g2o", "posegraph.graph", "scans.csv",
-                     "summary.yaml", "trajectory_kitti.txt", "trajectory_odometry_kitti.txt"}));
+              Words({"config.ini", "loops.csv", "mine.txt", "posegraph.g2o", "posegraph.graph",
+                     "scans.csv", "summary.yaml", "trajectory_kitti.txt",
+                     "trajectory_odometry_kitti.txt"}));
     EXPECT_FALSE(folder.summary().complete);
 
     // One without scans: a graph that is optimised again.

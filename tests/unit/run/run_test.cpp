@@ -16,7 +16,7 @@ TEST_F(ToyRun, NotesEachScan) {
         EXPECT_GT(row.points, 20000U);
         EXPECT_LE(row.points, scan.points->size());
         EXPECT_GT(row.total_ms(), 1.5);
-        EXPECT_EQ(row.report.listeners_ms.size(), 2U);  // graph and map
+        EXPECT_EQ(row.report.listeners_ms.size(), 3U);  // graph, submaps and map
     }
     const auto& record = run.record();
     EXPECT_EQ(record.rows.size(), kScans);

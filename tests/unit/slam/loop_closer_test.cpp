@@ -1,16 +1,21 @@
 #include "delio/slam/loop_closer.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <functional>
 
 #include "../loops/town.h"
+#include "delio/core/error.h"
 
 namespace {
 using namespace delio;
 using namespace delio::loops_test;
 
 /** Round the block with a sensor that lies on its side, whose pose on the vehicle is known or not;
- *  with `more`, each scan is told of once more and taken back. */
-loops::ClosedLoops driven(bool isKnown, bool more = false) {
+ *  with `more`, each scan is told of once more and taken back; `change`: of each step. */
+loops::ClosedLoops driven(bool isKnown, bool more = false,
+                          const std::function<void(Step&)>& change = {}) {
     const Eigen::Isometry3d side = test::poseAtDeg(0, 0, 0, 0, 0, 90);
     Poses truth = roundTheBlock(15);
     if (!isKnown)  // the vehicle's frame is the sensor's
@@ -25,10 +30,13 @@ loops::ClosedLoops driven(bool isKnown, bool more = false) {
         Step step;
         step.used.points = side.linear().transpose().cast<float>() *
                            test::ringScan(town(), level, {24, 360, -24, 12, 0.01}, noise).points;
-        closer.add({i, scan, step, {}, truth[i]});
+        if (change) change(step);
+        Increment increment{Eigen::Isometry3d::Identity(), 1e-6 * Matrix6::Identity()};
+        if (i > 0) increment.pose = truth[i - 1].inverse() * truth[i];
+        closer.add({i, scan, step, increment, truth[i]});
         if (!more) continue;
         closer.undo();
-        closer.add({i, scan, step, {}, truth[i]});
+        closer.add({i, scan, step, increment, truth[i]});
     }
     return closer.close(chainOf(truth), {});
 }
@@ -44,20 +52,31 @@ TEST(LoopCloser, UndoLeavesNoTrace) {
         ASSERT_EQ(once.graph.poses()[i].matrix(), twice.graph.poses()[i].matrix()) << i;
 }
 
+TEST(LoopCloser, FindsTheSameBesideTheDriveAndInIt) {
+    const auto beside = driven(true);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const auto within = driven(true);
+    ASSERT_EQ(beside.candidates.size(), within.candidates.size());
+    for (std::size_t i = 0; i < beside.graph.poses().size(); ++i)
+        ASSERT_EQ(beside.graph.poses()[i].matrix(), within.graph.poses()[i].matrix()) << i;
+}
+
 TEST(LoopCloser, LeavesOutWhatMovesAndWhatWasPredicted) {
-    LoopCloser closer({}, {}, {});
-    Scan scan;
-    Step step;
-    step.used.points = Eigen::Vector3f(5, 0, 0).replicate(1, 3);
-    step.used.points(0, 1) = 8;
-    step.used.dynamic = {1, 0, 1};
-    closer.add({0, scan, step, {}, test::poseAt(0, 0, 0)});
-    step.used.points(0, 1) = 11;
-    step.predicted = true;
-    closer.add({1, scan, step, {}, test::poseAt(0, 0, 0)});
-    closer.close(chainOf({test::poseAt(0, 0, 0), test::poseAt(0, 0, 0)}), {});
-    ASSERT_EQ(closer.submaps().size(), 1U);
-    ASSERT_EQ(closer.submaps()[0].points.cols(), 1);
-    EXPECT_EQ(closer.submaps()[0].points(0, 0), 8);
+    const auto moving = [](Step& step) {
+        step.used.dynamic.assign(static_cast<std::size_t>(step.used.points.cols()), 1);
+    };
+    EXPECT_EQ(driven(true, false, moving).accepted, 0U);
+    EXPECT_EQ(driven(true, false, [](Step& step) { step.predicted = true; }).accepted, 0U);
+}
+
+TEST(LoopCloser, SaysWhereItCannotPutSubmapsAside) {
+    LoopCloser closer({}, {}, {}, "/no/such/folder");
+    closer.add({0, {}, {}, {}, test::poseAt(0, 0, 0)});
+    try {
+        closer.close(chainOf({test::poseAt(0, 0, 0)}), {});
+        FAIL() << "nothing was thrown";
+    } catch (const Error& e) {
+        EXPECT_NE(std::string(e.what()).find("/no/such/folder"), std::string::npos) << e.what();
+    }
 }
 }  // namespace

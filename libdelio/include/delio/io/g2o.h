@@ -1,5 +1,8 @@
 #pragma once
+#include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "delio/graph/pose_graph.h"
 
@@ -22,6 +25,9 @@ void saveG2o(const graph::PoseGraph& graph, const std::string& path);
 
 /** Writes the graph as mrpt::graphs::CNetworkOfPoses3DInf does (VERTEX3 and EDGE3 lines, angles
  *  in place of quaternions, information about them), with 17 digits. Its loadFromTextFile reads
- *  it, though MRPT 2.5.8's takes the information that links two angles for zero. */
-void saveMrptText(const graph::PoseGraph& graph, const std::string& path);
+ *  it, though MRPT 2.5.8's takes the information that links two angles for zero. `loops`: pairs of
+ *  nodes whose edges close loops, marked by lines "# loop FROM TO" at the end, which MRPT passes
+ *  over. */
+void saveMrptText(const graph::PoseGraph& graph, const std::string& path,
+                  const std::vector<std::pair<std::size_t, std::size_t>>& loops = {});
 }  // namespace delio::io

@@ -7,6 +7,7 @@
 #include "delio/planes/plane_registration.h"
 #include "delio/points/point_map.h"
 #include "delio/points/point_registration.h"
+#include "delio/scan/voxel_table.h"
 
 namespace delio::loops {
 struct ClosureOptions : public StageOptions {
@@ -23,7 +24,7 @@ struct ClosureOptions : public StageOptions {
  *  frame. */
 class RegistrableSubmap {
  public:
-    explicit RegistrableSubmap(const Submap& submap);
+    explicit RegistrableSubmap(const Eigen::Matrix3Xf& points);
 
     /** `other` to this, from `guess` on, which may be off by 2 m: by points, then by planes. */
     planes::PlaneEstimate registered(const RegistrableSubmap& other,
@@ -37,6 +38,7 @@ class RegistrableSubmap {
     planes::PlaneMap planes_;
     points::PointMap points_;
     Eigen::Matrix3Xd coarse_, thinned_, standing_;
+    scan::VoxelIndex filled_;  //!< by what stands
 };
 
 /** What became of an attempt to bring two submaps together. */
@@ -48,8 +50,17 @@ struct Closure {
     std::string reason;  //!< why it is none; empty: it is one
 };
 
-/** Registers `to` to `from` and `from` to `to`: the same has to come out. */
-Closure closureOf(const Submap& from, const RegistrableSubmap& fromMap, const Submap& to,
-                  const RegistrableSubmap& toMap, const Eigen::Isometry3d& guess,
+/** A submap and what others are registered to. */
+struct ClosureEnd {
+    const Submap& submap;
+    const RegistrableSubmap& map;
+};
+
+/** Registers `to` to `from`, from `guess` on. */
+Closure closureOf(const ClosureEnd& from, const ClosureEnd& to, const Eigen::Isometry3d& guess,
                   const ClosureOptions& options);
+
+/** Registers `from` to `to`, too: names a reason where not the same comes out. */
+void confirm(Closure& closure, const ClosureEnd& from, const ClosureEnd& to,
+             const ClosureOptions& options);
 }  // namespace delio::loops

@@ -1,12 +1,14 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "delio/graph/pose_graph.h"
 #include "delio/loops/closure.h"
 #include "delio/loops/submap.h"
 
 namespace delio::loops {
+class Places;
+
 struct LoopOptions : public StageOptions {
     double min_path = 50;
     double drift = 0.005;
@@ -19,26 +21,64 @@ struct LoopOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
+/** By how much an odometry may be off after a stretch: standard deviations along a level axis, of
+ *  the height and of the rotation. */
+struct Drift {
+    double level_m = 0, up_m = 0, turn_rad = 0;
+};
+Drift driftOf(const Stretch& driven, const LoopOptions& options);
+
 /** Two submaps that may show one place, and what was found. */
 struct LoopCandidate {
     std::size_t from = 0, to = 0;          //!< submaps, the earlier first
     std::size_t fromNode = 0, toNode = 0;  //!< their key nodes
     double path_m = 0;                     //!< driven between
-    double reach_m = 0;  //!< within which it was looked for, about where the poses say
-    double share = 0;    //!< of the height images that met
-    double moved_m = 0;  //!< found so far from where the poses say
-    Closure closure;     //!< with the reason why it was not accepted
+    double reach_m = 0;                    //!< within which it was looked for, about `expected`
+    Eigen::Isometry3d expected = Eigen::Isometry3d::Identity();  //!< `to` to `from`, level frames
+    double share = 0;                                            //!< of the height images that met
+    Closure closure;  //!< with the reason why it was not accepted
     bool accepted() const { return closure.reason.empty(); }
+    double moved_m() const;  //!< found so far from where it was expected
 };
 
 /** Looks for places that a drive came back to: of all pairs of submaps that may lie one over the
  *  other, as far as the drive may have drifted, rotation first (azimuths, free of the translation),
- *  then the shift (height images), then by registration both ways. `poses`: of the graph's nodes,
- * as well as they are known. `known`: of an earlier search, when they were known worse; what was
- * accepted is taken over. In the order of `to`, then `from`; the same bytes for any number of
- * threads. */
-std::vector<LoopCandidate> searchLoops(const std::vector<Submap>& submaps,
-                                       const std::vector<Eigen::Isometry3d>& poses,
-                                       const LoopOptions& options, const ClosureOptions& closure,
-                                       const std::vector<LoopCandidate>& known = {});
+ *  then the shift (height images), then by registration both ways. The points of the submaps lie on
+ *  the disk meanwhile. */
+class LoopSearch {
+ public:
+    /** `folder`: where submaps are put aside, in a file without a name; empty: the system's for
+     *  temporary files. */
+    LoopSearch(const LoopOptions& options, const ClosureOptions& closure, std::string folder = "");
+    ~LoopSearch();
+
+    /** The drive's next submap, compared with all before it; pose: of its key node's vehicle.
+     *  Error where it cannot be put aside. */
+    void add(Submap submap, const Eigen::Isometry3d& keyPose);
+
+    /** Once more, with other poses of the graph's nodes, which are known better now: what was
+     *  found stays, and so does what is expected where it was looked for. */
+    void again(const std::vector<Eigen::Isometry3d>& poses);
+
+    /** In the order of `to`, then `from`. */
+    const std::vector<LoopCandidate>& candidates() const { return candidates_; }
+    /** Without their points. */
+    const std::vector<Submap>& submaps() const { return submaps_; }
+    const LoopOptions& options() const { return options_; }
+
+ private:
+    void compare(std::size_t from, std::size_t to, const std::vector<LoopCandidate>& known);
+    void search(LoopCandidate& pair);
+
+    LoopOptions options_;
+    ClosureOptions closure_;
+    std::vector<Submap> submaps_;
+    std::vector<Eigen::Isometry3d> level_;  //!< their level frames
+    std::vector<LoopCandidate> candidates_;
+    std::unique_ptr<Places> places_;
+};
+
+/** The level frames of submaps, with these poses of the graph's nodes. */
+std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,
+                                           const std::vector<Eigen::Isometry3d>& poses);
 }  // namespace delio::loops

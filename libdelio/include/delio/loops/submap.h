@@ -2,8 +2,10 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
+#include "delio/core/increment.h"
 #include "delio/core/stage_options.h"
 
 namespace delio::loops {
@@ -17,49 +19,60 @@ struct SubmapOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
+/** So much of a drive, and by how much the odometry itself says that it may be off at its end:
+ *  variances of place and rotation, summed up over its increments. A pause makes them large. */
+struct Stretch {
+    double path_m = 0;
+    double variance_m2 = 0, variance_rad2 = 0;
+
+    void add(const Increment& increment, double moved_m);
+    Stretch operator+(const Stretch& other) const;
+};
+
+/** What was driven in between, whichever came first. */
+Stretch between(const Stretch& a, const Stretch& b);
+
 /** What was seen along a stretch of a drive, as one levelled cloud. Metres. Its frame has the
  *  origin at the vehicle's at the key node, and z up; `level` maps it to the vehicle's there. */
 struct Submap {
     std::size_t first = 0, key = 0, last = 0;  //!< nodes of the pose graph
-    double path_m = 0;                         //!< from the drive's first scan to the key node
+    Stretch driven;                            //!< from the drive's first scan to the key node
     Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
     Eigen::Matrix3Xf points;  //!< one in `spacing`
 };
 
-/** Its level frame where these poses of the graph's nodes put it. */
-Eigen::Isometry3d levelPose(const Submap& submap, const std::vector<Eigen::Isometry3d>& poses);
-
 /** Cuts a drive into submaps: one ends after so much path, or as far from where it began as
- *  `straight`, whichever comes first, so that small loops close, too. */
+ *  `straight`, whichever comes first, so that small loops close, too; and before a gap. */
 class SubmapBuilder {
  public:
     explicit SubmapBuilder(const SubmapOptions& options) : options_(options) {}
 
-    /** The next scan: pose (vehicle to anywhere that stays), points in the vehicle's frame and the
-     *  unit vector that does in it. */
-    void add(std::size_t node, const Eigen::Isometry3d& pose, const Eigen::Matrix3Xf& points,
-             const Eigen::Vector3d& up);
+    /** The next scan: increment since the one before, points in the vehicle's frame and the unit
+     *  vector that points up in it. Where it begins another submap, the one that ended. */
+    std::optional<Submap> add(std::size_t node, const Increment& increment,
+                              const Eigen::Matrix3Xf& points, const Eigen::Vector3d& up);
     /** Takes back the scan that was added last. */
     void undo() noexcept;
 
-    /** Ends the one that is being made, too. */
-    std::vector<Submap> finish();
+    /** The one that is being made, if any. */
+    std::optional<Submap> finish();
 
  private:
     struct Part {
         std::size_t node;
-        Eigen::Isometry3d pose;
+        Eigen::Isometry3d pose;  //!< in the submap's first scan's frame
         Eigen::Matrix3Xf points;
         Eigen::Vector3d up;
-        double path_m;  //!< to here
+        Stretch driven;  //!< to here
+        bool showsMore = true;
     };
     bool isComplete() const;
+    /** Where the scan was taken is not known well enough from those before it: a pause. */
+    bool isBeyondGap(const Increment& increment) const;
     Submap merged() const;
 
     SubmapOptions options_;
     std::vector<Part> parts_;  //!< of the one that is being made
-    std::vector<Submap> submaps_;
-    double ended_path_m_ = 0;  //!< of the one before, to its last scan
-    Eigen::Vector3d ended_m_ = Eigen::Vector3d::Zero();
+    Stretch ended_;            //!< to the last scan of the one before
 };
 }  // namespace delio::loops

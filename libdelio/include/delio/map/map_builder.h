@@ -13,8 +13,11 @@
 
 #include "delio/core/stage_options.h"
 
+namespace delio::io {
+class Spool;
+}
+
 namespace delio::map {
-class ScanSpool;
 class VoxelSet;
 
 /** Which scans, and which of their points, a map keeps. */
@@ -115,7 +118,7 @@ class MapBuilder {
     std::vector<NewPoints> scans_;
     std::unique_ptr<VoxelSet> seen_;
     std::vector<Keyframe> keyframes_;
-    std::shared_ptr<ScanSpool> spool_;  //!< made with the first keyframe
+    std::shared_ptr<io::Spool> spool_;  //!< made with the first keyframe
     std::string spoolFault_;            //!< why a keyframe could not be put aside
     Eigen::Isometry3d lastKeyPose_ = Eigen::Isometry3d::Identity();
     LastAdd last_;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "delio/map/colormap.h"
@@ -25,14 +26,16 @@ struct MapWays {
     std::vector<Eigen::Isometry3d> trajectory;
     std::vector<Eigen::Isometry3d> groundTruth;
     std::vector<Eigen::Isometry3d> keyframes;
+    /** Poses of the trajectory, by number, between which a loop was closed. */
+    std::vector<std::pair<std::size_t, std::size_t>> loops;
 };
 
 /** A map and the ways through it, in the world's frame (metres, z up): points coloured by their
  *  height above the ground around them or by intensity; the trajectory in white (on a light
  *  background: black) with a green mark at its start and a yellow one at its end; the ground truth
  *  in red, drawn wider and 0.2 to 1.2 m lower so that neither hides the other; axes at the
- *  keyframes (x red, y green, z blue); a grid; and a legend in the lower left corner. Throws Error
- *  if there are no points. */
+ *  keyframes (x red, y green, z blue); closed loops in orange; a grid; and a legend in the lower
+ * left corner. Throws Error if there are no points. */
 mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
                                          const SceneOptions& options = {});
 
@@ -40,13 +43,12 @@ mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, c
  *  the colours of another colour map. Throws Error if the scene has no such cloud. */
 void recolour(mrpt::opengl::COpenGLScene& scene, map::Colormap colormap);
 
-/** Trajectories alone, on white: the estimate in blue, under the name given, and, if it is given,
- *  the ground truth in red, with a grid. Both in the same frame. Made to be seen from above: the
- *  ground truth is drawn wider and is moved down until all of it is below the estimate, so that
- *  neither hides the other. Throws Error if there are no poses. */
-mrpt::opengl::COpenGLScene::Ptr trajectoryScene(
-    const std::vector<Eigen::Isometry3d>& estimate,
-    const std::vector<Eigen::Isometry3d>& groundTruth = {}, const std::string& name = "estimate");
+/** Trajectories alone, on white: `ways.trajectory` in blue, under the name given, with its loops in
+ *  orange, and, if it is given, the ground truth in red, with a grid. Both in the same frame. Made
+ * to be seen from above: the ground truth is drawn wider and is moved down until all of it is below
+ * the estimate, so that neither hides the other. Throws Error if there are no poses. */
+mrpt::opengl::COpenGLScene::Ptr trajectoryScene(const MapWays& ways,
+                                                const std::string& name = "estimate");
 
 /** Writes a .3Dscene for SceneViewer3D. Throws Error if that fails. */
 void saveScene(const mrpt::opengl::COpenGLScene& scene, const std::string& path);

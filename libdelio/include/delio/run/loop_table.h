@@ -9,4 +9,14 @@ namespace delio::run {
  *  graph, what was searched and found, and why it was refused (empty: it was accepted). Error where
  *  the file cannot be written. */
 void writeLoopTable(const std::vector<loops::LoopCandidate>& candidates, const std::string& path);
+
+/** What a reader of loops.csv wants to know of a pair. */
+struct LoopRow {
+    std::size_t fromNode = 0, toNode = 0;
+    bool accepted = false;
+    std::string reason;  //!< why it was not
+};
+
+/** Throws Error with file and line where a column is missing or malformed. */
+std::vector<LoopRow> readLoopTable(const std::string& path);
 }  // namespace delio::run

@@ -18,9 +18,9 @@ struct RunSettings {
     /** Where keyframes are put aside while the drive goes on; empty: the system's folder for
      *  temporary files. */
     std::string folder;
-    bool graph = true;   //!< false: the chain of increments alone, not optimised
-    bool map = true;     //!< false: memory grows by the poses alone
-    bool loops = false;  //!< are searched for at its end and closed, if `graph`
+    bool graph = true;  //!< false: the chain of increments alone, not optimised
+    bool map = true;    //!< false: memory grows by the poses alone
+    bool loops = true;  //!< places that the drive comes back to are searched for; with `graph`
     /** Told of every warning as it comes. */
     std::function<void(const std::string&)> onWarning;
 };

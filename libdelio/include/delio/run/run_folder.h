@@ -4,6 +4,7 @@
 
 #include "delio/io/scan_table.h"
 #include "delio/map/map_builder.h"
+#include "delio/run/loop_table.h"
 #include "delio/run/run_record.h"
 #include "delio/run/summary.h"
 
@@ -23,6 +24,7 @@ class RunFolder {
     static constexpr const char* kTrajectory = "trajectory_kitti.txt";
     static constexpr const char* kOdometry = "trajectory_odometry_kitti.txt";
     static constexpr const char* kCam0 = "trajectory_kitti_cam0.txt";
+    static constexpr const char* kOdometryCam0 = "trajectory_odometry_kitti_cam0.txt";
     static constexpr const char* kTum = "trajectory_tum.txt";
     static constexpr const char* kGraph = "posegraph.g2o";
     static constexpr const char* kMrptGraph = "posegraph.graph";
@@ -56,6 +58,7 @@ class RunFolder {
     io::Trajectory tum() const { return io::readTrajectory(path(kTum)); }
     graph::PoseGraph graph() const;
     io::ScanTable scans() const { return io::readScanTable(path(kScans)); }
+    std::vector<LoopRow> loops() const { return readLoopTable(path(kLoops)); }
     /** The options that were in effect. */
     Options options() const;
     Summary summary() const { return readSummary(path(kSummary)); }

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "delio/evaluation/comparison.h"
@@ -43,6 +44,7 @@ struct RunRecord {
     double optimise_ms = 0;
     bool searchedLoops = false;
     std::vector<loops::LoopCandidate> loops;  //!< and what became of them
+    double loop_search_ms = 0;                //!< beside the drive, and after it
 
     io::Calibration calibration;
     /** Beside true poses, where they are known: the final trajectory, and, where the graph had
@@ -54,7 +56,8 @@ struct RunRecord {
     /** The chain alone is what the odometry's poses were made of: then nothing is optimised. */
     bool optimised() const { return graph.edges().size() + 1 > graph.poses().size(); }
     std::size_t predicted() const;
-    std::size_t loopsClosed() const;
+    /** Pairs of nodes, the earlier first. */
+    std::vector<std::pair<std::size_t, std::size_t>> closedLoops() const;
     double path_m() const;
     double msPerScan() const;
 };

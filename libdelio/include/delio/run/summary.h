@@ -25,6 +25,7 @@ struct Summary {
     std::size_t interrupted = 0;
     bool searched_loops = false;
     std::size_t loop_candidates = 0, loops_closed = 0;
+    double loop_search_ms = 0;  //!< beside the drive, and after it
     double path_m = 0;
     double vertical_correction_deg = 0;
     double ms_per_scan = 0;         //!< reading, odometry and the graph's window

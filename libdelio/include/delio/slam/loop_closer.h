@@ -1,32 +1,53 @@
 #pragma once
+#include <exception>
+#include <future>
+#include <string>
+#include <vector>
+
 #include "delio/loops/close_loops.h"
 #include "delio/slam/listener.h"
 
 namespace delio {
-/** Keeps a drive as submaps, and closes its loops when it is over. */
+/** Keeps a drive as submaps, looks for places that it comes back to while it goes on, and closes
+ *  its loops when it is over. The search has a thread of its own (where more than one may be used),
+ *  and finds the same whenever it gets the time. */
 class LoopCloser : public SlamListener {
  public:
+    /** `folder`: where submaps are put aside; empty: the system's for temporary files. */
     LoopCloser(const loops::SubmapOptions& submaps, const loops::LoopOptions& loops,
-               const loops::ClosureOptions& closures)
-        : loops_(loops), closures_(closures), builder_(submaps) {}
+               const loops::ClosureOptions& closures, const std::string& folder = "");
 
     const char* name() const override { return "submaps"; }
     void add(const SlamScan& scan) override;
-    void undo() noexcept override { builder_.undo(); }
+    void undo() noexcept override;
 
-    /** `graph`: of the same drive, a node each scan. Once, after the last scan. */
+    /** `graph`: of the same drive, a node each scan. Once, after the last scan. Error where submaps
+     *  could not be put aside. */
     loops::ClosedLoops close(const graph::PoseGraph& graph,
                              const graph::PoseGraphOptions& optimisation);
 
-    /** Of the submaps that close() searched. */
-    const std::vector<loops::Submap>& submaps() const { return submaps_; }
+    /** What is known when the loops are closed. */
+    const loops::LoopSearch& search() const { return search_; }
+    /** Time that the search has taken, beside the drive and after it. */
+    double search_ms() const { return search_ms_; }
 
  private:
-    loops::LoopOptions loops_;
-    loops::ClosureOptions closures_;
+    struct Ended {
+        loops::Submap submap;
+        Eigen::Isometry3d pose;  //!< of its key node
+    };
+    void end(std::optional<loops::Submap> submap);
+    void searchNext();
+    void search(std::vector<Ended> submaps);
+
     loops::SubmapBuilder builder_;
-    std::vector<loops::Submap> submaps_;
+    std::vector<Eigen::Isometry3d> poses_;  //!< of all nodes
+    std::vector<Ended> waiting_;            //!< submaps that are not searched for yet
+    loops::LoopSearch search_;              //!< belongs to the thread while that is busy
+    double search_ms_ = 0;
+    std::exception_ptr fault_;  //!< of the search
     bool upIsKnown_ = false;
     Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();  //!< in the vehicle's frame
+    std::future<void> busy_;                         //!< the last one: ends before what it uses
 };
 }  // namespace delio

@@ -5,23 +5,24 @@
 #include <string>
 #include <vector>
 
-namespace delio::map {
+namespace delio::io {
 /** Puts clouds aside on the disk, in a file without a name that is gone when this is, whatever ends
  *  the process. */
-class ScanSpool {
+class Spool {
  public:
-    /** Four floats a point: x, y, z, intensity. */
     using Floats = std::vector<float>;
     struct Place {
         std::uint64_t offset = 0;
         std::size_t floats = 0;
     };
 
-    /** The file lies in `folder`. Throws Error if none can be made there. */
-    explicit ScanSpool(const std::string& folder);
+    /** The file lies in `folder` (empty: the system's for temporary files). `what` is put aside,
+     *  and `option` is how to do without, for messages. Throws Error if none can be made there. */
+    Spool(const std::string& folder, std::string what, std::string option);
 
     /** Throws Error if the disk is full. */
-    Place append(const Floats& cloud);
+    Place append(const float* floats, std::size_t count);
+    Place append(const Floats& cloud) { return append(cloud.data(), cloud.size()); }
 
     /** Throws Error if the disk fails. */
     Floats read(const Place& place) const;
@@ -30,8 +31,8 @@ class ScanSpool {
     struct Close {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
-    std::string folder_;
+    std::string folder_, what_, option_;
     std::unique_ptr<std::FILE, Close> file_;
     std::uint64_t end_ = 0;
 };
-}  // namespace delio::map
+}  // namespace delio::io

@@ -1,0 +1,34 @@
+#include "places.h"
+
+#include <algorithm>
+
+#include "delio/surfaces/normals.h"
+
+namespace delio::loops {
+Sketch::Sketch(const Eigen::Matrix3Xf& points)
+    : azimuths(surfaces::estimateNormals(points, {})), image(points) {}
+
+void Places::add(const Eigen::Matrix3Xf& points) {
+    if (!spool_) spool_.emplace(folder_, "submaps", "--no-loops");
+    points_.push_back(spool_->append(points.data(), static_cast<std::size_t>(points.size())));
+    sketches_.emplace_back(points);
+}
+
+std::shared_ptr<const RegistrableSubmap> Places::map(std::size_t submap) {
+    constexpr std::size_t kMost = 8;
+    const auto known = std::find_if(recent_.begin(), recent_.end(),
+                                    [&](const Recent& other) { return other.submap == submap; });
+    Recent recent{submap, nullptr};
+    if (known != recent_.end()) {
+        recent = *known;
+        recent_.erase(known);
+    } else {
+        const auto floats = spool_->read(points_[submap]);
+        recent.map = std::make_shared<RegistrableSubmap>(Eigen::Map<const Eigen::Matrix3Xf>(
+            floats.data(), 3, static_cast<Eigen::Index>(floats.size() / 3)));
+    }
+    recent_.push_front(recent);
+    if (recent_.size() > kMost) recent_.pop_back();
+    return recent.map;
+}
+}  // namespace delio::loops

@@ -1,0 +1,45 @@
+#pragma once
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../io/spool.h"
+#include "delio/loops/azimuths.h"
+#include "delio/loops/closure.h"
+#include "delio/loops/height_image.h"
+
+namespace delio::loops {
+/** What a submap is looked for by. */
+struct Sketch {
+    Azimuths azimuths;
+    HeightImage image;
+
+    explicit Sketch(const Eigen::Matrix3Xf& points);
+};
+
+/** The submaps of a drive, by number: their sketches in memory, their points on the disk, and the
+ *  maps that were needed last, of 10 to 20 MB each. */
+class Places {
+ public:
+    explicit Places(std::string folder) : folder_(std::move(folder)) {}
+
+    /** The next submap's points. Error where there is no room for them. */
+    void add(const Eigen::Matrix3Xf& points);
+
+    const Sketch& sketch(std::size_t submap) const { return sketches_[submap]; }
+    std::shared_ptr<const RegistrableSubmap> map(std::size_t submap);
+
+ private:
+    struct Recent {
+        std::size_t submap;
+        std::shared_ptr<const RegistrableSubmap> map;
+    };
+    std::string folder_;
+    std::optional<io::Spool> spool_;  //!< made with the first submap
+    std::vector<io::Spool::Place> points_;
+    std::vector<Sketch> sketches_;
+    std::deque<Recent> recent_;  //!< the latest first
+};
+}  // namespace delio::loops
