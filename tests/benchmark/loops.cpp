@@ -130,11 +130,13 @@ Poses closedByTruth(const loops::ClosedLoops& closed, const Poses& believed, con
     graph::PoseGraph graph;
     for (const auto& pose : believed) graph.addNode(pose);
     for (std::size_t i = 0; i + 1 < believed.size(); ++i) graph.addEdge(closed.graph.edges()[i]);
+    Matrix6 covariance = 1e-4 * Matrix6::Identity();
+    covariance.bottomRightCorner<3, 3>() *= 1e-2;
     const auto found = revisits(truth);
     for (std::size_t i = 0; i < truth.size(); i += 5) {
         if (found[i].kind == 0) continue;
         const std::size_t k = found[i].earlier;
-        graph.addEdge({k, i, {truth[k].inverse() * truth[i], 1e-4 * Matrix6::Identity()}});
+        graph.addEdge({k, i, {truth[k].inverse() * truth[i], covariance}});
     }
     graph.optimise({});
     return graph.poses();

@@ -46,6 +46,8 @@ std::vector<OptionField> ClosureOptions::fields() const {
          "share of the smaller submap's voxels of 0.5 m that both submaps fill", 0, 1},
         {"min_share", &ClosureOptions::min_share,
          "share of the points in voxels with a plane that have to lie on it", 0, 1},
+        {"max_bare", &ClosureOptions::max_bare,
+         "share of what stands in one submap that may be where the other saw bare ground", 0, 1},
         {"agreed", &ClosureOptions::agreed,
          "m; registered one to the other and the other to the one, submaps have to agree so far",
          1e-3, 10},

@@ -42,20 +42,25 @@ bool differ(const Closure& a, const Closure& b) {
 }  // namespace
 
 std::vector<OptionField> LoopOptions::fields() const {
-    return {{"min_path", &LoopOptions::min_path, "m; what is seen again after less path is no loop",
-             1, 1e6},
-            {"drift", &LoopOptions::drift,
-             "share of the path by which the odometry is off along each level axis (standard "
-             "deviation)",
-             1e-6, 1},
-            {"drift_up", &LoopOptions::drift_up, "the same of the height", 1e-6, 1},
-            {"drift_deg", &LoopOptions::drift_deg,
-             "deg after 100 m; the same of the rotation, "
-             "growing with the path's root",
-             1e-6, 90},
-            {"rival", &LoopOptions::rival,
-             "share of the best place's overlap that another place may have", 0, 1},
-            {"reach", &LoopOptions::reach, "m; no place is looked for farther off", 1, 1000}};
+    return {
+        {"min_path", &LoopOptions::min_path, "m; what is seen again after less path is no loop", 1,
+         1e6},
+        {"drift", &LoopOptions::drift,
+         "share of the path by which the odometry is off along each level axis (standard "
+         "deviation)",
+         1e-6, 1},
+        {"drift_up", &LoopOptions::drift_up, "the same of the height", 1e-6, 1},
+        {"drift_deg", &LoopOptions::drift_deg,
+         "deg after 100 m; the same of the rotation, "
+         "growing with the path's root",
+         1e-6, 90},
+        {"rival", &LoopOptions::rival,
+         "share of the best place's overlap that another place may have", 0, 1},
+        {"repeats", &LoopOptions::repeats,
+         "share of a place's height image that may look the same elsewhere in it, as far off as "
+         "it is searched",
+         0, 1},
+        {"reach", &LoopOptions::reach, "m; no place is looked for farther off", 1, 1000}};
 }
 
 Drift driftOf(const Stretch& driven, const LoopOptions& options) {
@@ -147,9 +152,27 @@ void LoopSearch::search(LoopCandidate& pair) {
         pair.closure = closure;
         pair.share = shift.share;
     }
+    if (pair.accepted() && bareShare(pair) > closure_.max_bare)
+        pair.closure.reason = "walls of one are free space of the other";
+    if (pair.accepted() && (repeats(pair.from, pair.reach_m) || repeats(pair.to, pair.reach_m)))
+        pair.closure.reason = "the place repeats itself";
     if (pair.accepted()) confirm(pair.closure, from, to, closure_);
     if (pair.accepted() && rival > options_.rival * pair.closure.overlap)
         pair.closure.reason = "two places look alike";
+}
+
+double LoopSearch::bareShare(const LoopCandidate& pair) const {
+    const auto &from = places_->sketch(pair.from).image, &to = places_->sketch(pair.to).image;
+    return std::max(from.bareShare(to, pair.closure.level),
+                    to.bareShare(from, pair.closure.level.inverse()));
+}
+
+/** Rows of identical houses, tunnels: both ends of the search may be taken for each other. */
+bool LoopSearch::repeats(std::size_t submap, double reach_m) {
+    const auto& shifts = places_->repetitions(submap, 2 * options_.reach);
+    return std::any_of(shifts.begin(), shifts.end(), [&](const Shift& shift) {
+        return shift.share > options_.repeats && shift.translation.head<2>().norm() <= 2 * reach_m;
+    });
 }
 
 std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,

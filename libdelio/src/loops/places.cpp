@@ -14,6 +14,19 @@ void Places::add(const Eigen::Matrix3Xf& points) {
     sketches_.emplace_back(points);
 }
 
+const std::vector<Shift>& Places::repetitions(std::size_t submap, double reach) {
+    constexpr double kApart_m = 4;  // nearer, walls along the way look alike, and are one place
+    constexpr std::size_t kMost = 6;
+    repetitions_.resize(sketches_.size());
+    auto& shifts = repetitions_[submap];
+    if (shifts.empty()) {
+        const auto& image = sketches_[submap].image;
+        shifts = shiftsOf(image, image, 0, Eigen::Vector2d::Zero(), reach, kApart_m, kMost);
+        if (!shifts.empty()) shifts.erase(shifts.begin());  // itself
+    }
+    return shifts;
+}
+
 std::shared_ptr<const RegistrableSubmap> Places::map(std::size_t submap) {
     constexpr std::size_t kMost = 8;
     const auto known = std::find_if(recent_.begin(), recent_.end(),

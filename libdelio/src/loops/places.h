@@ -29,6 +29,8 @@ class Places {
     void add(const Eigen::Matrix3Xf& points);
 
     const Sketch& sketch(std::size_t submap) const { return sketches_[submap]; }
+    /** By how much it looks most like itself elsewhere, within `reach` metres. */
+    const std::vector<Shift>& repetitions(std::size_t submap, double reach);
     std::shared_ptr<const RegistrableSubmap> map(std::size_t submap);
 
  private:
@@ -40,6 +42,7 @@ class Places {
     std::optional<io::Spool> spool_;  //!< made with the first submap
     std::vector<io::Spool::Place> points_;
     std::vector<Sketch> sketches_;
-    std::deque<Recent> recent_;  //!< the latest first
+    std::vector<std::vector<Shift>> repetitions_;  //!< empty: not known yet
+    std::deque<Recent> recent_;                    //!< the latest first
 };
 }  // namespace delio::loops

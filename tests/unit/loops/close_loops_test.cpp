@@ -19,8 +19,9 @@ double farthest(const Poses& a, const Poses& b) {
     return most;
 }
 
-ClosedLoops closed(const std::vector<loops::Submap>& submaps, const Poses& believed) {
-    loops::LoopSearch search({}, {});
+ClosedLoops closed(const std::vector<loops::Submap>& submaps, const Poses& believed,
+                   const loops::LoopOptions& options = {}) {
+    loops::LoopSearch search(options, {});
     for (const auto& submap : submaps) search.add(submap, believed[submap.key]);
     return loops::closeLoops(chainOf(believed), search, {});
 }
@@ -167,6 +168,34 @@ TEST(CloseLoops, AStreetLikeAnotherIsNone) {
     while (truth.back().translation().x() > 0)
         truth.push_back(truth.back() * test::poseAt(2, 0, 0));
     const auto result = closed(submapsOf(town(true), truth, truth), truth);
+    EXPECT_EQ(result.accepted, 0U) << textOf(result);
+}
+
+// An odometry that may be off by so much that a row of identical houses fits, moved by one.
+TEST(CloseLoops, AStreetThatRepeatsItselfIsNone) {
+    const auto truth = roundTheBlock(20);
+    const auto submaps = submapsOf(town(true), truth, truth);
+    for (const double drift : {0.03, 0.1}) {
+        loops::LoopOptions options;
+        options.drift = drift;
+        const auto result = closed(submaps, truth, options);
+        EXPECT_GT(result.candidates.size(), 4U);
+        EXPECT_EQ(result.accepted, 0U) << textOf(result);
+    }
+}
+
+TEST(CloseLoops, ATunnelDrivenThereAndBackIsNone) {
+    const test::Scene tunnel{{{-300, -100, -2.8}, {400, 140, -1.8}},
+                             {{-300, 4, -2}, {400, 5, 6}},
+                             {{-300, -5, -2}, {400, -4, 6}},
+                             {{-300, -5, 5}, {400, 5, 6}}};
+    Poses truth;
+    for (int i = 0; i < 40; ++i) truth.push_back(test::poseAt(2 * i, 0, 0));
+    for (int i = 0; i < 12; ++i) truth.push_back(truth.back() * test::poseAtDeg(0.2, 0, 0, 15));
+    for (int i = 0; i < 35; ++i) truth.push_back(truth.back() * test::poseAt(2, 0, 0));
+    const auto believed = drifted(truth, 0.02, 0.01, 0);
+    const auto result = closed(submapsOf(tunnel, truth, believed), believed);
+    EXPECT_GT(result.candidates.size(), 0U);
     EXPECT_EQ(result.accepted, 0U) << textOf(result);
 }
 

@@ -13,6 +13,7 @@ namespace delio::loops {
 struct ClosureOptions : public StageOptions {
     double min_overlap = 0.3;
     double min_share = 0.5;
+    double max_bare = 0.3;
     double agreed = 0.2;
     double agreed_deg = 0.5;
 

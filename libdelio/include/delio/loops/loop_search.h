@@ -15,6 +15,7 @@ struct LoopOptions : public StageOptions {
     double drift_up = 0.01;
     double drift_deg = 0.5;
     double rival = 0.8;
+    double repeats = 0.55;
     double reach = 30;
 
  protected:
@@ -69,6 +70,8 @@ class LoopSearch {
  private:
     void compare(std::size_t from, std::size_t to, const std::vector<LoopCandidate>& known);
     void search(LoopCandidate& pair);
+    double bareShare(const LoopCandidate& pair) const;
+    bool repeats(std::size_t submap, double reach_m);
 
     LoopOptions options_;
     ClosureOptions closure_;
