@@ -1,4 +1,5 @@
 // delio-slam: a rawlog in; trajectory, pose graph, map, scene and pictures out.
+#include <malloc.h>
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 #include <tbb/global_control.h>
 
@@ -251,6 +252,8 @@ int slam(CommandLine& line, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    // Clouds and maps go back to the system when they are dropped, whichever thread made them.
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
     const bool runs = std::none_of(
         argv, argv + argc, [](const char* word) { return std::string(word) == "--print-config"; });
     CommandLine line(runs);

@@ -169,48 +169,21 @@ HeightImage::HeightImage(const Eigen::Matrix3Xf& points) {
         heights_.push_back(lowest(blocks[i]));
     }
     centres.clear();
+    scan::VoxelIndex cells;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const auto p = points.col(i);
         const auto band = bandOf(static_cast<double>(p.z()) - groundAt(p.x(), p.y()));
         if (band == 0) continue;
-        const auto number = standing_.insert(keyAt(p.x(), p.y(), kCell_m));
+        const auto number = cells.insert(keyAt(p.x(), p.y(), kCell_m));
         if (number == bands_.size()) {
             bands_.push_back(0);
             centres.emplace_back(centreOf(p.x(), kCell_m), centreOf(p.y(), kCell_m));
         }
         bands_[number] = static_cast<std::uint8_t>(bands_[number] | band);
     }
-    findBare(points);
     cells_.resize(2, static_cast<Eigen::Index>(centres.size()));
     for (std::size_t i = 0; i < centres.size(); ++i)
         cells_.col(static_cast<Eigen::Index>(i)) = centres[i];
-}
-
-void HeightImage::findBare(const Eigen::Matrix3Xf& points) {
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const double x = points(0, i), y = points(1, i);
-        bool isBare = true;
-        for (const double dx : {-kCell_m, 0.0, kCell_m})
-            for (const double dy : {-kCell_m, 0.0, kCell_m})
-                isBare = isBare &&
-                         standing_.find(keyAt(x + dx, y + dy, kCell_m)) == scan::VoxelIndex::kNone;
-        if (isBare) bare_.insert(keyAt(x, y, kCell_m));
-    }
-}
-
-double HeightImage::bareShare(const HeightImage& other, const Eigen::Isometry3d& pose) const {
-    constexpr std::uint8_t kUpright = 2 | 4;  // 1 to 2 m, and 2 to 4 m
-    double bare = 0, seen = 0;
-    for (Eigen::Index i = 0; i < other.cells_.cols(); ++i) {
-        if ((other.bands_[static_cast<std::size_t>(i)] & kUpright) != kUpright) continue;
-        const Eigen::Vector3d at =
-            pose * Eigen::Vector3d(other.cells_(0, i), other.cells_(1, i), 0);
-        const auto key = keyAt(at.x(), at.y(), kCell_m);
-        const bool isBare = bare_.find(key) != scan::VoxelIndex::kNone;
-        bare += isBare;
-        seen += isBare || standing_.find(key) != scan::VoxelIndex::kNone;
-    }
-    return seen > 0 ? bare / seen : 0;
 }
 
 double HeightImage::groundAt(double x, double y) const {

@@ -137,8 +137,9 @@ void LoopSearch::search(LoopCandidate& pair) {
     const auto shifts = shiftsOf(places_->sketch(pair.from), places_->sketch(pair.to), pair,
                                  turn_rad, options_.rival);
     if (shifts.empty()) return;
-    const auto fromMap = places_->map(pair.from), toMap = places_->map(pair.to);
-    const ClosureEnd from{submaps_[pair.from], *fromMap}, to{submaps_[pair.to], *toMap};
+    const auto fromGround = places_->ground(pair.from), toGround = places_->ground(pair.to);
+    const ClosureEnd from{submaps_[pair.from], fromGround->map},
+        to{submaps_[pair.to], toGround->map};
     for (const auto& shift : shifts) {
         const Eigen::Isometry3d guess = Eigen::Translation3d(shift.translation) *
                                         Eigen::AngleAxisd(shift.yaw, Eigen::Vector3d::UnitZ()) *
@@ -163,8 +164,8 @@ void LoopSearch::search(LoopCandidate& pair) {
 
 double LoopSearch::bareShare(const LoopCandidate& pair) const {
     const auto &from = places_->sketch(pair.from).image, &to = places_->sketch(pair.to).image;
-    return std::max(from.bareShare(to, pair.closure.level),
-                    to.bareShare(from, pair.closure.level.inverse()));
+    return std::max(places_->ground(pair.from)->free.builtOn(to, pair.closure.level),
+                    places_->ground(pair.to)->free.builtOn(from, pair.closure.level.inverse()));
 }
 
 /** Rows of identical houses, tunnels: both ends of the search may be taken for each other. */

@@ -27,8 +27,8 @@ const std::vector<Shift>& Places::repetitions(std::size_t submap, double reach) 
     return shifts;
 }
 
-std::shared_ptr<const RegistrableSubmap> Places::map(std::size_t submap) {
-    constexpr std::size_t kMost = 8;
+std::shared_ptr<const Ground> Places::ground(std::size_t submap) {
+    constexpr std::size_t kMost = 5;  // a submap and those it is compared with, next to each other
     const auto known = std::find_if(recent_.begin(), recent_.end(),
                                     [&](const Recent& other) { return other.submap == submap; });
     Recent recent{submap, nullptr};
@@ -37,11 +37,13 @@ std::shared_ptr<const RegistrableSubmap> Places::map(std::size_t submap) {
         recent_.erase(known);
     } else {
         const auto floats = spool_->read(points_[submap]);
-        recent.map = std::make_shared<RegistrableSubmap>(Eigen::Map<const Eigen::Matrix3Xf>(
-            floats.data(), 3, static_cast<Eigen::Index>(floats.size() / 3)));
+        const Eigen::Map<const Eigen::Matrix3Xf> points(
+            floats.data(), 3, static_cast<Eigen::Index>(floats.size() / 3));
+        recent.ground = std::make_shared<Ground>(
+            Ground{RegistrableSubmap(points), FreeSpace(sketches_[submap].image, points)});
     }
     recent_.push_front(recent);
     if (recent_.size() > kMost) recent_.pop_back();
-    return recent.map;
+    return recent.ground;
 }
 }  // namespace delio::loops

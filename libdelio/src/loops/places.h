@@ -8,6 +8,7 @@
 #include "../io/spool.h"
 #include "delio/loops/azimuths.h"
 #include "delio/loops/closure.h"
+#include "delio/loops/free_space.h"
 #include "delio/loops/height_image.h"
 
 namespace delio::loops {
@@ -19,8 +20,14 @@ struct Sketch {
     explicit Sketch(const Eigen::Matrix3Xf& points);
 };
 
-/** The submaps of a drive, by number: their sketches in memory, their points on the disk, and the
- *  maps that were needed last, of 10 to 20 MB each. */
+/** What another one is verified against: 10 to 20 MB. */
+struct Ground {
+    RegistrableSubmap map;
+    FreeSpace free;
+};
+
+/** The submaps of a drive, by number: their sketches in memory, their points on the disk, and of
+ *  those that were needed last what others are verified against. */
 class Places {
  public:
     explicit Places(std::string folder) : folder_(std::move(folder)) {}
@@ -31,12 +38,12 @@ class Places {
     const Sketch& sketch(std::size_t submap) const { return sketches_[submap]; }
     /** By how much it looks most like itself elsewhere, within `reach` metres. */
     const std::vector<Shift>& repetitions(std::size_t submap, double reach);
-    std::shared_ptr<const RegistrableSubmap> map(std::size_t submap);
+    std::shared_ptr<const Ground> ground(std::size_t submap);
 
  private:
     struct Recent {
         std::size_t submap;
-        std::shared_ptr<const RegistrableSubmap> map;
+        std::shared_ptr<const Ground> ground;
     };
     std::string folder_;
     std::optional<io::Spool> spool_;  //!< made with the first submap

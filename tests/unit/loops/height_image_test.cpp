@@ -70,27 +70,6 @@ TEST(HeightImage, SharesAreTrue) {
     EXPECT_NEAR(shift.share, static_cast<double>(met) / all, 1e-12);
 }
 
-TEST(HeightImage, WallsOnBareGroundContradict) {
-    const auto withWallAt = [](float x) {
-        std::vector<Eigen::Vector3f> points;
-        for (float y = 0.1F; y < 20; y += 0.25F) {
-            for (float across = 0.1F; across < 20; across += 0.25F)
-                points.emplace_back(across, y, 0.0F);
-            for (float z = 0.1F; z < 4; z += 0.25F) points.emplace_back(x, y, z);
-        }
-        Eigen::Matrix3Xf cloud(3, static_cast<Eigen::Index>(points.size()));
-        for (std::size_t i = 0; i < points.size(); ++i)
-            cloud.col(static_cast<Eigen::Index>(i)) = points[i];
-        return HeightImage(cloud);
-    };
-    const auto a = withWallAt(5.2F), b = withWallAt(9.2F);
-    const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
-    EXPECT_EQ(a.bareShare(a, same), 0);
-    EXPECT_EQ(a.bareShare(b, same), 1);
-    EXPECT_EQ(a.bareShare(b, test::poseAt(-4, 0, 0)), 0);
-    EXPECT_EQ(a.bareShare(b, test::poseAt(100, 0, 0)), 0);  // nothing to compare
-}
-
 TEST(HeightImage, OfNothingIsNowhere) {
     const HeightImage nothing(Eigen::Matrix3Xf(3, 0)), here(yard());
     EXPECT_TRUE(shiftsOf(here, nothing, 0, {0, 0}, 5, 2, 3).empty());

@@ -1,5 +1,5 @@
 #pragma once
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -22,19 +22,11 @@ class HeightImage {
     /** Centres of the blocks whose ground was seen. */
     const Eigen::Matrix2Xd& grounds() const { return grounds_; }
 
-    /** Free space: of the cells where the other one has something of 1 to 4 m without a gap (a
-     * wall, a hedge, a trunk), and this one saw what is there, the share where this one saw bare
-     * ground. `pose`: other to this. 0 where nothing can be compared. */
-    double bareShare(const HeightImage& other, const Eigen::Isometry3d& pose) const;
-
  private:
-    void findBare(const Eigen::Matrix3Xf& points);
-
     Eigen::Matrix2Xd cells_, grounds_;
     std::vector<std::uint8_t> bands_;
     std::vector<double> heights_;
     scan::VoxelIndex groundIndex_;
-    scan::VoxelIndex bare_, standing_;  //!< cells: ground with nothing on it or beside it; others
 };
 
 /** Where the other image, turned by `yaw`, lies on this one. */
