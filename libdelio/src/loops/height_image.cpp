@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -29,17 +28,11 @@ std::uint8_t bandOf(double height) {
     return band;
 }
 
-std::uint8_t bitsOf(unsigned bands) {
-    std::uint8_t count = 0;
-    for (; bands; bands &= bands - 1) ++count;
-    return count;
-}
-
-/** How many bits each of all bytes has. */
-std::array<std::uint8_t, 256> bitCounts() {
-    std::array<std::uint8_t, 256> counts{};
-    for (unsigned i = 0; i < counts.size(); ++i) counts[i] = bitsOf(i);
-    return counts;
+/** How many bits a byte has, without a table, so that the compiler counts many at once. */
+constexpr std::uint8_t bitsOf(std::uint8_t bands) {
+    const auto pairs = static_cast<std::uint8_t>(bands - ((bands >> 1) & 0x55));
+    const auto fours = static_cast<std::uint8_t>((pairs & 0x33) + ((pairs >> 2) & 0x33));
+    return static_cast<std::uint8_t>((fours + (fours >> 4)) & 0x0F);
 }
 
 unsigned totalOf(const std::vector<std::uint8_t>& bands) {
@@ -87,7 +80,6 @@ using Scores = Eigen::Matrix<unsigned, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 Scores correlated(const HeightImage& image, const Eigen::Matrix2Xd& cells,
                   const std::vector<std::uint8_t>& bands, const Eigen::Vector2d& expected,
                   Eigen::Index reach) {
-    const auto counts = bitCounts();
     const Eigen::Index side = 2 * reach + 1;
     const Raster raster(image, side);
     Scores scores = Scores::Zero(side, side);
@@ -97,8 +89,10 @@ Scores correlated(const HeightImage& image, const Eigen::Matrix2Xd& cells,
             const auto* row = raster.row(Raster::indexOf(centre.x()) - reach,
                                          Raster::indexOf(centre.y()) - reach + dy, side);
             if (!row) continue;
-            const unsigned mine = bands[static_cast<std::size_t>(i)];
-            for (Eigen::Index dx = 0; dx < side; ++dx) scores(dy, dx) += counts[mine & row[dx]];
+            const std::uint8_t mine = bands[static_cast<std::size_t>(i)];
+            unsigned* sums = &scores(dy, 0);
+            for (Eigen::Index dx = 0; dx < side; ++dx)
+                sums[dx] += bitsOf(static_cast<std::uint8_t>(mine & row[dx]));
         }
     });
     return scores;

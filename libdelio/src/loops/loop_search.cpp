@@ -170,7 +170,7 @@ double LoopSearch::bareShare(const LoopCandidate& pair) const {
 
 /** Rows of identical houses, tunnels: both ends of the search may be taken for each other. */
 bool LoopSearch::repeats(std::size_t submap, double reach_m) {
-    const auto& shifts = places_->repetitions(submap, 2 * options_.reach);
+    const auto& shifts = places_->repetitions(submap, options_.reach);
     return std::any_of(shifts.begin(), shifts.end(), [&](const Shift& shift) {
         return shift.share > options_.repeats && shift.translation.head<2>().norm() <= 2 * reach_m;
     });

@@ -14,9 +14,8 @@ void drawTrajectory(const run::RunRecord& record, const std::string& path) {
     };
     mrpt::img::CImage sheet;
     if (record.optimised()) {
-        const auto width = static_cast<int>(view.width_px),
-                   height = static_cast<int>(view.height_px);
-        sheet.resize(2 * width, height, mrpt::img::CH_RGB);
+        const auto width = static_cast<int>(view.width_px);
+        sheet.resize(std::size_t{2} * view.width_px, view.height_px, mrpt::img::CH_RGB);
         sheet.drawImage(0, 0, pictureOf(record.odometry, "unoptimised"));
         sheet.drawImage(width, 0, pictureOf(record.final, "optimised"));
     } else
