@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <set>
 
 #include "cli.h"
@@ -24,9 +23,11 @@ namespace {
 std::string poseFile(const std::string& path, bool calibrationGiven, bool odometry = false) {
     if (!fs::is_directory(path)) return path;
     const RunFolder folder(path);
-    const char* const cam0 = odometry ? RunFolder::kOdometryCam0 : RunFolder::kCam0;
-    if (folder.has(cam0) && !calibrationGiven) return folder.path(cam0);
-    if (odometry && folder.has(RunFolder::kOdometry)) return folder.path(RunFolder::kOdometry);
+    const bool isCam0 = folder.has(RunFolder::kCam0) && !calibrationGiven;
+    if (isCam0 && odometry && folder.has(RunFolder::kOdometryCam0))
+        return folder.path(RunFolder::kOdometryCam0);
+    if (isCam0) return folder.path(RunFolder::kCam0);  // nothing has changed the odometry
+    if (odometry) return folder.path(RunFolder::kOdometry);
     if (folder.has(RunFolder::kTrajectory)) return folder.path(RunFolder::kTrajectory);
     throw Error("'" + path + "' is a folder without a " + RunFolder::kTrajectory +
                 "; give --ref a folder too to score "
@@ -38,6 +39,11 @@ struct Sequence {
     std::string reference;  // pose files
     std::string estimate;   // a pose file, or a folder that delio-slam has written
 };
+
+bool hasLoops(const Sequence& sequence) {
+    const RunFolder folder(sequence.estimate);
+    return folder.has(RunFolder::kSummary) && folder.summary().loops_closed > 0;
+}
 
 /** The sequences NN of two folders: NN.txt in the one, NN.txt or a folder NN that delio-slam has
  *  written in the other. */
@@ -170,21 +176,16 @@ Comparison compareFiles(const std::string& name, const std::string& referenceFil
 std::vector<Comparison> compareSequences(const std::string& reference, const Estimate& estimate,
                                          const EvalSettings& settings) {
     const bool calibrationGiven = settings.Tr.has_value();
-    std::vector<Comparison> comparisons, odometry;
-    bool loopsWereClosed = false;
-    for (const auto& sequence : sharedSequences(reference, estimate.path)) {
-        comparisons.push_back(compareFiles(estimate.name, sequence.reference,
-                                           poseFile(sequence.estimate, calibrationGiven),
-                                           settings));
-        const RunFolder folder(sequence.estimate);
-        if (!folder.has(RunFolder::kSummary) || !folder.has(RunFolder::kOdometry)) continue;
-        loopsWereClosed = loopsWereClosed || folder.summary().loops_closed > 0;
-        odometry.push_back(compareFiles(estimate.name + " (odometry)", sequence.reference,
-                                        poseFile(sequence.estimate, calibrationGiven, true),
-                                        settings));
-    }
-    if (loopsWereClosed)
-        std::move(odometry.begin(), odometry.end(), std::back_inserter(comparisons));
+    std::vector<Comparison> comparisons;
+    const auto sequences = sharedSequences(reference, estimate.path);
+    for (const auto& [truth, path] : sequences)
+        comparisons.push_back(
+            compareFiles(estimate.name, truth, poseFile(path, calibrationGiven), settings));
+    if (std::none_of(sequences.begin(), sequences.end(), hasLoops)) return comparisons;
+    for (const auto& [truth, path] : sequences)
+        if (RunFolder(path).has(RunFolder::kOdometry))
+            comparisons.push_back(compareFiles(estimate.name + " (odometry)", truth,
+                                               poseFile(path, calibrationGiven, true), settings));
     return comparisons;
 }
 }  // namespace delio

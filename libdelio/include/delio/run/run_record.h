@@ -21,7 +21,7 @@ struct RunRow {
     double read_ms = 0;
     ScanReport report;  //!< without points and features
 
-    /** Of reading, odometry and pose graph. */
+    /** Of reading, odometry, pose graph and submaps. */
     double total_ms() const;
 };
 

@@ -28,7 +28,7 @@ struct Summary {
     double loop_search_ms = 0;  //!< beside the drive, and after it
     double path_m = 0;
     double vertical_correction_deg = 0;
-    double ms_per_scan = 0;         //!< reading, odometry and the graph's window
+    double ms_per_scan = 0;         //!< reading, odometry, the graph's window, submaps
     Figures ms_per_scan_of_stages;  //!< of which these are the parts
     double map_ms_per_scan = 0;
     double optimisation_ms = 0;
