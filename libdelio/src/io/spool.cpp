@@ -26,6 +26,7 @@ Spool::Spool(const std::string& folder, std::string what, std::string option)
 
 Spool::Place Spool::append(const float* floats, std::size_t count) {
     const Place place{end_, count};
+    if (count == 0) return place;
     const bool written = std::fseek(file_.get(), static_cast<long>(end_), SEEK_SET) == 0 &&
                          std::fwrite(floats, sizeof(float), count, file_.get()) == count &&
                          std::fflush(file_.get()) == 0;
@@ -38,6 +39,7 @@ Spool::Place Spool::append(const float* floats, std::size_t count) {
 
 Spool::Floats Spool::read(const Place& place) const {
     Floats cloud(place.floats);
+    if (cloud.empty()) return cloud;
     if (std::fseek(file_.get(), static_cast<long>(place.offset), SEEK_SET) != 0 ||
         std::fread(cloud.data(), sizeof(float), cloud.size(), file_.get()) != cloud.size())
         throw Error("cannot read the " + what_ + " that were put aside in '" + folder_ + "'");
