@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -15,6 +16,7 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
+#include "delio/core/numbers.h"
 #include "delio/core/stopwatch.h"
 #include "delio/io/g2o.h"
 #include "delio/io/scan_reader.h"
@@ -66,6 +68,21 @@ struct CommandLine {
     TCLAP::ValuesConstraint<std::string> frameNames{frames};
     Text truthFrame{"", "ground-truth-frame", "Frame of the true poses", false, "cam0", &frameNames,
                     cmd};
+    Text map{"",
+             "map",
+             "Localise the drive in a stored map: map.delio, or the folder of the run that made it",
+             false,
+             "",
+             "OLD",
+             cmd};
+    Text initialPose{"",
+                     "initial-pose",
+                     "Where the vehicle is at the first scan in that map, to some metres and "
+                     "degrees: looked for there only",
+                     false,
+                     "",
+                     "X,Y,Z,YAW_DEG",
+                     cmd};
     Switch noMap{"", "no-map", "Leave out map, scene and map.png", cmd};
     Switch noLoops{"", "no-loops", "Do not search for places that the drive comes back to", cmd};
     Switch noGraph{"", "no-graph", "Leave out the pose graph's optimisation, and loops", cmd};
@@ -106,14 +123,33 @@ void printConfig(CommandLine& line) {
         std::cout << (text == otherText ? "" : "# ") << text << "\n";
 }
 
+/** Of X,Y,Z,YAW_DEG. */
+Eigen::Isometry3d poseIn(const std::string& text) {
+    std::vector<double> numbers;
+    std::istringstream in(text + ",");
+    for (std::string word; std::getline(in, word, ',');) {
+        const auto number = numberIn<double>(word);
+        if (!number || !std::isfinite(*number)) break;
+        numbers.push_back(*number);
+    }
+    if (numbers.size() != 4 || std::count(text.begin(), text.end(), ',') != 3)
+        throw Error("--initial-pose wants X,Y,Z,YAW_DEG (metres and degrees in the map), not '" +
+                    text + "'");
+    return isometry(rotationExp({0, 0, numbers[3] * M_PI / 180}),
+                    {numbers[0], numbers[1], numbers[2]});
+}
+
 run::RunSettings settingsFor(CommandLine& line, int argc, char** argv) {
     run::RunSettings settings;
     settings.profile = line.profile.getValue();
     settings.command.assign(argv, argv + argc);
     settings.folder = line.output.getValue();
+    settings.drive = fs::path(line.input.getValue()).stem().string();
     settings.graph = !line.noGraph.getValue();
     settings.map = !line.noMap.getValue();
     settings.loops = !line.noLoops.getValue();
+    settings.storedMap = line.map.getValue();
+    if (line.initialPose.isSet()) settings.initialPose = poseIn(line.initialPose.getValue());
     settings.onWarning = cli::warn;
     return settings;
 }
@@ -204,7 +240,7 @@ int slamDrive(CommandLine& line, run::RunSettings settings) {
     run.finish(record.fault.empty() && !cli::interrupted());
     const std::string fault =
         run::RunFolder(line.output.getValue())
-            .write(record, anyUsed ? run.map() : nullptr, picture::illustrate);
+            .write(record, anyUsed ? run.maps() : run::RunMaps{}, picture::illustrate);
     printTable(record, line.output.getValue(), std::cout);
     if (!fault.empty()) throw Error(fault);
     if (cli::interrupted()) return cli::kExitInterrupted;
@@ -219,7 +255,7 @@ int optimiseGraph(CommandLine& line, const run::RunSettings& settings) {
     const auto record =
         run::optimiseAgain(io::loadG2o(line.input.getValue()), optionsFor(line, {}), settings);
     const std::string fault =
-        run::RunFolder(line.output.getValue()).write(record, nullptr, picture::illustrate);
+        run::RunFolder(line.output.getValue()).write(record, {}, picture::illustrate);
     if (!fault.empty()) throw Error(fault);
     return cli::kExitSuccess;
 }
@@ -229,6 +265,9 @@ int slam(CommandLine& line, int argc, char** argv) {
     try {
         optionsFor(line, {});
         if (line.every.getValue() == 0) throw Error("--every has to be 1 or more");
+        if (line.initialPose.isSet()) poseIn(line.initialPose.getValue());
+        if (line.initialPose.isSet() && !line.map.isSet())
+            throw Error("--initial-pose is a pose in a stored map: it needs --map");
         if (line.printConfig.getValue()) {
             printConfig(line);
             return cli::kExitSuccess;

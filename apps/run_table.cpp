@@ -3,6 +3,8 @@
 #include <mrpt/core/bits_math.h>
 #include <mrpt/core/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <ostream>
 #include <utility>
@@ -56,6 +58,18 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
     row("weakly observed",
         run::textOf(doubts.weak, doubts.weak.scans) + (axes.empty() ? "" : ", " + axes));
     row("searched", run::textOf(doubts.searched, doubts.searched.scans));
+    if (!record.fixes.empty()) {
+        std::array<std::size_t, 3> scans{};
+        for (const auto& fix : record.fixes) ++scans[static_cast<std::size_t>(fix.where)];
+        const auto found = std::find_if(record.fixes.begin(), record.fixes.end(), isAnchor);
+        std::string text =
+            format("%zu scans, outside %zu, not found %zu", scans[1], scans[2], scans[0]);
+        if (found != record.fixes.end())
+            text +=
+                format(", first found at scan %zu",
+                       record.rows[static_cast<std::size_t>(found - record.fixes.begin())].scan);
+        row("in the stored map", text);
+    }
     if (record.searchedLoops)
         row("loops", format("%zu closed of %zu candidates", record.closedLoops().size(),
                             record.loops.size()));

@@ -27,7 +27,7 @@ TEST_F(DelioSlam, TheLibraryLeavesTheSameFolder) {
     run.finish(true);
     const std::string own = folder_ / "own";
     const run::RunFolder folder(own);
-    EXPECT_EQ(folder.write(run.record(), run.map(), picture::illustrate), "");
+    EXPECT_EQ(folder.write(run.record(), run.maps(), picture::illustrate), "");
 
     EXPECT_EQ(test::namesIn(own), test::namesIn(out_));
     test::expectSameResults(own, out_);

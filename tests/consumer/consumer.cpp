@@ -60,7 +60,7 @@ void useRun(const std::string& out) {
     for (int i = 0; i < 3; ++i) run.process(scanAt(i * kYaw, static_cast<std::size_t>(i)));
     run.finish(true);
     const delio::run::RunFolder folder(out);
-    expect("Run, written", folder.write(run.record(), run.map()).empty());
+    expect("Run, written", folder.write(run.record(), run.maps()).empty());
     expectTurns("Run, read back", folder.trajectory().poses.back(), 2);
     const auto summary = folder.summary();
     expect("   summary", summary.complete && summary.scans == 3 && summary.predicted == 0);

@@ -19,7 +19,7 @@ int main(int argc, char** argv) try {
     for (std::size_t i = 0; i < 3; ++i) run.process(scanAt(0.05 * static_cast<double>(i), i));
     run.finish(true);
     const delio::run::RunFolder folder(argv[1]);
-    const auto fault = folder.write(run.record(), run.map(), delio::picture::illustrate);
+    const auto fault = folder.write(run.record(), run.maps(), delio::picture::illustrate);
     if (!fault.empty()) throw delio::Error(fault);
 
     const auto scene = delio::picture::mapScene(*scanAt(0).points, {});

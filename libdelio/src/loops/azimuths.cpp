@@ -5,7 +5,7 @@
 
 namespace delio::loops {
 namespace {
-constexpr Eigen::Index kBins = 720;  // of half a turn
+constexpr Eigen::Index kBins = Azimuths::kBins;
 constexpr double kWidth = M_PI / kBins;
 
 Eigen::Index wrapped(Eigen::Index bin) { return ((bin % kBins) + kBins) % kBins; }

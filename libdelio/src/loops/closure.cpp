@@ -21,20 +21,6 @@ planes::PlaneMapOptions denseMap() {
     return options;
 }
 
-Eigen::Matrix3Xd aboveGround(const Eigen::Matrix3Xf& points) {
-    constexpr double kGround_m = 0.3;
-    const HeightImage image(points);
-    Eigen::Matrix3Xd above(3, points.cols());
-    Eigen::Index count = 0;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const Eigen::Vector3d point = points.col(i).cast<double>();
-        if (point.z() - image.groundAt(point.x(), point.y()) > kGround_m)
-            above.col(count++) = point;
-    }
-    above.conservativeResize(3, count);
-    return above;
-}
-
 Eigen::Matrix3Xd thinned(const Eigen::Matrix3Xf& points, double spacing) {
     return scan::firstOfVoxels(points, spacing).cast<double>();
 }

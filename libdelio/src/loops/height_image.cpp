@@ -7,11 +7,13 @@
 #include <cmath>
 #include <limits>
 
+#include "bands.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio::loops {
 namespace {
 constexpr double kBlock_m = 4;  // of one height of the ground
+constexpr double kGround_m = 0.3;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::uint64_t keyAt(double x, double y, double size) {
@@ -20,19 +22,11 @@ std::uint64_t keyAt(double x, double y, double size) {
 
 /** One bit for each of 0.3 to 1, 2, 4, 8 m and more above the ground. */
 std::uint8_t bandOf(double height) {
-    constexpr double kGround = 0.3;
-    if (height < kGround) return 0;
+    if (height < kGround_m) return 0;
     std::uint8_t band = 1;
     for (double top = 1; height >= top && top <= 8; top *= 2)
         band = static_cast<std::uint8_t>(2 * band);
     return band;
-}
-
-/** How many bits a byte has, without a table, so that the compiler counts many at once. */
-constexpr std::uint8_t bitsOf(std::uint8_t bands) {
-    const auto pairs = static_cast<std::uint8_t>(bands - ((bands >> 1) & 0x55));
-    const auto fours = static_cast<std::uint8_t>((pairs & 0x33) + ((pairs >> 2) & 0x33));
-    return static_cast<std::uint8_t>((fours + (fours >> 4)) & 0x0F);
 }
 
 unsigned totalOf(const std::vector<std::uint8_t>& bands) {
@@ -178,6 +172,29 @@ HeightImage::HeightImage(const Eigen::Matrix3Xf& points) {
     cells_.resize(2, static_cast<Eigen::Index>(centres.size()));
     for (std::size_t i = 0; i < centres.size(); ++i)
         cells_.col(static_cast<Eigen::Index>(i)) = centres[i];
+}
+
+HeightImage::HeightImage(Eigen::Matrix2Xd cells, std::vector<std::uint8_t> bands,
+                         Eigen::Matrix2Xd grounds, std::vector<double> heights)
+    : cells_(std::move(cells)),
+      grounds_(std::move(grounds)),
+      bands_(std::move(bands)),
+      heights_(std::move(heights)) {
+    for (Eigen::Index i = 0; i < grounds_.cols(); ++i)
+        groundIndex_.insert(keyAt(grounds_(0, i), grounds_(1, i), kBlock_m));
+}
+
+Eigen::Matrix3Xd aboveGround(const Eigen::Matrix3Xf& points) {
+    const HeightImage image(points);
+    Eigen::Matrix3Xd above(3, points.cols());
+    Eigen::Index count = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector3d point = points.col(i).cast<double>();
+        if (point.z() - image.groundAt(point.x(), point.y()) > kGround_m)
+            above.col(count++) = point;
+    }
+    above.conservativeResize(3, count);
+    return above;
 }
 
 double HeightImage::groundAt(double x, double y) const {

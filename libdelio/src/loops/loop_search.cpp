@@ -88,6 +88,10 @@ void LoopSearch::add(Submap submap, const Eigen::Isometry3d& keyPose) {
     for (std::size_t from = 0; from < to; ++from) compare(from, to, {});
 }
 
+const Sketch& LoopSearch::sketch(std::size_t submap) const { return places_->sketch(submap); }
+
+Eigen::Matrix3Xf LoopSearch::points(std::size_t submap) const { return places_->points(submap); }
+
 void LoopSearch::again(const std::vector<Eigen::Isometry3d>& poses) {
     level_ = levelFrames(submaps_, poses);
     const auto known = std::move(candidates_);
@@ -174,14 +178,5 @@ bool LoopSearch::repeats(std::size_t submap, double reach_m) {
     return std::any_of(shifts.begin(), shifts.end(), [&](const Shift& shift) {
         return shift.share > options_.repeats && shift.translation.head<2>().norm() <= 2 * reach_m;
     });
-}
-
-std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,
-                                           const std::vector<Eigen::Isometry3d>& poses) {
-    std::vector<Eigen::Isometry3d> level;
-    level.reserve(submaps.size());
-    for (const auto& submap : submaps)
-        level.push_back(poses[submap.key] * isometry(submap.level, Eigen::Vector3d::Zero()));
-    return level;
 }
 }  // namespace delio::loops

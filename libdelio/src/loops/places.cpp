@@ -2,19 +2,7 @@
 
 #include <algorithm>
 
-#include "delio/scan/voxel_grid.h"
-#include "delio/surfaces/normals.h"
-
 namespace delio::loops {
-namespace {
-/** Enough for the directions of walls, at a quarter of the time. */
-constexpr double kThinned_m = 0.6;
-}  // namespace
-
-Sketch::Sketch(const Eigen::Matrix3Xf& points)
-    : azimuths(surfaces::estimateNormals(scan::firstOfVoxels(points, kThinned_m), {})),
-      image(points) {}
-
 void Places::add(const Eigen::Matrix3Xf& points) {
     if (!spool_) spool_.emplace(folder_, "submaps", "--no-loops");
     points_.push_back(spool_->append(points.data(), static_cast<std::size_t>(points.size())));
@@ -34,6 +22,12 @@ const std::vector<Shift>& Places::repetitions(std::size_t submap, double reach) 
     return shifts;
 }
 
+Eigen::Matrix3Xf Places::points(std::size_t submap) const {
+    const auto floats = spool_->read(points_[submap]);
+    return Eigen::Map<const Eigen::Matrix3Xf>(floats.data(), 3,
+                                              static_cast<Eigen::Index>(floats.size() / 3));
+}
+
 std::shared_ptr<const Ground> Places::ground(std::size_t submap) {
     constexpr std::size_t kMost = 5;  // a submap and those it is compared with, next to each other
     const auto known = std::find_if(recent_.begin(), recent_.end(),
@@ -43,11 +37,9 @@ std::shared_ptr<const Ground> Places::ground(std::size_t submap) {
         recent = *known;
         recent_.erase(known);
     } else {
-        const auto floats = spool_->read(points_[submap]);
-        const Eigen::Map<const Eigen::Matrix3Xf> points(
-            floats.data(), 3, static_cast<Eigen::Index>(floats.size() / 3));
+        const auto cloud = points(submap);
         recent.ground = std::make_shared<Ground>(
-            Ground{RegistrableSubmap(points), FreeSpace(sketches_[submap].image, points)});
+            Ground{RegistrableSubmap(cloud), FreeSpace(sketches_[submap].image, cloud)});
     }
     recent_.push_front(recent);
     if (recent_.size() > kMost) recent_.pop_back();

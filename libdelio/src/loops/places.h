@@ -6,20 +6,11 @@
 #include <vector>
 
 #include "../io/spool.h"
-#include "delio/loops/azimuths.h"
 #include "delio/loops/closure.h"
 #include "delio/loops/free_space.h"
-#include "delio/loops/height_image.h"
+#include "delio/loops/sketch.h"
 
 namespace delio::loops {
-/** What a submap is looked for by. */
-struct Sketch {
-    Azimuths azimuths;
-    HeightImage image;
-
-    explicit Sketch(const Eigen::Matrix3Xf& points);
-};
-
 /** What another one is verified against: 10 to 20 MB. */
 struct Ground {
     RegistrableSubmap map;
@@ -36,6 +27,8 @@ class Places {
     void add(const Eigen::Matrix3Xf& points);
 
     const Sketch& sketch(std::size_t submap) const { return sketches_[submap]; }
+    /** From the disk. */
+    Eigen::Matrix3Xf points(std::size_t submap) const;
     /** By how much it looks most like itself elsewhere, within `reach` metres. */
     const std::vector<Shift>& repetitions(std::size_t submap, double reach);
     std::shared_ptr<const Ground> ground(std::size_t submap);

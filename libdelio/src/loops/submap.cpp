@@ -41,6 +41,15 @@ Stretch between(const Stretch& a, const Stretch& b) {
             std::abs(a.variance_rad2 - b.variance_rad2)};
 }
 
+std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,
+                                           const std::vector<Eigen::Isometry3d>& poses) {
+    std::vector<Eigen::Isometry3d> level;
+    level.reserve(submaps.size());
+    for (const auto& submap : submaps)
+        level.push_back(poses[submap.key] * isometry(submap.level, Eigen::Vector3d::Zero()));
+    return level;
+}
+
 std::optional<Submap> SubmapBuilder::add(std::size_t node, const Increment& increment,
                                          const Eigen::Matrix3Xf& points,
                                          const Eigen::Vector3d& up) {

@@ -105,10 +105,11 @@ PlaneEstimate ScanToMap::byPoints(const PointEstimate& placed,
 /** Of the axes that planes do not see: those that the points do not see either go back to the
  *  prediction; those along which points say "standing still" are kept and named. */
 void ScanToMap::settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
-                                 const Eigen::Isometry3d& latest, PlaneEstimate& found) const {
+                                 const std::optional<Eigen::Isometry3d>& latest,
+                                 PlaneEstimate& found) const {
     auto& translation = found.translation;
-    const bool rests =
-        (translation.translation - latest.translation()).norm() <= pointOptions_.last_kernel;
+    const bool rests = latest && (translation.translation - latest->translation()).norm() <=
+                                     pointOptions_.last_kernel;
     Eigen::Matrix3Xd unseen(3, 0);
     for (Eigen::Index i = 0; i < translation.unobservedAxes.cols(); ++i) {
         const Eigen::Vector3d axis = translation.unobservedAxes.col(i);
@@ -132,7 +133,7 @@ bool ScanToMap::believes(const PlaneEstimate& found, const PointEstimate& placed
 
 PlaneEstimate ScanToMap::refine(const ScanView& view, const PointEstimate& placed,
                                 const Eigen::Isometry3d& predicted,
-                                const Eigen::Isometry3d& latest) const {
+                                const std::optional<Eigen::Isometry3d>& latest) const {
     const auto byPlanes = [&](const PointEstimate& from) {
         const auto prior =
             planes::Prior::of(from.pose, options_.point_sigma, turnCovariance(view.coarse, from));

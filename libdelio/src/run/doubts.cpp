@@ -98,4 +98,28 @@ std::vector<std::string> warningsOf(const Doubts& doubts) {
                            "drive begins anew");
     return warnings;
 }
+
+std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes,
+                                    const std::vector<RunRow>& rows) {
+    std::vector<std::string> warnings;
+    for (std::size_t i = 0; i < fixes.size();) {
+        const auto where = fixes[i].where;
+        std::size_t end = i;
+        while (end < fixes.size() && fixes[end].where == where) ++end;
+        // A place counts as found when a few scans have confirmed it.
+        constexpr std::size_t kAtFirst = 5;
+        const std::string scans =
+            mrpt::format("scans %zu to %zu", rows[i].scan, rows[end - 1].scan);
+        if (where == Whereabouts::kUnknown && end - i > kAtFirst)
+            warnings.push_back(scans +
+                               " were not found in the stored map: their poses are the "
+                               "odometry's, from where it was found");
+        if (where == Whereabouts::kOutside)
+            warnings.push_back(scans +
+                               " are outside the stored map: their poses are the "
+                               "odometry's, from where it was left");
+        i = end;
+    }
+    return warnings;
+}
 }  // namespace delio::run

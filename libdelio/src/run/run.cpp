@@ -3,11 +3,13 @@
 #include <mrpt/core/format.h>
 
 #include <filesystem>
+#include <limits>
 
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/io/drive_meta.h"
 #include "delio/run/doubts.h"
+#include "delio/run/run_folder.h"
 
 namespace delio::run {
 namespace fs = std::filesystem;
@@ -29,8 +31,16 @@ Run::Run(const Options& options, const RunSettings& settings)
     record_.command = settings.command;
     record_.options = options;
     attach(graph_);
-    if (settings.loops && settings.graph) {
-        loops_ = std::make_shared<LoopCloser>(options.submaps, options.loops, options.closures,
+    if (!settings.storedMap.empty()) {
+        record_.storedMap = settings.storedMap;
+        follower_ = std::make_shared<MapFollower>(
+            MapTracker(std::make_shared<const StoredMap>(storedMapIn(settings.storedMap)),
+                       options.placeSearch, options.localisation));
+        if (settings.initialPose) follower_->expect(*settings.initialPose);
+        attach(follower_);
+    }
+    if (searchesLoops() || settings.map) {
+        loops_ = std::make_shared<LoopCloser>(options.submaps, loopOptions(), options.closures,
                                               settings.folder);
         attach(loops_);
     }
@@ -38,6 +48,15 @@ Run::Run(const Options& options, const RunSettings& settings)
     map_ = std::make_shared<MapListener>(
         map::MapBuilder(options.map, settings.sensorLabel, settings.folder));
     attach(map_);
+}
+
+bool Run::searchesLoops() const { return settings_.loops && settings_.graph; }
+
+/** Where no loops are wanted, no path is long enough to lead back. */
+loops::LoopOptions Run::loopOptions() const {
+    auto loops = record_.options.loops;
+    if (!searchesLoops()) loops.min_path = std::numeric_limits<double>::infinity();
+    return loops;
 }
 
 void Run::warn(const std::string& text) {
@@ -94,12 +113,23 @@ const RunRow& Run::process(const Scan& scan, double read_ms) {
 /** Where there are none, the graph stays as it was. */
 void Run::closeLoops() {
     auto closed = loops_->close(record_.graph, graphOptions(record_.options, settings_));
-    record_.searchedLoops = true;
+    record_.searchedLoops = searchesLoops();
     record_.loop_search_ms = loops_->search_ms();
     record_.loops = std::move(closed.candidates);
     if (closed.accepted == 0) return;
     record_.graph = std::move(closed.graph);
     record_.optimisation = closed.optimisation;
+}
+
+/** Into the stored map's frame, held by every scan that was measured there. */
+void Run::anchor() {
+    record_.fixes = follower_->fixes();
+    if (!record_.isLocalised())
+        return fail("no scan of the drive was found in the map '" + settings_.storedMap +
+                    "': the poses are the odometry's, in the frame of its first scan");
+    for (const auto& warning : warningsOf(record_.fixes, record_.rows)) warn(warning);
+    record_.graph = anchored(record_.graph, record_.fixes);
+    if (settings_.graph) record_.optimisation = record_.graph.optimise(record_.options.graph);
 }
 
 void Run::optimise() {
@@ -111,10 +141,11 @@ void Run::optimise() {
         fail("loops were not closed: " + plainMessage(e));
     }
     try {
-        if (settings_.graph && record_.closedLoops().empty()) {
+        if (settings_.graph && record_.closedLoops().empty() && !follower_) {
             record_.optimisation = graph_->optimise();
             record_.graph = graph_->graph();
         }
+        if (follower_) anchor();
     } catch (const std::exception& e) {
         // What the odometry found is worth keeping.
         fail("the pose graph was not optimised: " + plainMessage(e));
@@ -123,6 +154,16 @@ void Run::optimise() {
     record_.odometry = slam_.trajectory();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
     if (!record_.stampsRise) record_.final.stamps_s.clear();
+}
+
+/** The map to come back to: submaps where the final poses put them. */
+void Run::store() {
+    const auto& submaps = loops_->search();
+    stored_ = MapContent{record_.graph,
+                         {{settings_.drive, 0, record_.odometry.stamps_s}},
+                         submaps.submaps(),
+                         [&](std::size_t i) { return submaps.sketch(i); },
+                         [&](std::size_t i) { return submaps.points(i); }};
 }
 
 evaluation::Comparison Run::compared(const io::Trajectory& vehicle) const {
@@ -162,7 +203,8 @@ void Run::score() {
     const auto& reference = record_.metrics->reference;
     for (const auto& pose : reference) {
         const Eigen::Isometry3d moved = reference.front().inverse() * pose;
-        record_.truth.push_back(truthIsCam0_ ? Tr.inverse() * moved * Tr : moved);
+        record_.truth.push_back(record_.final.poses.front() *
+                                (truthIsCam0_ ? Tr.inverse() * moved * Tr : moved));
     }
 }
 
@@ -173,6 +215,7 @@ void Run::finish(bool complete) {
         fail("no scan could be registered: " + record_.rows[1].report.step.reason);
     record_.complete = complete;
     optimise();
+    if (settings_.map) store();
     if (truth_) score();
 }
 

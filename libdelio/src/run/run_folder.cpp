@@ -65,6 +65,14 @@ void writeScans(const std::vector<RunRow>& rows, const std::string& path) {
 }
 }  // namespace
 
+std::string storedMapIn(const std::string& path) {
+    if (!fs::is_directory(path)) return path;
+    const RunFolder folder(path);
+    if (folder.has(RunFolder::kStoredMap)) return folder.path(RunFolder::kStoredMap);
+    throw Error("'" + path + "' holds no " + RunFolder::kStoredMap +
+                ": is it the folder of a delio-slam run (without --no-map) that has ended?");
+}
+
 std::string RunFolder::path(const char* name) const { return (fs::path(folder_) / name).string(); }
 
 bool RunFolder::has(const char* name) const { return fs::exists(path(name)); }
@@ -102,20 +110,21 @@ void RunFolder::writeTrajectories(const RunRecord& record) const {
     if (record.optimised()) io::writeKitti(inCam0(record.odometry), path(kOdometryCam0));
 }
 
-void RunFolder::writeMap(const RunRecord& record, const map::MapBuilder* map,
-                         const Illustrate& illustrate) const {
+void RunFolder::writeMaps(const RunRecord& record, const RunMaps& maps,
+                          const Illustrate& illustrate) const {
+    if (maps.stored) StoredMap::save(*maps.stored, path(kStoredMap));
     mrpt::maps::CPointsMapXYZI points;
     std::vector<Eigen::Isometry3d> keyframes;
-    if (map) {
-        map::saveSimplemap(map->simplemap(record.final.poses), path(kSimplemap));
-        points = map->points(record.final.poses);
-        keyframes = map->keyPoses(record.final.poses);
+    if (maps.points) {
+        map::saveSimplemap(maps.points->simplemap(record.final.poses), path(kSimplemap));
+        points = maps.points->points(record.final.poses);
+        keyframes = maps.points->keyPoses(record.final.poses);
         map::savePly(points, path(kPly));
     }
     if (illustrate) illustrate(record, points, keyframes, *this);
 }
 
-std::string RunFolder::write(RunRecord record, const map::MapBuilder* map,
+std::string RunFolder::write(RunRecord record, const RunMaps& maps,
                              const Illustrate& illustrate) const {
     std::error_code fault;
     fs::create_directories(folder_, fault);
@@ -128,12 +137,15 @@ std::string RunFolder::write(RunRecord record, const map::MapBuilder* map,
     if (!record.rows.empty()) writeScans(record.rows, path(kScans));
     remove(kLoops);
     if (record.searchedLoops) writeLoopTable(record.loops, path(kLoops));
+    remove(kLocalisation);
+    if (!record.fixes.empty())
+        writeLocalisationTable(record.rows, record.fixes, path(kLocalisation));
     io::replaceTextFile(path(kConfig), [&](std::ostream& out) { record.options.write(out); });
     Stopwatch watch;
-    for (const char* name : {kSimplemap, kPly, kScene, kMapPicture, kTrajectoryPicture})
+    for (const char* name : {kStoredMap, kSimplemap, kPly, kScene, kMapPicture, kTrajectoryPicture})
         remove(name);
     try {
-        writeMap(record, map, illustrate);
+        writeMaps(record, maps, illustrate);
     } catch (const Error& e) {
         // A full disk or a missing renderer: the rest of the results is good all the same.
         if (record.fault.empty()) record.fault = e.what();

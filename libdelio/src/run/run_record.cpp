@@ -19,6 +19,8 @@ std::size_t RunRecord::predicted() const {
         rows.begin(), rows.end(), [](const RunRow& row) { return row.report.step.predicted; }));
 }
 
+bool RunRecord::isLocalised() const { return std::any_of(fixes.begin(), fixes.end(), isAnchor); }
+
 std::vector<std::pair<std::size_t, std::size_t>> RunRecord::closedLoops() const {
     std::vector<std::pair<std::size_t, std::size_t>> nodes;
     for (const auto& loop : loops)

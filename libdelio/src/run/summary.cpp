@@ -136,6 +136,11 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.loop_candidates = record.loops.size();
     summary.loops_closed = record.closedLoops().size();
     summary.loop_search_ms = record.loop_search_ms;
+    summary.stored_map = record.storedMap;
+    for (const auto& fix : record.fixes)
+        ++(fix.where == Whereabouts::kInMap     ? summary.in_map
+           : fix.where == Whereabouts::kOutside ? summary.outside_map
+                                                : summary.not_found_in_map);
     summary.deskewed = countOf(record, &Step::deskewed);
     summary.path_m = record.path_m();
     summary.vertical_correction_deg = record.options.scan().vertical_correction_deg;
@@ -180,6 +185,12 @@ void writeSummary(const Summary& s, const std::string& path) {
         write(yaml, "loop_candidates", s.loop_candidates);
         write(yaml, "loops_closed", s.loops_closed);
         write(yaml, "loop_search_ms", s.loop_search_ms);
+    }
+    if (!s.stored_map.empty()) {
+        write(yaml, "stored_map", s.stored_map);
+        write(yaml, "in_map", s.in_map);
+        write(yaml, "outside_map", s.outside_map);
+        write(yaml, "not_found_in_map", s.not_found_in_map);
     }
     write(yaml, "path_m", s.path_m);
     write(yaml, "vertical_correction_deg", s.vertical_correction_deg);
@@ -228,6 +239,10 @@ Summary readSummary(const std::string& path) {
         s.loop_candidates = node["loop_candidates"].as<std::size_t>(0);
         s.loops_closed = node["loops_closed"].as<std::size_t>(0);
         s.loop_search_ms = node["loop_search_ms"].as<double>(0);
+        s.stored_map = node["stored_map"].as<std::string>("");
+        s.in_map = node["in_map"].as<std::size_t>(0);
+        s.outside_map = node["outside_map"].as<std::size_t>(0);
+        s.not_found_in_map = node["not_found_in_map"].as<std::size_t>(0);
         s.deskewed = node["deskewed"].as<std::size_t>();
         s.path_m = node["path_m"].as<double>();
         s.vertical_correction_deg = node["vertical_correction_deg"].as<double>();

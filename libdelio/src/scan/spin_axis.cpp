@@ -77,4 +77,8 @@ Eigen::Matrix3f uprightOf(const Eigen::Isometry3d& sensorPose, const Eigen::Matr
     if (!mounted.isIdentity()) return mounted;
     return uprightOf(points).value_or(mounted);
 }
+
+Eigen::Vector3d upIn(const Eigen::Isometry3d& sensorPose, const Eigen::Matrix3Xf& points) {
+    return sensorPose.linear() * uprightOf(sensorPose, points).row(2).transpose().cast<double>();
+}
 }  // namespace delio::scan

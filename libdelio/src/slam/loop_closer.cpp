@@ -6,25 +6,9 @@
 #include <chrono>
 
 #include "delio/core/stopwatch.h"
-#include "delio/scan/sample.h"
 #include "delio/scan/spin_axis.h"
 
 namespace delio {
-namespace {
-/** What stands still, in the vehicle's frame. A submap has many scans: of each a part will do. */
-Eigen::Matrix3Xf pointsFor(const SlamScan& scan) {
-    constexpr Eigen::Index kMost = 20000;
-    const auto& used = scan.step.used;
-    Eigen::Matrix3Xf still(3, used.points.cols());
-    Eigen::Index count = 0;
-    for (Eigen::Index i = 0; i < used.points.cols(); ++i)
-        if (used.dynamic.empty() || !used.dynamic[static_cast<std::size_t>(i)])
-            still.col(count++) = used.points.col(i);
-    still.conservativeResize(3, count);
-    return scan.scan.sensorPose.cast<float>() * scan::sample(still, kMost);
-}
-}  // namespace
-
 LoopCloser::LoopCloser(const loops::SubmapOptions& submaps, const loops::LoopOptions& loops,
                        const loops::ClosureOptions& closures, const std::string& folder)
     : builder_(submaps), search_(loops, closures, folder) {}
@@ -32,13 +16,13 @@ LoopCloser::LoopCloser(const loops::SubmapOptions& submaps, const loops::LoopOpt
 void LoopCloser::add(const SlamScan& scan) {
     const auto& points = scan.step.used.points;
     if (!upIsKnown_ && points.cols() > 0) {
-        const Eigen::Isometry3d& sensor = scan.scan.sensorPose;
-        up_ = sensor.linear() * scan::uprightOf(sensor, points).row(2).transpose().cast<double>();
+        up_ = scan::upIn(scan.scan.sensorPose, points);
         upIsKnown_ = true;
     }
     // Where a scan was taken that could not be registered is a guess.
-    auto ended = builder_.add(scan.node, scan.increment,
-                              scan.step.predicted ? Eigen::Matrix3Xf(3, 0) : pointsFor(scan), up_);
+    auto ended =
+        builder_.add(scan.node, scan.increment,
+                     scan.step.predicted ? Eigen::Matrix3Xf(3, 0) : stillPoints(scan), up_);
     end(std::move(ended));
     poses_.push_back(scan.pose);
     searchNext();

@@ -66,8 +66,14 @@ void Options::adaptTo(const io::DriveMeta& meta) {
 }
 
 StageList Options::allStages() {
-    StageList all{{"odometry", &method}, {"graph", &graph}, {"map", &map},
-                  {"submaps", &submaps}, {"loops", &loops}, {"closures", &closures}};
+    StageList all{{"odometry", &method},
+                  {"graph", &graph},
+                  {"map", &map},
+                  {"submaps", &submaps},
+                  {"loops", &loops},
+                  {"closures", &closures},
+                  {"place_search", &placeSearch},
+                  {"localisation", &localisation}};
     for (const auto& stage : stagesOf(planes)) all.push_back(stage);
     for (const auto& stage : stagesOf(paper)) all.push_back(stage);
     return all;
@@ -80,6 +86,8 @@ ConstStageList Options::stages() const {
     used.emplace_back("submaps", &submaps);
     used.emplace_back("loops", &loops);
     used.emplace_back("closures", &closures);
+    used.emplace_back("place_search", &placeSearch);
+    used.emplace_back("localisation", &localisation);
     return used;
 }
 

@@ -48,7 +48,7 @@ TEST_F(ToyRun, EveryFileIsReadBack) {
     run.finish(true);
     const auto& record = run.record();
     const RunFolder folder(out_);
-    EXPECT_EQ(folder.write(record, run.map()), "");
+    EXPECT_EQ(folder.write(record, run.maps()), "");
     EXPECT_EQ(test::namesIn(out_), kNames);
 
     expectSamePoses(folder.trajectory().poses, record.final.poses);
@@ -99,7 +99,8 @@ TEST_F(ToyRun, TheFilesOfThePaperAreReadBackToo) {
     run::Run run(options, settings);
     process(run);
     run.finish(true);
-    EXPECT_EQ(run.map(), nullptr);
+    EXPECT_EQ(run.maps().points, nullptr);
+    EXPECT_EQ(run.maps().stored, nullptr);
     const RunFolder folder(out_);
     EXPECT_EQ(folder.write(run.record()), "");
     EXPECT_FALSE(folder.has(RunFolder::kPly));
@@ -117,7 +118,7 @@ TEST_F(ToyRun, FilesOfAnEarlierRunDoNotStay) {
     process(first);
     first.finish(true);
     const RunFolder folder(out_);
-    folder.write(first.record(), first.map());
+    folder.write(first.record(), first.maps());
     for (const char* name : {"map.3Dscene", "map.png", "trajectory.png", "mine.txt"})
         test::writeText(fs::path(out_) / name, "of an earlier run");
 
@@ -152,10 +153,10 @@ TEST_F(ToyRun, AFolderThatIsNotWholeHasNoSummary) {
     process(run);
     run.finish(true);
     const RunFolder folder(out_);
-    folder.write(run.record(), run.map());
+    folder.write(run.record(), run.maps());
     fs::remove(folder.path(RunFolder::kGraph));
     fs::create_directory(folder.path(RunFolder::kGraph));
-    EXPECT_THROW(folder.write(run.record(), run.map()), Error);
+    EXPECT_THROW(folder.write(run.record(), run.maps()), Error);
     EXPECT_FALSE(folder.has(RunFolder::kSummary));
     EXPECT_THROW(folder.summary(), Error);
 }
@@ -173,13 +174,13 @@ TEST_F(ToyRun, WithoutItsPicturesAFolderIsWholeButForThem) {
         EXPECT_TRUE(into.has(RunFolder::kPly));
         throw Error("no renderer");
     };
-    EXPECT_EQ(folder.write(run.record(), run.map(), draw), "no renderer");
+    EXPECT_EQ(folder.write(run.record(), run.maps(), draw), "no renderer");
     EXPECT_EQ(folder.summary().fault, "no renderer");
     EXPECT_TRUE(folder.summary().complete);
     // What ended the run is told before what is missing.
     run.fail("cut off");
     run.fail("later");
-    EXPECT_EQ(folder.write(run.record(), run.map(), draw), "cut off");
+    EXPECT_EQ(folder.write(run.record(), run.maps(), draw), "cut off");
     EXPECT_EQ(folder.summary().fault, "cut off");
 }
 

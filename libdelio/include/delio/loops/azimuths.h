@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "delio/surfaces/normals.h"
@@ -10,7 +11,14 @@ namespace delio::loops {
  *  side), smoothed. */
 class Azimuths {
  public:
+    static constexpr Eigen::Index kBins = 720;  //!< of half a turn
+
     explicit Azimuths(const surfaces::SurfaceNormals& surfaces);
+    /** Of what weights() of another one gave. */
+    explicit Azimuths(Eigen::VectorXd weights) : weights_(std::move(weights)) {}
+
+    /** Of each direction. */
+    const Eigen::VectorXd& weights() const { return weights_; }
 
     /** Rotations about z (radians) of `other`, by which it looks most like this one, the best
      * first: the highest `most` maxima of the circular correlation within `reach` of `expected`,

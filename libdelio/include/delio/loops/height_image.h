@@ -13,6 +13,9 @@ class HeightImage {
     static constexpr double kCell_m = 0.5;
 
     explicit HeightImage(const Eigen::Matrix3Xf& points);
+    /** Of what cells(), bands(), grounds() and heights() of another one gave. */
+    HeightImage(Eigen::Matrix2Xd cells, std::vector<std::uint8_t> bands, Eigen::Matrix2Xd grounds,
+                std::vector<double> heights);
 
     /** Where something stands; x and y of the cell's centre, in metres. */
     const Eigen::Matrix2Xd& cells() const { return cells_; }
@@ -21,6 +24,8 @@ class HeightImage {
     double groundAt(double x, double y) const;
     /** Centres of the blocks whose ground was seen. */
     const Eigen::Matrix2Xd& grounds() const { return grounds_; }
+    /** Of that ground, metres. */
+    const std::vector<double>& heights() const { return heights_; }
 
  private:
     Eigen::Matrix2Xd cells_, grounds_;
@@ -28,6 +33,9 @@ class HeightImage {
     std::vector<double> heights_;
     scan::VoxelIndex groundIndex_;
 };
+
+/** Of a levelled cloud the points of what stands on the ground. */
+Eigen::Matrix3Xd aboveGround(const Eigen::Matrix3Xf& points);
 
 /** Where the other image, turned by `yaw`, lies on this one. */
 struct Shift {

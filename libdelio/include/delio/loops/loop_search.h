@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "delio/loops/closure.h"
+#include "delio/loops/sketch.h"
 #include "delio/loops/submap.h"
 
 namespace delio::loops {
@@ -65,6 +66,9 @@ class LoopSearch {
     const std::vector<LoopCandidate>& candidates() const { return candidates_; }
     /** Without their points. */
     const std::vector<Submap>& submaps() const { return submaps_; }
+    const Sketch& sketch(std::size_t submap) const;
+    /** Of a submap; from the disk. */
+    Eigen::Matrix3Xf points(std::size_t submap) const;
     const LoopOptions& options() const { return options_; }
 
  private:
@@ -80,8 +84,4 @@ class LoopSearch {
     std::vector<LoopCandidate> candidates_;
     std::unique_ptr<Places> places_;
 };
-
-/** The level frames of submaps, with these poses of the graph's nodes. */
-std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,
-                                           const std::vector<Eigen::Isometry3d>& poses);
 }  // namespace delio::loops

@@ -41,6 +41,10 @@ struct Submap {
     Eigen::Matrix3Xf points;  //!< one in `spacing`
 };
 
+/** The level frames of submaps, with these poses of the graph's nodes. */
+std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,
+                                           const std::vector<Eigen::Isometry3d>& poses);
+
 /** Cuts a drive into submaps: one ends after so much path, or as far from where it began as
  *  `straight`, whichever comes first, so that small loops close, too; and before a gap. */
 class SubmapBuilder {

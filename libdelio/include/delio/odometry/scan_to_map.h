@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "delio/odometry/scan_view.h"
@@ -59,10 +60,17 @@ class ScanToMap {
      *  points fit there. An axis that the planes see no better than the
      *  points stays where these put it, if they see it, else where the prediction does. Where
      * points alone say that the scan stands where the map's `latest` does it is named as
-     * unobserved, too: a sensor's own rings say that anywhere. */
+     * unobserved, too: a sensor's own rings say that anywhere. (None: the map is another drive's.)
+     */
     planes::PlaneEstimate refine(const ScanView& view, const points::PointEstimate& placed,
                                  const Eigen::Isometry3d& predicted,
-                                 const Eigen::Isometry3d& latest) const;
+                                 const std::optional<Eigen::Isometry3d>& latest) const;
+
+    /** Share of the points that lie within `distance` (metres) of one of the map's, 0 to 1. */
+    double shareAt(const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
+                   double distance) const {
+        return points::shareAt(points_, points, pose, distance);
+    }
 
  private:
     bool believes(const planes::PlaneEstimate& found, const points::PointEstimate& placed) const;
@@ -71,7 +79,8 @@ class ScanToMap {
     planes::PlaneEstimate byPoints(const points::PointEstimate& placed,
                                    const Eigen::Matrix3d& turnCovariance) const;
     void settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
-                          const Eigen::Isometry3d& latest, planes::PlaneEstimate& found) const;
+                          const std::optional<Eigen::Isometry3d>& latest,
+                          planes::PlaneEstimate& found) const;
 
     ScanToMapOptions options_;
     planes::PlaneRegistrationOptions planeOptions_;

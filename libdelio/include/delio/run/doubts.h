@@ -36,4 +36,8 @@ std::string weakAxesOf(const Doubts& doubts);
 
 /** A line each of what a user has to know of them: nothing for a few scans. */
 std::vector<std::string> warningsOf(const Doubts& doubts);
+
+/** The same of a drive in a stored map: where it was not in it. */
+std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes,
+                                    const std::vector<RunRow>& rows);
 }  // namespace delio::run

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "delio/run/run_maps.h"
 #include "delio/run/run_record.h"
 #include "delio/slam/graph_builder.h"
 #include "delio/slam/loop_closer.h"
+#include "delio/slam/map_follower.h"
 #include "delio/slam/map_listener.h"
 
 namespace delio::run {
@@ -15,11 +17,17 @@ struct RunSettings {
     std::string profile = "accurate";  //!< that the options were made of, for the summary
     std::vector<std::string> command;  //!< for the summary
     std::string sensorLabel = "lidar";
+    std::string drive = "drive";  //!< its name in the stored map
     /** Where keyframes are put aside while the drive goes on; empty: the system's folder for
      *  temporary files. */
     std::string folder;
     bool graph = true;  //!< false: the chain of increments alone, not optimised
     bool map = true;    //!< false: memory grows by the poses alone
+    /** A stored map in which the drive is localised; its file, or the folder of the run that made
+     *  it. Empty: none. */
+    std::string storedMap;
+    /** Of the vehicle at the first scan in that map, if it is known to some metres. */
+    std::optional<Eigen::Isometry3d> initialPose;
     bool loops = true;  //!< places that the drive comes back to are searched for; with `graph`
     /** Told of every warning as it comes. */
     std::function<void(const std::string&)> onWarning;
@@ -52,12 +60,18 @@ class Run {
     void finish(bool complete);
 
     const RunRecord& record() const { return record_; }
-    /** The map; null where none is made. */
-    const map::MapBuilder* map() const { return map_ ? &map_->builder() : nullptr; }
+    /** Of a run that is finished; they live as long as it does. */
+    RunMaps maps() const {
+        return {map_ ? &map_->builder() : nullptr, stored_ ? &*stored_ : nullptr};
+    }
 
  private:
+    bool searchesLoops() const;
+    loops::LoopOptions loopOptions() const;
     void optimise();
     void closeLoops();
+    void anchor();
+    void store();
     void score();
     evaluation::Comparison compared(const io::Trajectory& vehicle) const;
 
@@ -66,7 +80,9 @@ class Run {
     Slam slam_;
     std::shared_ptr<GraphBuilder> graph_;
     std::shared_ptr<MapListener> map_;
-    std::shared_ptr<LoopCloser> loops_;
+    std::shared_ptr<MapFollower> follower_;
+    std::shared_ptr<LoopCloser> loops_;  //!< keeps the submaps, too
+    std::optional<MapContent> stored_;
     std::optional<io::Trajectory> truth_;
     bool truthIsCam0_ = true, truthWasAskedFor_ = false;
 };

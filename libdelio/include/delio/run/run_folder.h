@@ -3,13 +3,18 @@
 #include <string>
 
 #include "delio/io/scan_table.h"
-#include "delio/map/map_builder.h"
+#include "delio/run/localisation_table.h"
 #include "delio/run/loop_table.h"
+#include "delio/run/run_maps.h"
 #include "delio/run/run_record.h"
 #include "delio/run/summary.h"
 
 namespace delio::run {
 class RunFolder;
+
+/** The file of a stored map: `path` itself, or the one in the folder of a run. Error where there is
+ *  none. */
+std::string storedMapIn(const std::string& path);
 
 /** Draws what a run found into its folder: RunFolder::kScene, kMapPicture (where there are points)
  *  and kTrajectoryPicture. delio::picture has one; without, there are no pictures. */
@@ -30,9 +35,11 @@ class RunFolder {
     static constexpr const char* kMrptGraph = "posegraph.graph";
     static constexpr const char* kScans = "scans.csv";
     static constexpr const char* kLoops = "loops.csv";  //!< where loops were searched for
+    static constexpr const char* kLocalisation = "localisation.csv";  //!< in a stored map
     static constexpr const char* kConfig = "config.ini";
     static constexpr const char* kSimplemap = "map.simplemap";
     static constexpr const char* kPly = "map.ply";
+    static constexpr const char* kStoredMap = "map.delio";
     static constexpr const char* kScene = "map.3Dscene";
     static constexpr const char* kMapPicture = "map.png";
     static constexpr const char* kTrajectoryPicture = "trajectory.png";
@@ -45,10 +52,10 @@ class RunFolder {
     bool has(const char* name) const;
 
     /** Writes all that the record has (making the folder where it is not there); files of an
-     * earlier run that this one does not have are removed. `map`: null for none. Returns what is
+     * earlier run that this one does not have are removed. Returns what is
      * missing: the record's fault, or why map or pictures could not be made; empty if nothing.
      * Where anything else cannot be written, Error, and there is no summary. */
-    std::string write(RunRecord record, const map::MapBuilder* map = nullptr,
+    std::string write(RunRecord record, const RunMaps& maps = {},
                       const Illustrate& illustrate = {}) const;
 
     /** What is in the folder. Each throws Error where the file is missing or malformed. */
@@ -59,6 +66,10 @@ class RunFolder {
     graph::PoseGraph graph() const;
     io::ScanTable scans() const { return io::readScanTable(path(kScans)); }
     std::vector<LoopRow> loops() const { return readLoopTable(path(kLoops)); }
+    std::vector<LocalisationRow> localisation() const {
+        return readLocalisationTable(path(kLocalisation));
+    }
+    StoredMap storedMap() const { return StoredMap(path(kStoredMap)); }
     /** The options that were in effect. */
     Options options() const;
     Summary summary() const { return readSummary(path(kSummary)); }
@@ -66,8 +77,8 @@ class RunFolder {
  private:
     void remove(const char* name) const;
     void writeTrajectories(const RunRecord& record) const;
-    void writeMap(const RunRecord& record, const map::MapBuilder* map,
-                  const Illustrate& illustrate) const;
+    void writeMaps(const RunRecord& record, const RunMaps& maps,
+                   const Illustrate& illustrate) const;
 
     std::string folder_;
 };

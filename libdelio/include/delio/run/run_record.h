@@ -7,6 +7,7 @@
 #include "delio/evaluation/comparison.h"
 #include "delio/graph/pose_graph.h"
 #include "delio/io/trajectory.h"
+#include "delio/localisation/anchored_graph.h"
 #include "delio/loops/loop_search.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"
@@ -36,12 +37,15 @@ struct RunRecord {
     std::string fault;                  //!< what ended the run early, or is missing in it
     std::vector<std::string> warnings;  //!< a line each
 
-    /** Poses of the vehicle. `final`: after the pose graph. */
+    /** Poses of the vehicle. `final`: after the pose graph; in the frame of the stored map, if the
+     *  drive was found in one. */
     io::Trajectory odometry, final;
     bool stampsRise = true;  //!< false: the final trajectory has no times
     graph::PoseGraph graph;
     graph::OptimisationResult optimisation;
     double optimise_ms = 0;
+    std::string storedMap;      //!< that the drive was localised in; empty: none
+    std::vector<MapFix> fixes;  //!< of every scan, where there is one
     bool searchedLoops = false;
     std::vector<loops::LoopCandidate> loops;  //!< and what became of them
     double loop_search_ms = 0;                //!< beside the drive, and after it
@@ -56,6 +60,7 @@ struct RunRecord {
     /** The chain alone is what the odometry's poses were made of: then nothing is optimised. */
     bool optimised() const { return graph.edges().size() + 1 > graph.poses().size(); }
     std::size_t predicted() const;
+    bool isLocalised() const;
     /** Pairs of nodes, the earlier first. */
     std::vector<std::pair<std::size_t, std::size_t>> closedLoops() const;
     double path_m() const;

@@ -26,6 +26,8 @@ struct Summary {
     bool searched_loops = false;
     std::size_t loop_candidates = 0, loops_closed = 0;
     double loop_search_ms = 0;  //!< beside the drive, and after it
+    std::string stored_map;     //!< that it was localised in; empty: none
+    std::size_t in_map = 0, outside_map = 0, not_found_in_map = 0;  //!< scans
     double path_m = 0;
     double vertical_correction_deg = 0;
     double ms_per_scan = 0;         //!< reading, odometry, the graph's window, submaps

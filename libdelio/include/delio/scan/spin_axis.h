@@ -21,4 +21,7 @@ std::optional<Eigen::Matrix3f> uprightOf(const Eigen::Matrix3Xf& points);
 /** The same by the sensor's pose on the vehicle where the source knows that it is tilted, else
  * about the axis that it spins about; the identity where neither says anything. */
 Eigen::Matrix3f uprightOf(const Eigen::Isometry3d& sensorPose, const Eigen::Matrix3Xf& points);
+
+/** The unit vector that points up, in the vehicle's frame. */
+Eigen::Vector3d upIn(const Eigen::Isometry3d& sensorPose, const Eigen::Matrix3Xf& points);
 }  // namespace delio::scan

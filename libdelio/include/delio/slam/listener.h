@@ -17,6 +17,10 @@ struct SlamScan {
     Eigen::Isometry3d pose;
 };
 
+/** What stands still of a scan, in the vehicle's frame: a part of the points, which many scans
+ *  together make up for. */
+Eigen::Matrix3Xf stillPoints(const SlamScan& scan);
+
 /** What is done with an odometry's steps: a pose graph, a map, a window. */
 class SlamListener {
  public:

@@ -7,6 +7,7 @@
 
 #include "delio/graph/pose_graph.h"
 #include "delio/io/drive_meta.h"
+#include "delio/localisation/map_tracker.h"
 #include "delio/loops/loop_search.h"
 #include "delio/map/map_builder.h"
 #include "delio/odometry/make_odometry.h"
@@ -20,6 +21,8 @@ struct Options : public OdometryOptions {
     loops::SubmapOptions submaps;
     loops::LoopOptions loops;
     loops::ClosureOptions closures;
+    PlaceSearchOptions placeSearch;
+    LocalisationOptions localisation;
 
     /** share/config/NAME.ini, which travels inside the library. Error for an unknown name. */
     static Options ofProfile(const std::string& name);

@@ -1,0 +1,88 @@
+#pragma once
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "delio/core/increment.h"
+#include "delio/localisation/local_map.h"
+#include "delio/localisation/place_search.h"
+
+namespace delio {
+struct LocalisationOptions : public StageOptions {
+    double min_share = 0.5;
+    double drift = 0.01;
+    double search_spacing = 5;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Where a vehicle is with respect to a map. */
+enum class Whereabouts {
+    kUnknown,  //!< not found yet
+    kInMap,
+    kOutside  //!< it has left the map: the pose is the odometry's since then
+};
+
+/** What is known of the vehicle's place in a stored map at a scan. */
+struct MapFix {
+    Whereabouts where = Whereabouts::kUnknown;
+    Increment vehicle;      //!< its pose in the map's frame; where unknown, nothing
+    bool measured = false;  //!< registered to the map, otherwise from the odometry
+    bool searched = false;  //!< all places were compared
+    double share = 0;       //!< of what stands in the scan so much stands in the map
+    std::string reason;     //!< why it was not measured
+};
+
+/** Follows a vehicle through a stored map by the steps of its odometry, each scan registered to the
+ *  map: finds it without a guess, says when it has left the map, goes on by the odometry and finds
+ *  it again when it comes back. A place counts as found when the scans after it confirm it. */
+class MapTracker {
+ public:
+    MapTracker(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& search,
+               const LocalisationOptions& options);
+
+    /** The vehicle's pose in the map's frame at the next scan, if it is known to some metres. */
+    void expect(const Eigen::Isometry3d& vehicle);
+
+    /** The next scan: the vehicle's increment since the one before; what stands still of it, in the
+     *  vehicle's frame; the unit vector that points up there. */
+    MapFix add(const Increment& increment, const Eigen::Matrix3Xf& points,
+               const Eigen::Vector3d& up);
+    /** Takes back the scan that was added last. */
+    void undo() noexcept;
+
+    const StoredMap& map() const { return *map_; }
+
+ private:
+    struct Seen {
+        Eigen::Isometry3d pose;  //!< by the odometry
+        Eigen::Matrix3Xf points;
+    };
+    struct State {
+        Whereabouts where = Whereabouts::kUnknown;
+        std::optional<Increment> vehicle;  //!< in the map, as far as it is known
+        unsigned confirmed = 0;            //!< scans in a row that agree with the map
+        unsigned missed = 0;               //!< and that do not
+        double unseen_m = 0;               //!< path since it was measured
+        double unsearched_m = 0;           //!< path since it was searched for
+        std::size_t scans = 0;
+        Eigen::Isometry3d odometry = Eigen::Isometry3d::Identity();
+        std::deque<Seen> recent;  //!< the latest last
+    };
+    void remember(const Eigen::Matrix3Xf& points);
+    bool track(const Eigen::Matrix3Xf& points, const Eigen::Matrix3d& level, MapFix& fix);
+    void judge(bool agrees);
+    bool isTimeToSearch() const;
+    void search(const Eigen::Matrix3d& level, MapFix& fix);
+    std::vector<std::size_t> nearSubmaps(double reach_m) const;
+    double reach_m() const;
+
+    std::shared_ptr<const StoredMap> map_;
+    LocalisationOptions options_;
+    PlaceSearch search_;
+    LocalMap local_;
+    State now_, before_;
+};
+}  // namespace delio

@@ -1,0 +1,63 @@
+#pragma once
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "delio/localisation/stored_map.h"
+#include "delio/loops/closure.h"
+#include "delio/loops/free_space.h"
+#include "delio/loops/place_index.h"
+
+namespace delio {
+struct PlaceSearchOptions : public StageOptions {
+    double min_overlap = 0.5;
+    double max_bare = 0.2;
+    double rival = 0.8;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** A place of the map that a cloud was recognised at, or why none was. */
+struct FoundPlace {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< the cloud's frame to the map's
+    double overlap = 0;  //!< of what stands in the cloud so much stands in the map
+    double bare = 0;     //!< of the walls of one so much is free space of the other
+    double rival = 0;    //!< overlap at the best place elsewhere
+    std::size_t submap = 0;
+    std::string reason;  //!< empty: it was found
+};
+
+/** Finds a levelled cloud in a stored map, knowing nothing of where it was taken: all places and
+ *  headings are compared by what stands on the ground (PlaceIndex), the best ones in fine, rotation
+ *  first, then registered; and verified as loops are: what stands has to meet, walls must not lie
+ *  on what the other saw as free space, and no place elsewhere may look as good. */
+class PlaceSearch {
+ public:
+    PlaceSearch(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& options);
+
+    /** `cloud`: z up, metres. */
+    FoundPlace find(const Eigen::Matrix3Xf& cloud);
+    /** Among some submaps only. */
+    FoundPlace find(const Eigen::Matrix3Xf& cloud, const std::vector<std::size_t>& submaps);
+
+ private:
+    /** What a cloud is registered to and compared with. */
+    struct Ground {
+        std::size_t submap;
+        loops::RegistrableSubmap map;
+        loops::FreeSpace free;
+    };
+    const loops::Sketch& sketch(std::size_t submap);
+    std::shared_ptr<const Ground> ground(std::size_t submap);
+    FoundPlace verified(const std::vector<loops::Sighting>& sightings,
+                        const Eigen::Matrix3Xf& cloud, const loops::Sketch& seen);
+
+    std::shared_ptr<const StoredMap> map_;
+    PlaceSearchOptions options_;
+    std::vector<loops::Sketch> sketches_;
+    loops::PlaceIndex index_;
+    std::deque<std::shared_ptr<const Ground>> recent_;  //!< the latest first
+};
+}  // namespace delio

@@ -1,0 +1,79 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "delio/graph/pose_graph.h"
+#include "delio/loops/sketch.h"
+#include "delio/loops/submap.h"
+
+namespace delio {
+/** A drive that a map was made of: its scans are nodes of the map's graph, one after the other. */
+struct StoredDrive {
+    std::string name;
+    std::size_t firstNode = 0;
+    std::vector<double> stamps_s;  //!< of each of its scans
+};
+
+/** What a stored map is written of. Poses are the vehicle's in the map's frame, which is that of
+ *  the first scan of its first drive. */
+struct MapContent {
+    graph::PoseGraph graph;
+    std::vector<StoredDrive> drives;
+    std::vector<loops::Submap> submaps;  //!< without their points
+    /** Of each of them. */
+    std::function<loops::Sketch(std::size_t)> sketch;
+    std::function<Eigen::Matrix3Xf(std::size_t)> points;
+};
+
+/** A map to come back to: the drives' submaps, the pose graph that holds them together, and what
+ *  places are found again by. A file, with a version, each part with a checksum; parts are read
+ *  when they are asked for, by any thread. Coordinates are rounded to 5 mm. */
+class StoredMap {
+ public:
+    static constexpr std::uint32_t kVersion = 1;
+
+    /** Throws Error where the file is missing, no such map, of another version or cut off. */
+    explicit StoredMap(const std::string& path);
+    ~StoredMap();
+
+    const std::string& path() const { return path_; }
+    const graph::PoseGraph& graph() const { return graph_; }
+    const std::vector<StoredDrive>& drives() const { return drives_; }
+    const std::vector<loops::Submap>& submaps() const { return submaps_; }
+    /** Of each submap: maps its coordinates to the map's. */
+    const std::vector<Eigen::Isometry3d>& levelFrames() const { return level_; }
+
+    /** Throw Error where that part of the file is damaged. */
+    loops::Sketch sketch(std::size_t submap) const;
+    Eigen::Matrix3Xf points(std::size_t submap) const;
+
+    /** As it would be written once more; refers to this map. */
+    MapContent content() const;
+
+    /** Writes a map: under a temporary name, so that what stands under `path` is always whole.
+     *  Error where that cannot be done. */
+    static void save(const MapContent& content, const std::string& path);
+
+ private:
+    struct Part {
+        std::uint64_t offset = 0, bytes = 0, unpacked = 0;
+        std::uint32_t checksum = 0;
+    };
+    class Writer;
+    std::vector<std::uint8_t> read(const Part& part) const;
+    void readIndex(const Part& index);
+    [[noreturn]] void damaged(const std::string& how) const;
+
+    std::string path_;
+    int file_ = -1;
+    std::uint64_t size_ = 0;
+    graph::PoseGraph graph_;
+    std::vector<StoredDrive> drives_;
+    std::vector<loops::Submap> submaps_;
+    std::vector<Eigen::Isometry3d> level_;
+    std::vector<Part> sketches_, clouds_;
+};
+}  // namespace delio

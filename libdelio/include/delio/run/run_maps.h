@@ -1,0 +1,11 @@
+#pragma once
+#include "delio/localisation/stored_map.h"
+#include "delio/map/map_builder.h"
+
+namespace delio::run {
+/** The maps that a run made; null: none. */
+struct RunMaps {
+    const map::MapBuilder* points = nullptr;
+    const MapContent* stored = nullptr;  //!< to come back to
+};
+}  // namespace delio::run

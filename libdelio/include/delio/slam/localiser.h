@@ -1,0 +1,44 @@
+#pragma once
+#include <mrpt/obs/CObservation.h>
+#include <mrpt/poses/CPose3DPDFGaussian.h>
+
+#include <memory>
+#include <optional>
+
+#include "delio/odometry/make_odometry.h"
+#include "delio/slam/map_follower.h"
+#include "delio/slam/slam.h"
+
+namespace delio {
+/** What a Localiser says of one scan. */
+struct Localisation {
+    Step step;   //!< of the odometry
+    MapFix fix;  //!< where that is in the map
+};
+
+/** Localises a vehicle in a stored map, scan by scan. */
+class Localiser {
+ public:
+    /** `options`: of the odometry that goes before. Error where they contradict each other. */
+    explicit Localiser(std::shared_ptr<const StoredMap> map, const OdometryOptions& options = {},
+                       const PlaceSearchOptions& search = {},
+                       const LocalisationOptions& localisation = {});
+
+    /** Where the vehicle is at the next scan (its frame to the map's), if that is known to a few
+     *  metres: then it is looked for there only. */
+    void expect(const Eigen::Isometry3d& vehicle);
+
+    Localisation process(const Scan& scan);
+
+    /** The same for who works with MRPT: a LiDAR observation (see io::decodeObservation) with its
+     *  timestamp in; the vehicle's pose in the map's frame out, or nothing while it is not found.
+     *  Throws Error for an observation that is no LiDAR scan. */
+    std::optional<mrpt::poses::CPose3DPDFGaussian> process(
+        const mrpt::obs::CObservation& observation);
+
+ private:
+    std::shared_ptr<MapFollower> follower_;
+    Slam slam_;
+    std::size_t observations_ = 0;
+};
+}  // namespace delio

@@ -1,0 +1,30 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "delio/localisation/map_tracker.h"
+#include "delio/slam/listener.h"
+
+namespace delio {
+/** Follows a drive through a stored map. */
+class MapFollower : public SlamListener {
+ public:
+    explicit MapFollower(MapTracker tracker) : tracker_(std::move(tracker)) {}
+
+    /** See MapTracker. */
+    void expect(const Eigen::Isometry3d& vehicle) { tracker_.expect(vehicle); }
+
+    const char* name() const override { return "localisation"; }
+    void add(const SlamScan& scan) override;
+    void undo() noexcept override;
+
+    /** Of every scan. */
+    const std::vector<MapFix>& fixes() const { return fixes_; }
+    const StoredMap& map() const { return tracker_.map(); }
+
+ private:
+    MapTracker tracker_;
+    std::vector<MapFix> fixes_;
+    std::optional<Eigen::Vector3d> up_;  //!< in the vehicle's frame, once it is known
+};
+}  // namespace delio

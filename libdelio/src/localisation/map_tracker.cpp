@@ -1,0 +1,194 @@
+#include "delio/localisation/map_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "delio/loops/height_image.h"
+#include "delio/scan/spin_axis.h"
+#include "delio/scan/voxel_grid.h"
+
+namespace delio {
+namespace {
+constexpr unsigned kConfirmed = 3;  // scans that have to agree before a place counts as found
+constexpr unsigned kPatience = 5;   // scans that may disagree before the map counts as left
+constexpr double kFine_m = 0.25, kThinned_m = 0.5, kCoarse_m = 1;
+
+ScanView viewOf(const Eigen::Matrix3Xf& points) {
+    ScanView view;
+    view.fine = scan::voxelCentroids(points, kFine_m);
+    view.thinned = scan::voxelCentroids(view.fine, kThinned_m).cast<double>();
+    view.coarse = scan::firstOfVoxels(view.fine, kCoarse_m).cast<double>();
+    return view;
+}
+
+Eigen::Isometry3d turned(const Eigen::Matrix3d& rotation) {
+    return isometry(rotation, Eigen::Vector3d::Zero());
+}
+
+double sigma_m(const Increment& pose) {
+    return std::sqrt(pose.covariance.diagonal().head<3>().maxCoeff());
+}
+}  // namespace
+
+std::vector<OptionField> LocalisationOptions::fields() const {
+    using Me = LocalisationOptions;
+    return {{"min_share", &Me::min_share,
+             "share of what stands in a scan that has to stand in the map, too", 0, 1},
+            {"drift", &Me::drift,
+             "share of the path by which the odometry may be off outside the map (standard "
+             "deviation)",
+             1e-6, 1},
+            {"search_spacing", &Me::search_spacing,
+             "m; who is not in the map is searched for each time it has driven so far", 0.1, 1e4}};
+}
+
+MapTracker::MapTracker(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& search,
+                       const LocalisationOptions& options)
+    : map_(std::move(map)), options_(options), search_(map_, search), local_(map_) {}
+
+void MapTracker::expect(const Eigen::Isometry3d& vehicle) {
+    constexpr double kOff_m = 3, kOff_rad = 0.1;
+    now_.vehicle = Increment{vehicle, Matrix6::Zero()};
+    now_.vehicle->covariance.diagonal() << Eigen::Vector3d::Constant(kOff_m * kOff_m),
+        Eigen::Vector3d::Constant(kOff_rad * kOff_rad);
+}
+
+void MapTracker::undo() noexcept { now_ = std::move(before_); }
+
+/** The latest scans, to be searched for together. */
+void MapTracker::remember(const Eigen::Matrix3Xf& points) {
+    constexpr std::size_t kMost = 5;
+    constexpr double kSpacing_m = 0.2, kRadius_m = 50;
+    Eigen::Matrix3Xf near(3, points.cols());
+    Eigen::Index count = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        if (points.col(i).norm() <= kRadius_m) near.col(count++) = points.col(i);
+    now_.recent.push_back({now_.odometry, scan::firstOfVoxels(near.leftCols(count), kSpacing_m)});
+    if (now_.recent.size() > kMost) now_.recent.pop_front();
+}
+
+/** Registers the scan to the map, from where the odometry puts it. */
+bool MapTracker::track(const Eigen::Matrix3Xf& points, const Eigen::Matrix3d& level, MapFix& fix) {
+    constexpr double kMeets_m = 0.3, kLeast_m = 0.5, kMost_m = 2;
+    local_.follow(now_.vehicle->pose.translation());
+    const auto& map = local_.scanToMap();
+    fix.reason = points.cols() == 0 ? "no points" : "the map has nothing here";
+    if (!map.isUsable() || points.cols() == 0) return false;
+    const ScanView view = viewOf(points);
+    const Eigen::Isometry3d& predicted = now_.vehicle->pose;
+    const auto placed = map.place(view.coarse, predicted,
+                                  std::clamp(3 * sigma_m(*now_.vehicle), kLeast_m, kMost_m));
+    fix.reason = "not registered to the map";
+    if (!placed.valid) return false;
+    const auto found = map.refine(view, placed, predicted, std::nullopt);
+    // Ground lies on ground anywhere: what stands on it has to meet.
+    const auto standing = loops::aboveGround((level * view.thinned).cast<float>());
+    fix.share = standing.cols() == 0
+                    ? 0
+                    : map.shareAt(standing, found.pose() * turned(level.transpose()), kMeets_m);
+    fix.reason = "does not look like the map";
+    if (!found.valid || fix.share < options_.min_share) return false;
+    fix.reason.clear();
+    now_.vehicle = incrementOf(found.rotation, found.translation);
+    return true;
+}
+
+/** Of a scan that was compared with the map. */
+void MapTracker::judge(bool agrees) {
+    if (agrees) {
+        ++now_.confirmed;
+        now_.missed = 0;
+        now_.unseen_m = 0;
+        if (now_.confirmed >= kConfirmed) now_.where = Whereabouts::kInMap;
+        return;
+    }
+    ++now_.missed;
+    if (now_.where == Whereabouts::kInMap && now_.missed >= kPatience)
+        now_.where = Whereabouts::kOutside;
+    if (now_.where == Whereabouts::kInMap) return;
+    const bool wasFoundOnly = now_.where == Whereabouts::kUnknown && now_.confirmed > 0;
+    now_.confirmed = 0;
+    if (wasFoundOnly) now_.vehicle.reset();  // a place that the next scans do not confirm
+}
+
+double MapTracker::reach_m() const {
+    constexpr double kLeast_m = 2;
+    return kLeast_m + 3 * (options_.drift * now_.unseen_m + sigma_m(*now_.vehicle));
+}
+
+std::vector<std::size_t> MapTracker::nearSubmaps(double reach_m) const {
+    constexpr double kNear_m = 25;
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < map_->submaps().size(); ++i)
+        if ((map_->levelFrames()[i].translation() - now_.vehicle->pose.translation())
+                .head<2>()
+                .norm() <= kNear_m + reach_m)
+            near.push_back(i);
+    return near;
+}
+
+bool MapTracker::isTimeToSearch() const {
+    constexpr std::size_t kAtFirst = 5;
+    return now_.confirmed == 0 && now_.where != Whereabouts::kInMap &&
+           (now_.scans <= kAtFirst || now_.unsearched_m >= options_.search_spacing);
+}
+
+void MapTracker::search(const Eigen::Matrix3d& level, MapFix& fix) {
+    const Eigen::Isometry3d here = now_.odometry * turned(level.transpose());
+    Eigen::Index count = 0;
+    for (const auto& seen : now_.recent) count += seen.points.cols();
+    Eigen::Matrix3Xf cloud(3, count);
+    count = 0;
+    for (const auto& seen : now_.recent) {
+        cloud.middleCols(count, seen.points.cols()) =
+            (here.inverse() * seen.pose).cast<float>() * seen.points;
+        count += seen.points.cols();
+    }
+    const double reach = now_.vehicle ? reach_m() : std::numeric_limits<double>::infinity();
+    const auto submaps = now_.vehicle ? nearSubmaps(reach) : std::vector<std::size_t>();
+    if (count == 0 || (now_.vehicle && submaps.empty())) return;
+    now_.unsearched_m = 0;
+    fix.searched = true;
+    const auto found = now_.vehicle ? search_.find(cloud, submaps) : search_.find(cloud);
+    fix.reason = found.reason;
+    if (!found.reason.empty()) return;
+    const Eigen::Isometry3d vehicle = found.pose * turned(level);
+    if (now_.vehicle && (vehicle.translation() - now_.vehicle->pose.translation()).norm() > reach) {
+        fix.reason = "found farther off than it may be";
+        return;
+    }
+    now_.vehicle = Increment{vehicle, 0.01 * Matrix6::Identity()};
+    now_.vehicle->covariance.bottomRightCorner<3, 3>() *= 0.01;
+    local_.load(vehicle.translation());
+}
+
+MapFix MapTracker::add(const Increment& increment, const Eigen::Matrix3Xf& points,
+                       const Eigen::Vector3d& up) {
+    before_ = now_;
+    MapFix fix;
+    const Eigen::Matrix3d level = scan::turnedUp(up).cast<double>();
+    const double moved_m = increment.pose.translation().norm();
+    now_.odometry = now_.odometry * increment.pose;
+    now_.unseen_m += moved_m;
+    now_.unsearched_m += moved_m;
+    if (now_.vehicle && now_.scans > 0) now_.vehicle = chained(*now_.vehicle, increment);
+    ++now_.scans;
+    remember(points);
+    if (now_.vehicle) {
+        fix.measured = track(points, level, fix);
+        judge(fix.measured);
+    }
+    if (!fix.measured && isTimeToSearch()) {
+        search(level, fix);
+        if (fix.searched && fix.reason.empty()) {
+            fix.measured = track(points, level, fix);
+            judge(fix.measured);
+        }
+    }
+    fix.where = now_.where;
+    if (now_.vehicle) fix.vehicle = *now_.vehicle;
+    return fix;
+}
+}  // namespace delio

@@ -1,0 +1,120 @@
+#include "delio/loops/place_index.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "bands.h"
+
+namespace delio::loops {
+namespace {
+constexpr double kLarge_m = 2;  // edge of a cell
+constexpr int kTurns = 72;
+constexpr int kReach = 10;             // cells from the middle of a place
+constexpr std::size_t kSide = 24;      // shifts in a row; those beyond the reach are not looked at
+constexpr int kRows = 2 * kReach + 1;  // of shifts
+}  // namespace
+
+struct PlaceIndex::Turned {
+    double yaw = 0;
+    double bits = 0;
+    std::vector<Cell> cells;
+};
+
+PlaceIndex::Raster PlaceIndex::rasterOf(const HeightImage& image, double yaw, int margin) {
+    Raster raster;
+    if (image.cells().cols() == 0) return raster;
+    const Eigen::Matrix2Xi cells =
+        (Eigen::Rotation2Dd(yaw).toRotationMatrix() * image.cells() / kLarge_m)
+            .array()
+            .floor()
+            .cast<int>();
+    raster.x0 = cells.row(0).minCoeff() - margin;
+    raster.y0 = cells.row(1).minCoeff() - margin;
+    raster.width = cells.row(0).maxCoeff() + margin + 1 - raster.x0;
+    raster.height = cells.row(1).maxCoeff() + margin + 1 - raster.y0;
+    raster.bands.assign(static_cast<std::size_t>(raster.width * raster.height), 0);
+    for (Eigen::Index i = 0; i < cells.cols(); ++i) {
+        auto& cell = raster.bands[static_cast<std::size_t>(
+            (cells(1, i) - raster.y0) * raster.width + cells(0, i) - raster.x0)];
+        cell = static_cast<std::uint8_t>(cell | image.bands()[static_cast<std::size_t>(i)]);
+    }
+    return raster;
+}
+
+void PlaceIndex::add(const HeightImage& image) {
+    places_.push_back(rasterOf(image, 0, static_cast<int>(kSide)));
+}
+
+std::vector<PlaceIndex::Turned> PlaceIndex::turnsOf(const HeightImage& cloud) {
+    std::vector<Turned> turns(kTurns);
+    for (int i = 0; i < kTurns; ++i) {
+        auto& turned = turns[static_cast<std::size_t>(i)];
+        turned.yaw = 2 * M_PI * i / kTurns;
+        const Raster raster = rasterOf(cloud, turned.yaw, 0);
+        for (int y = 0; y < raster.height; ++y)
+            for (int x = 0; x < raster.width; ++x) {
+                const auto bands = raster.bands[static_cast<std::size_t>(y * raster.width + x)];
+                if (bands == 0) continue;
+                turned.cells.push_back({raster.x0 + x, raster.y0 + y, bands});
+                turned.bits += bitsOf(bands);
+            }
+    }
+    return turns;
+}
+
+Sighting PlaceIndex::best(const Raster& place, const std::vector<Turned>& turns) {
+    Sighting best;
+    for (const auto& turned : turns) {
+        std::array<std::array<std::uint16_t, kSide>, kRows> sums{};
+        for (const auto& cell : turned.cells) {
+            const int x = cell.x - kReach - place.x0, y = cell.y - kReach - place.y0;
+            if (x < 0 || x + static_cast<int>(kSide) > place.width) continue;
+            for (int dy = std::max(0, -y); dy < kRows && y + dy < place.height; ++dy) {
+                const auto* row =
+                    &place.bands[static_cast<std::size_t>((y + dy) * place.width + x)];
+                auto& counts = sums[static_cast<std::size_t>(dy)];
+                for (std::size_t dx = 0; dx < kSide; ++dx)
+                    counts[dx] = static_cast<std::uint16_t>(
+                        counts[dx] + bitsOf(static_cast<std::uint8_t>(cell.bands & row[dx])));
+            }
+        }
+        for (int dy = 0; dy < kRows; ++dy)
+            for (int dx = 0; dx < kRows; ++dx) {
+                const double share =
+                    sums[static_cast<std::size_t>(dy)][static_cast<std::size_t>(dx)] /
+                    std::max(1.0, turned.bits);
+                if (share <= best.shift.share) continue;
+                best.shift = {
+                    turned.yaw, {kLarge_m * (dx - kReach), kLarge_m * (dy - kReach), 0}, share};
+            }
+    }
+    return best;
+}
+
+std::vector<Sighting> PlaceIndex::find(const HeightImage& cloud, std::size_t most) const {
+    std::vector<std::size_t> all(places_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return find(cloud, all, most);
+}
+
+std::vector<Sighting> PlaceIndex::find(const HeightImage& cloud,
+                                       const std::vector<std::size_t>& places,
+                                       std::size_t most) const {
+    const auto turns = turnsOf(cloud);
+    std::vector<Sighting> sightings(places.size());
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+        sightings[i] = best(places_[places[i]], turns);
+        sightings[i].place = places[i];
+    });
+    std::stable_sort(sightings.begin(), sightings.end(), [](const Sighting& a, const Sighting& b) {
+        return a.shift.share > b.shift.share;
+    });
+    if (sightings.size() > most) sightings.resize(most);
+    return sightings;
+}
+}  // namespace delio::loops

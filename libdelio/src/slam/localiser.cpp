@@ -1,0 +1,35 @@
+#include "delio/slam/localiser.h"
+
+#include "delio/core/error.h"
+#include "delio/graph/pose_pdf.h"
+#include "delio/io/decode_observation.h"
+
+namespace delio {
+Localiser::Localiser(std::shared_ptr<const StoredMap> map, const OdometryOptions& options,
+                     const PlaceSearchOptions& search, const LocalisationOptions& localisation)
+    : follower_(std::make_shared<MapFollower>(MapTracker(std::move(map), search, localisation))),
+      slam_(makeOdometry(options)) {
+    slam_.attach(follower_);
+}
+
+void Localiser::expect(const Eigen::Isometry3d& vehicle) { follower_->expect(vehicle); }
+
+Localisation Localiser::process(const Scan& scan) {
+    auto report = slam_.process(scan);
+    return {std::move(report.step), follower_->fixes().back()};
+}
+
+std::optional<mrpt::poses::CPose3DPDFGaussian> Localiser::process(
+    const mrpt::obs::CObservation& observation) {
+    if (!io::isScan(observation))
+        throw Error("an observation of class " +
+                    std::string(observation.GetRuntimeClass()->className) + " is no LiDAR scan");
+    Scan scan = io::decodeObservation(observation);
+    scan.index = observations_++;
+    scan.time = observation.timestamp;
+    scan.stamp_s = mrpt::Clock::toDouble(observation.timestamp);
+    const auto found = process(scan);
+    if (found.fix.where == Whereabouts::kUnknown) return {};
+    return graph::posePdfOf(found.fix.vehicle);
+}
+}  // namespace delio

@@ -1,0 +1,254 @@
+// How well a drive is localised in a stored map (share/doc/stored_map.md). Both drives with
+// DRIVE.poses.txt, DRIVE.calib.txt and DRIVE.times.txt beside them, and DRIVE.origin.txt if they
+// are two drives through one world (synth2rawlog).
+//   benchmark_localisation MAP.delio MAPPED.rawlog DRIVE.rawlog [--start N] [--every N]
+//                          [--places N] [--elsewhere] [--list]
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "delio/core/error.h"
+#include "delio/core/stopwatch.h"
+#include "delio/io/drive_meta.h"
+#include "delio/io/scan_reader.h"
+#include "delio/io/trajectory.h"
+#include "delio/run/summary.h"
+#include "delio/slam/localiser.h"
+#include "delio/slam/options.h"
+
+namespace {
+using namespace delio;
+using Eigen::Isometry3d;
+
+struct Settings {
+    std::string map, mapped, drive;
+    std::size_t start = 0, every = 1, places = 100;
+    bool elsewhere = false;  // the drive is in another world: nothing may be found
+    bool list = false;
+};
+
+/** True poses of the vehicle in the world, by scan. */
+std::vector<Isometry3d> truePoses(const std::string& rawlog) {
+    const auto Tr = io::readCalibration(io::sidecarPath(rawlog, ".calib.txt")).Tr;
+    auto poses = io::readTrajectory(io::sidecarPath(rawlog, ".poses.txt")).poses;
+    const std::string origin = io::sidecarPath(rawlog, ".origin.txt");
+    Isometry3d first = Isometry3d::Identity();
+    if (std::filesystem::exists(origin)) first = io::readTrajectory(origin).poses.front();
+    const Isometry3d zero = poses.front();
+    for (auto& pose : poses) pose = first * Tr.inverse() * zero.inverse() * pose * Tr;
+    return poses;
+}
+
+/** Poses that are known twice: as the map has them, and truly. */
+class MapTruth {
+ public:
+    MapTruth(const StoredMap& map, const std::string& rawlog) {
+        const auto truth = truePoses(rawlog);
+        std::map<long, std::size_t> scanAt;  // by milliseconds
+        const auto reader = io::openScans(rawlog);
+        std::size_t number = 0;
+        for (auto scan = reader->next(); scan; scan = reader->next(), ++number)
+            scanAt[std::lround(1000 * scan->stamp_s)] = number;
+        const auto& stamps = map.drives().front().stamps_s;
+        for (std::size_t i = 0; i < stamps.size(); ++i) {
+            const auto at = scanAt.find(std::lround(1000 * stamps[i]));
+            if (at == scanAt.end() || at->second >= truth.size()) continue;
+            true_.push_back(truth[at->second]);
+            mapped_.push_back(map.graph().poses()[i]);
+        }
+    }
+
+    /** Where the map has what is truly there: by the nearest pose that it was made of. */
+    Isometry3d inMap(const Isometry3d& truth, double& distance) const {
+        std::size_t best = 0;
+        distance = 1e9;
+        for (std::size_t i = 0; i < true_.size(); ++i) {
+            const double d = (true_[i].translation() - truth.translation()).norm();
+            if (d >= distance) continue;
+            distance = d;
+            best = i;
+        }
+        return mapped_[best] * true_[best].inverse() * truth;
+    }
+
+ private:
+    std::vector<Isometry3d> true_, mapped_;
+};
+
+double quantile(std::vector<double> values, double share) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const auto i = static_cast<std::size_t>(share * static_cast<double>(values.size()));
+    return values[std::min(i, values.size() - 1)];
+}
+
+constexpr double kDeg = M_PI / 180;
+constexpr double kRight_m = 0.5, kRight_rad = 2 * kDeg;
+constexpr double kMapped_m = 8;  // nearer to a pose of the map: there is one
+
+struct Starts {
+    std::size_t all = 0, found = 0, wrong = 0, unmapped = 0;
+    std::vector<double> fix_ms, scans;
+};
+
+struct Tracking {
+    std::vector<double> off_m, off_deg, ms, localisation_ms, share, outsideShare;
+    std::size_t scans = 0, inMap = 0, wrong = 0, mappedNotIn = 0;
+};
+
+void startAt(const std::shared_ptr<const StoredMap>& map, const std::vector<Scan>& scans,
+             std::size_t first, const std::vector<Isometry3d>& truth, const MapTruth& mapTruth,
+             const Settings& settings, const OdometryOptions& options, Starts& starts) {
+    Localiser localiser(map, options);
+    double distance = 0;
+    mapTruth.inMap(truth[scans[0].index], distance);
+    const bool mapped = !settings.elsewhere && distance < kMapped_m;
+    mapped ? ++starts.all : ++starts.unmapped;
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+        Stopwatch watch;
+        const auto found = localiser.process(scans[i]);
+        const double ms = watch.lap_ms();
+        if (found.fix.searched) starts.fix_ms.push_back(ms);
+        if (found.fix.where == Whereabouts::kUnknown) {
+            if (settings.list && i + 1 == scans.size())
+                std::printf("    start %zu (%.1f m from the map): %s, share %.2f\n", first,
+                            distance, found.fix.reason.c_str(), found.fix.share);
+            continue;
+        }
+        const Isometry3d off =
+            mapTruth.inMap(truth[scans[i].index], distance).inverse() * found.fix.vehicle.pose;
+        const bool right = !settings.elsewhere && off.translation().norm() < kRight_m &&
+                           angleOf(off.linear()) < kRight_rad;
+        if (right && mapped) ++starts.found;
+        if (!right) {
+            ++starts.wrong;
+            std::printf("    start %zu: WRONG by %.2f m %.2f deg, share %.2f\n", first,
+                        off.translation().norm(), angleOf(off.linear()) / kDeg, found.fix.share);
+        }
+        starts.scans.push_back(static_cast<double>(i + 1));
+        return;
+    }
+}
+
+void measure(const Settings& settings) {
+    Stopwatch watch;
+    const auto map = std::make_shared<const StoredMap>(settings.map);
+    const auto truth = truePoses(settings.drive);
+    const MapTruth mapTruth(*map, settings.mapped);
+    const auto options = Options::forDrive("accurate", io::readDriveMeta(settings.drive));
+    const double path_m = map->submaps().back().driven.path_m;
+
+    // All of the drive, in one go; the starts beside it.
+    watch.lap_ms();
+    Localiser localiser(map, options);
+    const double opened_ms = watch.lap_ms();
+    Tracking tracking;
+    Starts starts;
+    const auto count = (truth.size() - settings.start + settings.every - 1) / settings.every;
+    const std::size_t apart =
+        std::max<std::size_t>(1, count / std::max<std::size_t>(1, settings.places));
+    std::deque<Scan> last;
+    constexpr std::size_t kScans = 5;
+    const auto reader = io::openScans(settings.drive);
+    for (std::size_t i = 0; i < settings.start; ++i) reader->skip();
+    std::size_t number = 0;
+    for (auto scan = reader->next(); scan && scan->index < truth.size(); ++number) {
+        last.push_back(*scan);
+        if (last.size() > kScans) last.pop_front();
+        if (settings.places > 0 && number % apart == kScans - 1 && last.size() == kScans)
+            startAt(map, {last.begin(), last.end()}, last.front().index, truth, mapTruth, settings,
+                    options, starts);
+        watch.lap_ms();
+        const auto found = localiser.process(*scan);
+        const double ms = watch.lap_ms();
+        double odometry_ms = 0, distance = 0;
+        for (const auto& [name, time] : found.step.times_ms) odometry_ms += time;
+        const Isometry3d off =
+            mapTruth.inMap(truth[scan->index], distance).inverse() * found.fix.vehicle.pose;
+        const double off_m = off.translation().norm(), off_rad = angleOf(off.linear());
+        ++tracking.scans;
+        if (found.fix.where == Whereabouts::kInMap && found.fix.measured) {
+            ++tracking.inMap;
+            tracking.off_m.push_back(off_m);
+            tracking.off_deg.push_back(off_rad / kDeg);
+            tracking.share.push_back(found.fix.share);
+            if (settings.elsewhere || off_m > kRight_m || off_rad > kRight_rad) ++tracking.wrong;
+            if (!found.fix.searched) {
+                tracking.ms.push_back(ms);
+                tracking.localisation_ms.push_back(ms - odometry_ms);
+            }
+        } else {
+            tracking.outsideShare.push_back(found.fix.share);
+            if (distance < kMapped_m) ++tracking.mappedNotIn;
+            if (settings.list)
+                std::printf("    scan %zu (%.1f m from the map): %s, share %.2f\n", scan->index,
+                            distance, found.fix.reason.c_str(), found.fix.share);
+        }
+        for (std::size_t i = 1; i < settings.every; ++i) reader->skip();
+        scan = reader->next();
+    }
+    std::printf("%s in %s (%.0f m, %zu submaps, %.2f MB per 100 m), opened in %.0f ms\n",
+                settings.drive.c_str(), settings.map.c_str(), path_m, map->submaps().size(),
+                static_cast<double>(std::filesystem::file_size(settings.map)) / 1e4 / path_m,
+                opened_ms);
+    std::printf(
+        "  starts: found within %zu scans %zu of %zu on mapped streets, wrong %zu, not mapped "
+        "%zu; scans %.0f median; search %.0f ms median, %.0f at most\n",
+        kScans, starts.found, starts.all, starts.wrong, starts.unmapped,
+        quantile(starts.scans, 0.5), quantile(starts.fix_ms, 0.5), quantile(starts.fix_ms, 1));
+    std::printf(
+        "  tracked %zu of %zu scans, wrong %zu, mapped and not tracked %zu: %.4f m %.4f deg "
+        "median, %.4f m %.4f deg 95 %%, at most %.3f m %.3f deg; share %.2f at least, 5 %% %.2f, "
+        "outside %.2f at most\n",
+        tracking.inMap, tracking.scans, tracking.wrong, tracking.mappedNotIn,
+        quantile(tracking.off_m, 0.5), quantile(tracking.off_deg, 0.5),
+        quantile(tracking.off_m, 0.95), quantile(tracking.off_deg, 0.95),
+        quantile(tracking.off_m, 1), quantile(tracking.off_deg, 1), quantile(tracking.share, 0),
+        quantile(tracking.share, 0.05), quantile(tracking.outsideShare, 1));
+    std::printf(
+        "  ms a scan: %.1f with odometry (at most %.1f), of them localisation %.1f (at most %.1f); "
+        "peak %.0f MB\n",
+        quantile(tracking.ms, 0.5), quantile(tracking.ms, 1),
+        quantile(tracking.localisation_ms, 0.5), quantile(tracking.localisation_ms, 1),
+        run::peakMemory_mb());
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        Settings settings;
+        std::vector<std::string> files;
+        for (int i = 1; i < argc; ++i) {
+            const std::string word = argv[i];
+            const auto number = [&] { return std::stoul(argv[++i]); };
+            if (word == "--list")
+                settings.list = true;
+            else if (word == "--elsewhere")
+                settings.elsewhere = true;
+            else if (word == "--start" && i + 1 < argc)
+                settings.start = number();
+            else if (word == "--every" && i + 1 < argc)
+                settings.every = number();
+            else if (word == "--places" && i + 1 < argc)
+                settings.places = number();
+            else
+                files.push_back(word);
+        }
+        if (files.size() != 3) throw Error("wants MAP.delio MAPPED.rawlog DRIVE.rawlog");
+        settings.map = files[0];
+        settings.mapped = files[1];
+        settings.drive = files[2];
+        measure(settings);
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "benchmark_localisation: %s\n", e.what());
+        return 1;
+    }
+    return 0;
+}
