@@ -102,6 +102,12 @@ void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
     poses_ += poseRow(scan);
 }
 
+/** Where cam0 is in the world at the first scan: what two drives through one world have in common.
+ */
+std::string DriveWriter::origin() const {
+    return io::kittiRow(cam0PoseOf(drive_.lidarPose(0), lidarToCam0()));
+}
+
 /** Where the LiDAR is at the scan's stamp, relative to the first scan, as cam0's: a row of KITTI's
  *  poses.txt. How the LiDAR is turned does not move cam0. */
 std::string DriveWriter::poseRow(std::size_t scan) const {
@@ -123,10 +129,11 @@ void DriveWriter::finish() {
     meta.motionCompensated = !request_.distort;
     meta.epoch_s = io::kDriveEpoch_s;
     meta.generator = std::string("synth2rawlog 2 (delio ") + kVersion + ")";
-    writer_.finish(meta, times_, calibration(), poses_, faults_);
+    writer_.finish(meta, times_, calibration(), poses_, faults_, origin());
     cli::inform(
         "wrote " + std::to_string(writer_.scans()) + " scans, " +
-        std::to_string(std::lround(drive_.station(drive_.scans() - 1) - drive_.station(0))) +
+        std::to_string(std::lround(
+            std::abs(drive_.station(drive_.scans() - 1) - drive_.station(0)))) +
         " m, to '" + request_.output + "'");
 }
 }  // namespace delio::synth

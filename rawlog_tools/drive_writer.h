@@ -44,6 +44,7 @@ class DriveWriter {
     void add(std::size_t scan, const ScanPoints& points);
     ScanPoints simulate(std::size_t scan);
     std::string poseRow(std::size_t scan) const;
+    std::string origin() const;
     std::string calibration() const;
     void finish();
 

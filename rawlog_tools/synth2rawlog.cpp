@@ -64,6 +64,19 @@ struct Arguments {
                                        "NAME", cmd};
     TCLAP::ValueArg<int> scans{"", "scans", "Number of scans, ten a second", true, 0, "N", cmd};
     TCLAP::ValueArg<int> seed{"", "seed", "Another seed, another drive", false, 1, "S", cmd};
+    TCLAP::ValueArg<int> driveSeed{
+        "",
+        "drive-seed",
+        "Another drive through the world of --seed: its speed, the traffic and the noise; default: "
+        "that of --seed",
+        false,
+        1,
+        "S",
+        cmd};
+    TCLAP::SwitchArg reverse{"", "reverse",
+                             "The same road the other way, in its other lane, from where the drive "
+                             "would end; for a vehicle",
+                             cmd};
     TCLAP::ValueArg<std::string> trajectory{
         "",
         "trajectory",
@@ -163,6 +176,10 @@ std::string faultInMotion(Arguments& args) {
         return "there is no motion '" + motion + "'; there is: " + listed(kMotions);
     if (!mountIn(args.mount.getValue()))
         return "--mount wants ROLL,PITCH,YAW in degrees, not '" + args.mount.getValue() + "'";
+    if (args.reverse.isSet() && gaitOf(motion) != Gait::kVehicle)
+        return "--reverse does not go with --motion " + motion;
+    if (args.reverse.isSet() && args.start.isSet())
+        return "--reverse does not go with --start, which says how the drive forward begins";
     if (!args.start.isSet()) return "";
     if (!isOneOf(kStarts, start))
         return "there is no start '" + start + "'; there is: " + listed(kStarts);
@@ -178,6 +195,7 @@ std::string faultInDrive(Arguments& args) {
         return "there is no sensor '" + args.sensor.getValue() + "'; there is: " + sensorOptions();
     if (args.scans.getValue() < 1) return "--scans has to be 1 or more";
     if (args.seed.getValue() < 0) return "--seed has to be 0 or more";
+    if (args.driveSeed.getValue() < 0) return "--drive-seed has to be 0 or more";
     if (!isMetres(args.noise.getValue())) return "--noise has to be 0 or more metres";
     if (!isMetres(args.ringBias.getValue())) return "--ring-bias has to be 0 or more metres";
     if (args.movers.getValue() < 0) return "--movers has to be 0 or more";
@@ -194,7 +212,8 @@ DriveRequest requestOf(Arguments& args) {
     request.sensor = *findSensor(args.sensor.getValue());
     request.scanner.noise_m = args.noise.getValue();
     request.scanner.ringBias_m = args.ringBias.getValue();
-    request.scanner.seed = static_cast<std::uint64_t>(args.seed.getValue());
+    request.scanner.seed = static_cast<std::uint64_t>(
+        args.driveSeed.isSet() ? args.driveSeed.getValue() : args.seed.getValue());
     request.scanner.threads = args.threads.getValue();
     if (request.scanner.threads == 0)
         request.scanner.threads =
@@ -228,10 +247,11 @@ int makeDrive(Arguments& args) {
     const auto count = static_cast<std::size_t>(args.scans.getValue());
     const Start start = startOf(args.start.getValue());
     const auto world =
-        makeScene({args.scene.getValue(), request.scanner.seed, count + scansBefore(start),
-                   args.trajectory.getValue(), lidarToCam0()});
-    const Drive drive(world->road(), count, request.scanner.seed, gaitOf(args.motion.getValue()),
+        makeScene({args.scene.getValue(), static_cast<std::uint64_t>(args.seed.getValue()),
+                   count + scansBefore(start), args.trajectory.getValue(), lidarToCam0()});
+    Drive drive(world->road(), count, request.scanner.seed, gaitOf(args.motion.getValue()),
                       start);
+    if (args.reverse.isSet()) drive.turnBack();
     suit(request, drive.carrier());
     if (drive.scans() < count)
         cli::warn("the trajectory ends after " + std::to_string(drive.scans()) + " of " +

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "back.h"
 #include "speed_profile.h"
 
 namespace delio::synth {
@@ -20,6 +22,12 @@ Drive::Drive(const Road& road, std::size_t scans, std::uint64_t seed, Gait gait,
     }
     const double known = std::floor(motion_->duration_s() / kScanPeriod_s + 1e-6);
     scans_ = std::min(scans, static_cast<std::size_t>(known) + 1);
+}
+
+void Drive::turnBack() {
+    if (!own_) own_ = {std::shared_ptr<const void>(), motion_};  // the road's, which lives longer
+    own_ = drivenBack(std::move(own_), timeOf(scans_ - 1), -2 * road_.vehicleSide());
+    motion_ = own_.get();
 }
 
 Eigen::Isometry3d Drive::lidarPoseAt(double time_s) const {

@@ -33,6 +33,10 @@ class Drive {
     Eigen::Isometry3d lidarPoseAt(double time_s) const;
     const Carrier& carrier() const { return carrier_; }
 
+    /** From here on as if the road were driven the other way, in the other lane, from where this
+     *  drive ends. */
+    void turnBack();
+
  private:
     static double timeOf(std::size_t scan) { return kScanPeriod_s * static_cast<double>(scan); }
 

@@ -39,10 +39,10 @@ std::vector<Isometry3d> truePoses(const std::string& rawlog) {
     const auto Tr = io::readCalibration(io::sidecarPath(rawlog, ".calib.txt")).Tr;
     auto poses = io::readTrajectory(io::sidecarPath(rawlog, ".poses.txt")).poses;
     const std::string origin = io::sidecarPath(rawlog, ".origin.txt");
-    Isometry3d first = Isometry3d::Identity();
+    Isometry3d first = Isometry3d::Identity();  // of cam0
     if (std::filesystem::exists(origin)) first = io::readTrajectory(origin).poses.front();
     const Isometry3d zero = poses.front();
-    for (auto& pose : poses) pose = first * Tr.inverse() * zero.inverse() * pose * Tr;
+    for (auto& pose : poses) pose = first * zero.inverse() * pose * Tr;
     return poses;
 }
 

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 const char* const kSideFiles[] = {".meta.yaml", ".times.txt", ".calib.txt", ".poses.txt",
-                                  ".faults.tsv"};
+                                  ".faults.tsv", ".origin.txt"};
 
 void writeFloats(const std::string& path, const std::vector<float>& values) {
     std::ofstream out(path, std::ios::binary);
@@ -108,7 +108,7 @@ std::string RawlogWriter::extraFile(const std::string& extension) {
 
 void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
                           const std::string& calibText, const std::string& posesText,
-                          const std::string& faultsText) {
+                          const std::string& faultsText, const std::string& originText) {
     // A full disk may show only now: everything that was handed over has to be in the file.
     const auto written = out_.getPosition();
     out_.close();
@@ -125,6 +125,7 @@ void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
     writeText(".calib.txt", calibText);
     writeText(".poses.txt", posesText);
     writeText(".faults.tsv", faultsText);
+    writeText(".origin.txt", originText);
     writeDriveMeta(meta, path_);
     std::error_code fault;
     fs::remove_all(images_, fault);

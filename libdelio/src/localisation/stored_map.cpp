@@ -127,7 +127,7 @@ loops::Sketch getSketch(ByteReader& bytes) {
         bands.size() != static_cast<std::size_t>(cells.cols()) ||
         heights.size() != static_cast<std::size_t>(grounds.cols()))
         throw std::out_of_range("sketch");
-    return {loops::Azimuths(azimuths), loops::HeightImage(std::move(cells), std::move(bands),
+    return {loops::Azimuths::ofWeights(azimuths), loops::HeightImage(std::move(cells), std::move(bands),
                                                           std::move(grounds), std::move(heights))};
 }
 }  // namespace

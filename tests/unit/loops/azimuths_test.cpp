@@ -57,6 +57,6 @@ TEST(Azimuths, OfGroundAloneSayNothing) {
     const loops::Azimuths here(ground), walls(wallsAt({10}));
     EXPECT_TRUE(here.turnsOf(walls, 0, 1, 3).empty());
     EXPECT_TRUE(walls.turnsOf(here, 0, 1, 3).empty());
-    EXPECT_TRUE(loops::Azimuths({}).turnsOf(walls, 0, 1, 3).empty());
+    EXPECT_TRUE(loops::Azimuths(surfaces::SurfaceNormals{}).turnsOf(walls, 0, 1, 3).empty());
 }
 }  // namespace

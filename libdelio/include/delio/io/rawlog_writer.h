@@ -36,9 +36,11 @@ class RawlogWriter {
     std::string extraFile(const std::string& extension);
 
     /** Writes OUT.meta.yaml and, where the text is not empty, OUT.times.txt, OUT.calib.txt,
-     *  OUT.poses.txt, OUT.faults.tsv, byte for byte as given; then gives the rawlog its name. */
+     *  OUT.poses.txt, OUT.faults.tsv, OUT.origin.txt (a made-up drive's place in its world), byte
+     *  for byte as given; then gives the rawlog its name. */
     void finish(const DriveMeta& meta, const std::string& timesText, const std::string& calibText,
-                const std::string& posesText, const std::string& faultsText = "");
+                const std::string& posesText, const std::string& faultsText = "",
+                const std::string& originText = "");
 
     std::size_t scans() const { return count_; }
 

@@ -15,7 +15,11 @@ class Azimuths {
 
     explicit Azimuths(const surfaces::SurfaceNormals& surfaces);
     /** Of what weights() of another one gave. */
-    explicit Azimuths(Eigen::VectorXd weights) : weights_(std::move(weights)) {}
+    static Azimuths ofWeights(Eigen::VectorXd weights) {
+        Azimuths azimuths;
+        azimuths.weights_ = std::move(weights);
+        return azimuths;
+    }
 
     /** Of each direction. */
     const Eigen::VectorXd& weights() const { return weights_; }
@@ -28,6 +32,8 @@ class Azimuths {
                                 std::size_t most) const;
 
  private:
+    Azimuths() = default;
+
     Eigen::VectorXd weights_;
 };
 }  // namespace delio::loops
