@@ -1,4 +1,5 @@
 #include <mrpt/3rdparty/tclap/CmdLine.h>
+#include <mrpt/core/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
+#include "delio/evaluation/relative_error.h"
 #include "delio/evaluation/report/report.h"
 #include "delio/evaluation/report/report_folder.h"
 #include "delio/io/trajectory.h"
@@ -133,6 +135,11 @@ struct CommandLine {
         "",
         "REPORT_DIR",
         cmd};
+    TCLAP::SwitchArg sameFrame{"", "same-frame",
+                               "Reference and estimate are in one frame (a drive that was "
+                               "localised in a stored map, and a reference in that map): say how "
+                               "far apart their poses are, too, with nothing aligned",
+                               cmd};
     TCLAP::SwitchArg force{"", "force", "Write into a report folder that is not empty", cmd};
     TCLAP::SwitchArg verbose{"", "verbose", "Say what is compared with what", cmd};
 };
@@ -150,6 +157,22 @@ EvalSettings settingsOf(CommandLine& line) {
         settings.Tr = read.Tr;
     }
     return settings;
+}
+
+/** A line for each estimate. */
+void writeDistances(const std::vector<evaluation::Comparison>& comparisons, std::ostream& out) {
+    for (const auto& found : comparisons) {
+        const auto error = evaluation::poseError(found.reference, found.estimate);
+        const auto& row = found.row;
+        out << row.name << (row.sequence.empty() ? "" : " ") << row.sequence
+            << mrpt::format(
+                   ": in the reference's frame %.4f m and %.4f deg from it in the median, %.4f m "
+                   "and "
+                   "%.4f deg in 95 %%, at most %.4f m and %.4f deg, over %zu poses\n",
+                   error.translation_m.median, error.rotation_deg.median, error.translation_m.p95,
+                   error.rotation_deg.p95, error.translation_m.max, error.rotation_deg.max,
+                   found.reference.size());
+    }
 }
 
 int evaluate(CommandLine& line) {
@@ -179,6 +202,7 @@ int evaluate(CommandLine& line) {
         evaluation::writeMetricsTsv(rows, std::cout);
     else
         evaluation::writeTable(rows, std::cout);
+    if (line.sameFrame.isSet()) writeDistances(comparisons, std::cout);
     if (!std::cout.flush()) throw Error("cannot write the results to stdout");
     return cli::kExitSuccess;
 }

@@ -26,6 +26,7 @@
 #include "live_view.h"
 #include "output_folder.h"
 #include "run_table.h"
+#include "several_drives.h"
 
 namespace {
 using namespace delio;
@@ -38,12 +39,15 @@ using Switch = TCLAP::SwitchArg;
 struct CommandLine {
     /** `runs`: input and output are needed. */
     explicit CommandLine(bool runs)
-        : input("i", "input", "Rawlog to read, or a posegraph.g2o to optimise again", runs, "",
-                "IN.rawlog", cmd),
+        : input("i", "input",
+                "Rawlog to read, or a posegraph.g2o to optimise again; several drives are joined "
+                "where they meet",
+                runs, "IN.rawlog", cmd),
           output("o", "output", "Folder for the results", runs, "", "OUTDIR", cmd) {}
 
     TCLAP::CmdLine cmd{"delio-slam: LiDAR odometry, pose graph and map of a rawlog", ' ', kVersion};
-    Text input, output;
+    TCLAP::MultiArg<std::string> input;
+    Text output;
     Text profile{"", "profile", "accurate, paper or paper-literal", false, "accurate", "NAME", cmd};
     Text config{"c",          "config", "Options that differ from the profile's", false, "",
                 "CONFIG.ini", cmd};
@@ -83,6 +87,7 @@ struct CommandLine {
                      "",
                      "X,Y,Z,YAW_DEG",
                      cmd};
+    Switch extend{"", "extend", "Add what is new to that map: OUTDIR/map.delio is both", cmd};
     Switch noMap{"", "no-map", "Leave out map, scene and map.png", cmd};
     Switch noLoops{"", "no-loops", "Do not search for places that the drive comes back to", cmd};
     Switch noGraph{"", "no-graph", "Leave out the pose graph's optimisation, and loops", cmd};
@@ -144,11 +149,11 @@ run::RunSettings settingsFor(CommandLine& line, int argc, char** argv) {
     settings.profile = line.profile.getValue();
     settings.command.assign(argv, argv + argc);
     settings.folder = line.output.getValue();
-    settings.drive = fs::path(line.input.getValue()).stem().string();
     settings.graph = !line.noGraph.getValue();
     settings.map = !line.noMap.getValue();
     settings.loops = !line.noLoops.getValue();
     settings.storedMap = line.map.getValue();
+    settings.extend = line.extend.getValue();
     if (line.initialPose.isSet()) settings.initialPose = poseIn(line.initialPose.getValue());
     settings.onWarning = cli::warn;
     return settings;
@@ -207,8 +212,8 @@ std::shared_ptr<LiveView> liveViewFor(CommandLine& line, const Options& options,
     return view;
 }
 
-int slamDrive(CommandLine& line, run::RunSettings settings) {
-    const std::string input = line.input.getValue();
+/** One drive, from `input` to the folder `settings.folder`. */
+DriveResult slamDrive(CommandLine& line, const std::string& input, run::RunSettings settings) {
     const auto reader = io::openScans(input, line.label.getValue(), line.images.getValue());
     const Options options = optionsFor(line, reader->meta());
     Stopwatch watch;
@@ -222,8 +227,9 @@ int slamDrive(CommandLine& line, run::RunSettings settings) {
                     (label.empty() ? "" : " of sensor '" + label + "'") +
                     (start > 0 ? " after --start " + std::to_string(start) : ""));
     }
-    if (cli::interrupted()) return cli::kExitInterrupted;
+    if (cli::interrupted()) return {cli::kExitInterrupted};
     settings.sensorLabel = reader->label();
+    settings.drive = fs::path(input).stem().string();
     run::Run run(options, settings);
     if (!reader->meta())
         run.warn("no '" + io::sidecarPath(input, ".meta.yaml") +
@@ -239,35 +245,66 @@ int slamDrive(CommandLine& line, run::RunSettings settings) {
                  "' could be used: " + record.rows.front().report.step.reason);
     run.finish(record.fault.empty() && !cli::interrupted());
     const std::string fault =
-        run::RunFolder(line.output.getValue())
+        run::RunFolder(settings.folder)
             .write(record, anyUsed ? run.maps() : run::RunMaps{}, picture::illustrate);
-    printTable(record, line.output.getValue(), std::cout);
+    printTable(record, settings.folder, std::cout);
     if (!fault.empty()) throw Error(fault);
-    if (cli::interrupted()) return cli::kExitInterrupted;
+    if (cli::interrupted()) return {cli::kExitInterrupted, record.extended, false};
     if (view && view->isOpen()) cli::inform("done; close the window to end");
     while (view && view->isOpen() && !cli::interrupted())
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    return cli::kExitSuccess;
+    return {cli::kExitSuccess, record.extended, record.addedSubmaps > 0};
 }
 
 /** IN may be a pose graph: it is optimised again. */
-int optimiseGraph(CommandLine& line, const run::RunSettings& settings) {
-    const auto record =
-        run::optimiseAgain(io::loadG2o(line.input.getValue()), optionsFor(line, {}), settings);
+int optimiseGraph(CommandLine& line, const std::string& input, const run::RunSettings& settings) {
+    const auto record = run::optimiseAgain(io::loadG2o(input), optionsFor(line, {}), settings);
     const std::string fault =
-        run::RunFolder(line.output.getValue()).write(record, {}, picture::illustrate);
+        run::RunFolder(settings.folder).write(record, {}, picture::illustrate);
     if (!fault.empty()) throw Error(fault);
     return cli::kExitSuccess;
+}
+
+bool isGraph(const std::string& input) { return fs::path(input).extension() == ".g2o"; }
+
+/** Why the command line contradicts itself; empty: it does not. */
+std::string contradictionIn(CommandLine& line) {
+    const auto& inputs = line.input.getValue();
+    if (line.every.getValue() == 0) return "--every has to be 1 or more";
+    if (line.initialPose.isSet() && !line.map.isSet())
+        return "--initial-pose is a pose in a stored map: it needs --map";
+    if (line.extend.isSet() && !line.map.isSet())
+        return "--extend adds to a stored map: it needs --map";
+    if (line.noMap.isSet() && (line.extend.isSet() || inputs.size() > 1))
+        return "--no-map does not go with what is to become one map";
+    if (inputs.size() < 2) return "";
+    if (line.map.isSet() && !line.extend.isSet())
+        return "several drives are joined to one map: with --map that needs --extend";
+    if (line.truth.isSet() || line.images.isSet() || line.initialPose.isSet())
+        return "--ground-truth, --images and --initial-pose are one drive's: they do not go with "
+               "several";
+    for (const auto& input : inputs)
+        if (isGraph(input)) return "a pose graph is optimised alone";
+    return "";
+}
+
+/** Nothing that is read may be overwritten. */
+void checkFolders(CommandLine& line) {
+    if (!line.map.isSet()) return;
+    const fs::path map = run::storedMapIn(line.map.getValue());
+    std::error_code ignored;
+    if (fs::equivalent(fs::absolute(map).parent_path(), line.output.getValue(), ignored))
+        throw Error("the results would replace the map '" + line.map.getValue() +
+                    "': choose another folder than its own");
 }
 
 int slam(CommandLine& line, int argc, char** argv) {
     cli::catchInterrupts();
     try {
         optionsFor(line, {});
-        if (line.every.getValue() == 0) throw Error("--every has to be 1 or more");
         if (line.initialPose.isSet()) poseIn(line.initialPose.getValue());
-        if (line.initialPose.isSet() && !line.map.isSet())
-            throw Error("--initial-pose is a pose in a stored map: it needs --map");
+        const std::string contradiction = contradictionIn(line);
+        if (!contradiction.empty()) throw Error(contradiction);
         if (line.printConfig.getValue()) {
             printConfig(line);
             return cli::kExitSuccess;
@@ -279,14 +316,20 @@ int slam(CommandLine& line, int argc, char** argv) {
     const unsigned threads = line.threads.getValue();
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                       threads > 0 ? threads : std::thread::hardware_concurrency());
-    const std::string input = line.input.getValue();
-    if (!fs::is_regular_file(input))
-        throw Error("cannot read '" + input +
-                    "': " + (fs::exists(input) ? "it is no file" : "no such file"));
+    const auto& inputs = line.input.getValue();
+    for (const auto& input : inputs)
+        if (!fs::is_regular_file(input))
+            throw Error("cannot read '" + input +
+                        "': " + (fs::exists(input) ? "it is no file" : "no such file"));
+    checkFolders(line);
     const OutputFolder folder(line.output.getValue(), line.force.getValue());
     const auto settings = settingsFor(line, argc, argv);
-    return fs::path(input).extension() == ".g2o" ? optimiseGraph(line, settings)
-                                                 : slamDrive(line, settings);
+    if (inputs.size() > 1)
+        return slamSeveral(inputs, settings, [&](const auto& input, const auto& its) {
+            return slamDrive(line, input, its);
+        });
+    return isGraph(inputs.front()) ? optimiseGraph(line, inputs.front(), settings)
+                                   : slamDrive(line, inputs.front(), settings).exitCode;
 }
 }  // namespace
 

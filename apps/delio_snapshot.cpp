@@ -10,6 +10,7 @@
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
+#include "delio/localisation/stored_map.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
 #include "delio/picture/png.h"
@@ -78,7 +79,7 @@ class RangeConstraint : public TCLAP::Constraint<double> {
     double min_, max_;
 };
 
-/** Opens whichever of the three kinds of file it is, by its name. */
+/** Opens whichever of the four kinds of file it is, by its name. */
 mrpt::opengl::COpenGLScene::Ptr open(const std::string& path, const picture::SceneOptions& options,
                                      bool colormapGiven) {
     const std::string kind = std::filesystem::path(path).extension().string();
@@ -95,11 +96,21 @@ mrpt::opengl::COpenGLScene::Ptr open(const std::string& path, const picture::Sce
         const auto simplemap = map::loadSimplemap(path);
         points = map::pointsOf(simplemap);
         ways.trajectory = ways.keyframes = map::posesOf(simplemap);
+    } else if (kind == ".delio") {
+        const delio::StoredMap stored(path);
+        constexpr double kSpacing_m = 0.3;
+        const auto cloud = stored.cloud(kSpacing_m);
+        for (Eigen::Index i = 0; i < cloud.cols(); ++i)
+            points.insertPoint(cloud(0, i), cloud(1, i), cloud(2, i));
+        for (const auto& drive : stored.drives()) {
+            auto& way = ways.trajectory.empty() ? ways.trajectory : ways.others.emplace_back();
+            way = stored.trajectory(drive).poses;
+        }
     } else if (kind == ".ply") {
         points = map::loadPly(path);
     } else {
         throw delio::Error("cannot read '" + path +
-                           "': its name has to end in .3Dscene, .simplemap or .ply");
+                           "': its name has to end in .3Dscene, .simplemap, .delio or .ply");
     }
     if (points.empty()) throw delio::Error("'" + path + "' is an empty map: nothing to show");
     return picture::mapScene(points, ways, options);
@@ -140,8 +151,8 @@ struct Arguments {
 
 Arguments::Arguments()
     : cmd("Renders a picture of a map or scene; no display is needed.", ' ', delio::kVersion),
-      input("i", "input", "Map or scene to show", true, "", "FILE.3Dscene|FILE.simplemap|FILE.ply",
-            cmd),
+      input("i", "input", "Map or scene to show", true, "",
+            "FILE.3Dscene|FILE.simplemap|FILE.delio|FILE.ply", cmd),
       output("o", "output", "Picture to write", true, "", "OUT.png", cmd),
       size("", "size", "Pixels (default 1920x1080)", false, "1920x1080", &sizes, cmd),
       azimuth("", "azimuth",

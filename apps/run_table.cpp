@@ -70,6 +70,12 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
                        record.rows[static_cast<std::size_t>(found - record.fixes.begin())].scan);
         row("in the stored map", text);
     }
+    if (record.extended)
+        row("stored map extended", format("%zu edges of %zu candidates, %zu submaps added",
+                                          static_cast<std::size_t>(std::count_if(
+                                              record.joints.begin(), record.joints.end(),
+                                              [](const auto& joint) { return joint.accepted(); })),
+                                          record.joints.size(), record.addedSubmaps));
     if (record.searchedLoops)
         row("loops", format("%zu closed of %zu candidates", record.closedLoops().size(),
                             record.loops.size()));

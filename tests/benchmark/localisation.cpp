@@ -3,6 +3,8 @@
 // are two drives through one world (synth2rawlog).
 //   benchmark_localisation MAP.delio MAPPED.rawlog DRIVE.rawlog [--start N] [--every N]
 //                          [--places N] [--elsewhere] [--list]
+//   benchmark_localisation --seam MAP.delio FIRST.rawlog SECOND.rawlog
+//                          how well two drives of one map fit together where they meet
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -32,6 +34,7 @@ struct Settings {
     std::size_t start = 0, every = 1, places = 100;
     bool elsewhere = false;  // the drive is in another world: nothing may be found
     bool list = false;
+    bool seam = false;
 };
 
 /** True poses of the vehicle in the world, by scan. */
@@ -49,19 +52,19 @@ std::vector<Isometry3d> truePoses(const std::string& rawlog) {
 /** Poses that are known twice: as the map has them, and truly. */
 class MapTruth {
  public:
-    MapTruth(const StoredMap& map, const std::string& rawlog) {
+    MapTruth(const StoredMap& map, const StoredDrive& drive, const std::string& rawlog) {
         const auto truth = truePoses(rawlog);
         std::map<long, std::size_t> scanAt;  // by milliseconds
         const auto reader = io::openScans(rawlog);
         std::size_t number = 0;
         for (auto scan = reader->next(); scan; scan = reader->next(), ++number)
             scanAt[std::lround(1000 * scan->stamp_s)] = number;
-        const auto& stamps = map.drives().front().stamps_s;
-        for (std::size_t i = 0; i < stamps.size(); ++i) {
-            const auto at = scanAt.find(std::lround(1000 * stamps[i]));
+        const auto known = map.trajectory(drive);
+        for (std::size_t i = 0; i < known.poses.size(); ++i) {
+            const auto at = scanAt.find(std::lround(1000 * known.stamps_s[i]));
             if (at == scanAt.end() || at->second >= truth.size()) continue;
             true_.push_back(truth[at->second]);
-            mapped_.push_back(map.graph().poses()[i]);
+            mapped_.push_back(known.poses[i]);
         }
     }
 
@@ -77,6 +80,8 @@ class MapTruth {
         }
         return mapped_[best] * true_[best].inverse() * truth;
     }
+    const std::vector<Isometry3d>& truth() const { return true_; }
+    const std::vector<Isometry3d>& mapped() const { return mapped_; }
 
  private:
     std::vector<Isometry3d> true_, mapped_;
@@ -92,6 +97,7 @@ double quantile(std::vector<double> values, double share) {
 constexpr double kDeg = M_PI / 180;
 constexpr double kRight_m = 0.5, kRight_rad = 2 * kDeg;
 constexpr double kMapped_m = 8;  // nearer to a pose of the map: there is one
+constexpr std::size_t kScans = 5;
 
 struct Starts {
     std::size_t all = 0, found = 0, wrong = 0, unmapped = 0;
@@ -137,67 +143,33 @@ void startAt(const std::shared_ptr<const StoredMap>& map, const std::vector<Scan
     }
 }
 
-void measure(const Settings& settings) {
-    Stopwatch watch;
-    const auto map = std::make_shared<const StoredMap>(settings.map);
-    const auto truth = truePoses(settings.drive);
-    const MapTruth mapTruth(*map, settings.mapped);
-    const auto options = Options::forDrive("accurate", io::readDriveMeta(settings.drive));
-    const double path_m = map->submaps().back().driven.path_m;
-
-    // All of the drive, in one go; the starts beside it.
-    watch.lap_ms();
-    Localiser localiser(map, options);
-    const double opened_ms = watch.lap_ms();
-    Tracking tracking;
-    Starts starts;
-    const auto count = (truth.size() - settings.start + settings.every - 1) / settings.every;
-    const std::size_t apart =
-        std::max<std::size_t>(1, count / std::max<std::size_t>(1, settings.places));
-    std::deque<Scan> last;
-    constexpr std::size_t kScans = 5;
-    const auto reader = io::openScans(settings.drive);
-    for (std::size_t i = 0; i < settings.start; ++i) reader->skip();
-    std::size_t number = 0;
-    for (auto scan = reader->next(); scan && scan->index < truth.size(); ++number) {
-        last.push_back(*scan);
-        if (last.size() > kScans) last.pop_front();
-        if (settings.places > 0 && number % apart == kScans - 1 && last.size() == kScans)
-            startAt(map, {last.begin(), last.end()}, last.front().index, truth, mapTruth, settings,
-                    options, starts);
-        watch.lap_ms();
-        const auto found = localiser.process(*scan);
-        const double ms = watch.lap_ms();
-        double odometry_ms = 0, distance = 0;
-        for (const auto& [name, time] : found.step.times_ms) odometry_ms += time;
-        const Isometry3d off =
-            mapTruth.inMap(truth[scan->index], distance).inverse() * found.fix.vehicle.pose;
-        const double off_m = off.translation().norm(), off_rad = angleOf(off.linear());
-        ++tracking.scans;
-        if (found.fix.where == Whereabouts::kInMap && found.fix.measured) {
-            ++tracking.inMap;
-            tracking.off_m.push_back(off_m);
-            tracking.off_deg.push_back(off_rad / kDeg);
-            tracking.share.push_back(found.fix.share);
-            if (settings.elsewhere || off_m > kRight_m || off_rad > kRight_rad) ++tracking.wrong;
-            if (!found.fix.searched) {
-                tracking.ms.push_back(ms);
-                tracking.localisation_ms.push_back(ms - odometry_ms);
-            }
-        } else {
-            tracking.outsideShare.push_back(found.fix.share);
-            if (distance < kMapped_m) ++tracking.mappedNotIn;
-            if (settings.list)
-                std::printf("    scan %zu (%.1f m from the map): %s, share %.2f\n", scan->index,
-                            distance, found.fix.reason.c_str(), found.fix.share);
-        }
-        for (std::size_t i = 1; i < settings.every; ++i) reader->skip();
-        scan = reader->next();
+/** One scan of the whole drive. */
+void note(const Localisation& found, double ms, const Scan& scan, const Isometry3d& truth,
+          const MapTruth& mapTruth, const Settings& settings, Tracking& tracking) {
+    double odometry_ms = 0, distance = 0;
+    for (const auto& [name, time] : found.step.times_ms) odometry_ms += time;
+    const Isometry3d off = mapTruth.inMap(truth, distance).inverse() * found.fix.vehicle.pose;
+    const double off_m = off.translation().norm(), off_rad = angleOf(off.linear());
+    ++tracking.scans;
+    if (found.fix.where != Whereabouts::kInMap || !found.fix.measured) {
+        tracking.outsideShare.push_back(found.fix.share);
+        if (distance < kMapped_m) ++tracking.mappedNotIn;
+        if (settings.list)
+            std::printf("    scan %zu (%.1f m from the map): %s, share %.2f\n", scan.index,
+                        distance, found.fix.reason.c_str(), found.fix.share);
+        return;
     }
-    std::printf("%s in %s (%.0f m, %zu submaps, %.2f MB per 100 m), opened in %.0f ms\n",
-                settings.drive.c_str(), settings.map.c_str(), path_m, map->submaps().size(),
-                static_cast<double>(std::filesystem::file_size(settings.map)) / 1e4 / path_m,
-                opened_ms);
+    ++tracking.inMap;
+    tracking.off_m.push_back(off_m);
+    tracking.off_deg.push_back(off_rad / kDeg);
+    tracking.share.push_back(found.fix.share);
+    if (settings.elsewhere || off_m > kRight_m || off_rad > kRight_rad) ++tracking.wrong;
+    if (found.fix.searched) return;
+    tracking.ms.push_back(ms);
+    tracking.localisation_ms.push_back(ms - odometry_ms);
+}
+
+void print(const Starts& starts, const Tracking& tracking) {
     std::printf(
         "  starts: found within %zu scans %zu of %zu on mapped streets, wrong %zu, not mapped "
         "%zu; scans %.0f median; search %.0f ms median, %.0f at most\n",
@@ -219,6 +191,65 @@ void measure(const Settings& settings) {
         quantile(tracking.localisation_ms, 0.5), quantile(tracking.localisation_ms, 1),
         run::peakMemory_mb());
 }
+
+/** All of the drive in one go, and starts beside it. */
+void measure(const Settings& settings) {
+    const auto map = std::make_shared<const StoredMap>(settings.map);
+    const auto truth = truePoses(settings.drive);
+    const MapTruth mapTruth(*map, map->drives().front(), settings.mapped);
+    const auto options = Options::forDrive("accurate", io::readDriveMeta(settings.drive));
+    const double path_m = map->submaps().back().driven.path_m;
+    Stopwatch watch;
+    Localiser localiser(map, options);
+    const double opened_ms = watch.lap_ms();
+    Tracking tracking;
+    Starts starts;
+    const auto count = (truth.size() - settings.start + settings.every - 1) / settings.every;
+    const auto apart = std::max<std::size_t>(1, count / std::max<std::size_t>(1, settings.places));
+    std::deque<Scan> last;
+    const auto reader = io::openScans(settings.drive);
+    for (std::size_t i = 0; i < settings.start; ++i) reader->skip();
+    std::size_t number = 0;
+    for (auto scan = reader->next(); scan && scan->index < truth.size(); ++number) {
+        last.push_back(*scan);
+        if (last.size() > kScans) last.pop_front();
+        if (settings.places > 0 && number % apart == kScans - 1 && last.size() == kScans)
+            startAt(map, {last.begin(), last.end()}, last.front().index, truth, mapTruth, settings,
+                    options, starts);
+        watch.lap_ms();
+        const auto found = localiser.process(*scan);
+        note(found, watch.lap_ms(), *scan, truth[scan->index], mapTruth, settings, tracking);
+        for (std::size_t i = 1; i < settings.every; ++i) reader->skip();
+        scan = reader->next();
+    }
+    std::printf("%s in %s (%.0f m, %zu submaps, %.2f MB per 100 m), opened in %.0f ms\n",
+                settings.drive.c_str(), settings.map.c_str(), path_m, map->submaps().size(),
+                static_cast<double>(std::filesystem::file_size(settings.map)) / 1e4 / path_m,
+                opened_ms);
+    print(starts, tracking);
+}
+
+void measureSeam(const Settings& settings) {
+    const StoredMap map(settings.map);
+    if (map.drives().size() < 2) throw Error("the map has one drive only");
+    const MapTruth first(map, map.drives()[0], settings.mapped),
+        second(map, map.drives()[1], settings.drive);
+    std::vector<double> off_m, off_deg, apart_m;
+    for (std::size_t i = 0; i < second.truth().size(); ++i) {
+        double distance = 0;
+        const Isometry3d off =
+            first.inMap(second.truth()[i], distance).inverse() * second.mapped()[i];
+        apart_m.push_back(distance);
+        if (distance > kMapped_m) continue;
+        off_m.push_back(off.translation().norm());
+        off_deg.push_back(angleOf(off.linear()) / kDeg);
+    }
+    std::printf(
+        "%s: %zu of %zu scans of the second drive within %.0f m of the first: off %.4f m %.4f deg "
+        "median, at most %.4f m %.4f deg; the others up to %.0f m away\n",
+        settings.map.c_str(), off_m.size(), apart_m.size(), kMapped_m, quantile(off_m, 0.5),
+        quantile(off_deg, 0.5), quantile(off_m, 1), quantile(off_deg, 1), quantile(apart_m, 1));
+}
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -230,6 +261,8 @@ int main(int argc, char** argv) {
             const auto number = [&] { return std::stoul(argv[++i]); };
             if (word == "--list")
                 settings.list = true;
+            else if (word == "--seam")
+                settings.seam = true;
             else if (word == "--elsewhere")
                 settings.elsewhere = true;
             else if (word == "--start" && i + 1 < argc)
@@ -245,7 +278,7 @@ int main(int argc, char** argv) {
         settings.map = files[0];
         settings.mapped = files[1];
         settings.drive = files[2];
-        measure(settings);
+        settings.seam ? measureSeam(settings) : measure(settings);
     } catch (const std::exception& e) {
         std::fprintf(stderr, "benchmark_localisation: %s\n", e.what());
         return 1;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "delio/evaluation/rotation_angle.h"
 
@@ -22,6 +23,17 @@ Spread spreadOf(std::vector<double> errors) {
     spread.p95 = errors[(95 * n + 99) / 100 - 1];
     spread.max = errors.back();
     return spread;
+}
+
+PoseError poseError(const std::vector<Eigen::Isometry3d>& reference,
+                    const std::vector<Eigen::Isometry3d>& estimate) {
+    std::vector<double> translations_m, rotations_deg;
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+        const Eigen::Isometry3d error = estimate[i].inverse() * reference[i];
+        translations_m.push_back(error.translation().norm());
+        rotations_deg.push_back(mrpt::RAD2DEG(rotationAngle_rad(error)));
+    }
+    return {spreadOf(std::move(translations_m)), spreadOf(std::move(rotations_deg))};
 }
 
 RelativeError relativeError(const std::vector<Eigen::Isometry3d>& reference,

@@ -16,8 +16,8 @@ namespace delio::io {
 namespace fs = std::filesystem;
 
 namespace {
-const char* const kSideFiles[] = {".meta.yaml", ".times.txt", ".calib.txt", ".poses.txt",
-                                  ".faults.tsv", ".origin.txt"};
+const char* const kSideFiles[] = {".meta.yaml", ".times.txt",  ".calib.txt",
+                                  ".poses.txt", ".faults.tsv", ".origin.txt"};
 
 void writeFloats(const std::string& path, const std::vector<float>& values) {
     std::ofstream out(path, std::ios::binary);

@@ -101,7 +101,9 @@ void MapTracker::judge(bool agrees) {
         ++now_.confirmed;
         now_.missed = 0;
         now_.unseen_m = 0;
-        if (now_.confirmed >= kConfirmed) now_.where = Whereabouts::kInMap;
+        if (now_.confirmed < kConfirmed) return;
+        now_.where = Whereabouts::kInMap;
+        now_.inVain = 0;
         return;
     }
     ++now_.missed;
@@ -131,8 +133,11 @@ std::vector<std::size_t> MapTracker::nearSubmaps(double reach_m) const {
 
 bool MapTracker::isTimeToSearch() const {
     constexpr std::size_t kAtFirst = 5;
+    constexpr double kRarest = 5;  // the longer in vain, the rarer
+    const double spacing = std::min(1.0 + static_cast<double>(now_.inVain) / kAtFirst, kRarest) *
+                           options_.search_spacing;
     return now_.confirmed == 0 && now_.where != Whereabouts::kInMap &&
-           (now_.scans <= kAtFirst || now_.unsearched_m >= options_.search_spacing);
+           (now_.scans <= kAtFirst || now_.unsearched_m >= spacing);
 }
 
 void MapTracker::search(const Eigen::Matrix3d& level, MapFix& fix) {
@@ -150,6 +155,7 @@ void MapTracker::search(const Eigen::Matrix3d& level, MapFix& fix) {
     const auto submaps = now_.vehicle ? nearSubmaps(reach) : std::vector<std::size_t>();
     if (count == 0 || (now_.vehicle && submaps.empty())) return;
     now_.unsearched_m = 0;
+    ++now_.inVain;
     fix.searched = true;
     const auto found = now_.vehicle ? search_.find(cloud, submaps) : search_.find(cloud);
     fix.reason = found.reason;

@@ -65,25 +65,6 @@ FoundPlace PlaceSearch::find(const Eigen::Matrix3Xf& cloud,
     return verified(index_.find(seen.image, submaps, kMost), cloud, seen);
 }
 
-std::shared_ptr<const PlaceSearch::Ground> PlaceSearch::ground(std::size_t submap) {
-    constexpr std::size_t kMost = 6;
-    const auto known = std::find_if(recent_.begin(), recent_.end(),
-                                    [&](const auto& other) { return other->submap == submap; });
-    std::shared_ptr<const Ground> found;
-    if (known != recent_.end()) {
-        found = *known;
-        recent_.erase(known);
-    } else {
-        const auto points = map_->points(submap);
-        found = std::make_shared<const Ground>(
-            Ground{submap, loops::RegistrableSubmap(points),
-                   loops::FreeSpace(sketches_[submap].image, points)});
-    }
-    recent_.push_front(found);
-    if (recent_.size() > kMost) recent_.pop_back();
-    return found;
-}
-
 FoundPlace PlaceSearch::verified(const std::vector<loops::Sighting>& sightings,
                                  const Eigen::Matrix3Xf& cloud, const loops::Sketch& seen) {
     constexpr std::size_t kRegistered = 5;
@@ -109,7 +90,9 @@ FoundPlace PlaceSearch::verified(const std::vector<loops::Sighting>& sightings,
     loops::ClosureOptions options;
     options.min_overlap = options_.min_overlap;
     for (const auto& hypothesis : hypotheses) {
-        const auto place = ground(hypothesis.place);
+        const auto place = grounds_.at(hypothesis.place, [&] {
+            return loops::Ground(map_->points(hypothesis.place), sketches_[hypothesis.place].image);
+        });
         const Closure closure = closureOf({map_->submaps()[hypothesis.place], place->map},
                                           {itself, registrable}, poseOf(hypothesis.shift), options);
         FoundPlace found;

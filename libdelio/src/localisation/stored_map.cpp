@@ -15,6 +15,7 @@
 #include "bytes.h"
 #include "delio/core/error.h"
 #include "delio/io/output_file.h"
+#include "delio/scan/voxel_grid.h"
 #include "packed_points.h"
 
 namespace delio {
@@ -127,8 +128,9 @@ loops::Sketch getSketch(ByteReader& bytes) {
         bands.size() != static_cast<std::size_t>(cells.cols()) ||
         heights.size() != static_cast<std::size_t>(grounds.cols()))
         throw std::out_of_range("sketch");
-    return {loops::Azimuths::ofWeights(azimuths), loops::HeightImage(std::move(cells), std::move(bands),
-                                                          std::move(grounds), std::move(heights))};
+    return {loops::Azimuths::ofWeights(azimuths),
+            loops::HeightImage(std::move(cells), std::move(bands), std::move(grounds),
+                               std::move(heights))};
 }
 }  // namespace
 
@@ -274,6 +276,9 @@ void StoredMap::readIndex(const Part& index) {
             drive.name = reader.getText();
             drive.firstNode = reader.get<std::uint64_t>();
             drive.stamps_s = reader.getAll<double>();
+            const auto nodes = graph_.poses().size();
+            if (drive.firstNode > nodes || drive.stamps_s.size() > nodes - drive.firstNode)
+                throw std::out_of_range("drive");
             drives_.push_back(std::move(drive));
         }
         for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
@@ -285,6 +290,11 @@ void StoredMap::readIndex(const Part& index) {
         damaged("its index cannot be understood");
     }
     level_ = loops::levelFrames(submaps_, graph_.poses());
+}
+
+io::Trajectory StoredMap::trajectory(const StoredDrive& drive) const {
+    const auto first = graph_.poses().begin() + static_cast<std::ptrdiff_t>(drive.firstNode);
+    return {{first, first + static_cast<std::ptrdiff_t>(drive.stamps_s.size())}, drive.stamps_s};
 }
 
 loops::Sketch StoredMap::sketch(std::size_t submap) const {
@@ -305,6 +315,22 @@ Eigen::Matrix3Xf StoredMap::points(std::size_t submap) const {
     } catch (const std::out_of_range&) {
         damaged("points cannot be understood");
     }
+}
+
+Eigen::Matrix3Xf StoredMap::cloud(double spacing) const {
+    std::vector<Eigen::Matrix3Xf> parts;
+    Eigen::Index count = 0;
+    for (std::size_t i = 0; i < submaps_.size(); ++i) {
+        parts.emplace_back(level_[i].cast<float>() * points(i));
+        count += parts.back().cols();
+    }
+    Eigen::Matrix3Xf all(3, count);
+    count = 0;
+    for (const auto& part : parts) {
+        all.middleCols(count, part.cols()) = part;
+        count += part.cols();
+    }
+    return scan::firstOfVoxels(all, spacing);
 }
 
 MapContent StoredMap::content() const {

@@ -29,20 +29,6 @@ Eigen::Matrix3Xf Places::points(std::size_t submap) const {
 }
 
 std::shared_ptr<const Ground> Places::ground(std::size_t submap) {
-    constexpr std::size_t kMost = 5;  // a submap and those it is compared with, next to each other
-    const auto known = std::find_if(recent_.begin(), recent_.end(),
-                                    [&](const Recent& other) { return other.submap == submap; });
-    Recent recent{submap, nullptr};
-    if (known != recent_.end()) {
-        recent = *known;
-        recent_.erase(known);
-    } else {
-        const auto cloud = points(submap);
-        recent.ground = std::make_shared<Ground>(
-            Ground{RegistrableSubmap(cloud), FreeSpace(sketches_[submap].image, cloud)});
-    }
-    recent_.push_front(recent);
-    if (recent_.size() > kMost) recent_.pop_back();
-    return recent.ground;
+    return grounds_.at(submap, [&] { return Ground(points(submap), sketches_[submap].image); });
 }
 }  // namespace delio::loops

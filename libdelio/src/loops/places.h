@@ -1,22 +1,14 @@
 #pragma once
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "../io/spool.h"
-#include "delio/loops/closure.h"
-#include "delio/loops/free_space.h"
+#include "delio/loops/grounds.h"
 #include "delio/loops/sketch.h"
 
 namespace delio::loops {
-/** What another one is verified against: 10 to 20 MB. */
-struct Ground {
-    RegistrableSubmap map;
-    FreeSpace free;
-};
-
 /** The submaps of a drive, by number: their sketches in memory, their points on the disk, and of
  *  those that were needed last what others are verified against. */
 class Places {
@@ -34,15 +26,11 @@ class Places {
     std::shared_ptr<const Ground> ground(std::size_t submap);
 
  private:
-    struct Recent {
-        std::size_t submap;
-        std::shared_ptr<const Ground> ground;
-    };
     std::string folder_;
     std::optional<io::Spool> spool_;  //!< made with the first submap
     std::vector<io::Spool::Place> points_;
     std::vector<Sketch> sketches_;
     std::vector<std::vector<Shift>> repetitions_;  //!< empty: not known yet
-    std::deque<Recent> recent_;                    //!< the latest first
+    Grounds grounds_{5};  //!< a submap and those it is compared with, next to each other
 };
 }  // namespace delio::loops

@@ -186,6 +186,8 @@ COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& 
         addWay(*scene, ways.trajectory, extent.longer(), ink, 4, "trajectory");
         addMark(*scene, ways.trajectory.front(), kGreen, extent.longer(), "start");
         addMark(*scene, ways.trajectory.back(), kYellow, extent.longer(), "end");
+        for (const auto& way : ways.others)
+            addWay(*scene, way, extent.longer(), ink, 4, "trajectory");
         addLegendText(*scene, ++row, "trajectory, from green to yellow", ink);
         if (!ways.loops.empty()) addLoops(*scene, ways, extent.longer(), ++row);
     }

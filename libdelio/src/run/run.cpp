@@ -8,6 +8,7 @@
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/io/drive_meta.h"
+#include "delio/localisation/join_maps.h"
 #include "delio/run/doubts.h"
 #include "delio/run/run_folder.h"
 
@@ -124,9 +125,12 @@ void Run::closeLoops() {
 /** Into the stored map's frame, held by every scan that was measured there. */
 void Run::anchor() {
     record_.fixes = follower_->fixes();
-    if (!record_.isLocalised())
-        return fail("no scan of the drive was found in the map '" + settings_.storedMap +
-                    "': the poses are the odometry's, in the frame of its first scan");
+    if (!record_.isLocalised()) {
+        const std::string what = "no scan of the drive was found in the map '" +
+                                 settings_.storedMap +
+                                 "': the poses are the odometry's, in the frame of its first scan";
+        return settings_.mayBeElsewhere ? warn(what) : fail(what);
+    }
     for (const auto& warning : warningsOf(record_.fixes, record_.rows)) warn(warning);
     record_.graph = anchored(record_.graph, record_.fixes);
     if (settings_.graph) record_.optimisation = record_.graph.optimise(record_.options.graph);
@@ -159,11 +163,30 @@ void Run::optimise() {
 /** The map to come back to: submaps where the final poses put them. */
 void Run::store() {
     const auto& submaps = loops_->search();
-    stored_ = MapContent{record_.graph,
-                         {{settings_.drive, 0, record_.odometry.stamps_s}},
-                         submaps.submaps(),
-                         [&](std::size_t i) { return submaps.sketch(i); },
-                         [&](std::size_t i) { return submaps.points(i); }};
+    own_ = MapContent{record_.graph,
+                      {{settings_.drive, 0, record_.odometry.stamps_s}},
+                      submaps.submaps(),
+                      [&](std::size_t i) { return submaps.sketch(i); },
+                      [&](std::size_t i) { return submaps.points(i); }};
+    stored_ = own_;
+    try {
+        if (settings_.extend && record_.isLocalised()) extend();
+    } catch (const std::exception& e) {
+        fail("the map was not extended: " + plainMessage(e));
+    }
+}
+
+void Run::extend() {
+    auto both = joined(follower_->map(), *own_, record_.fixes, record_.options.loops,
+                       record_.options.closures, record_.options.graph);
+    record_.joints = std::move(both.joints);
+    if (both.accepted == 0)
+        return fail(
+            "the map was not extended: no submap of the drive could be registered to it "
+            "beyond doubt (joints.csv says why)");
+    record_.extended = true;
+    record_.addedSubmaps = both.added;
+    stored_ = std::move(both.content);
 }
 
 evaluation::Comparison Run::compared(const io::Trajectory& vehicle) const {

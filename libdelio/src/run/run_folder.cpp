@@ -137,6 +137,8 @@ std::string RunFolder::write(RunRecord record, const RunMaps& maps,
     if (!record.rows.empty()) writeScans(record.rows, path(kScans));
     remove(kLoops);
     if (record.searchedLoops) writeLoopTable(record.loops, path(kLoops));
+    remove(kJoints);
+    if (!record.joints.empty()) writeLoopTable(record.joints, path(kJoints));
     remove(kLocalisation);
     if (!record.fixes.empty())
         writeLocalisationTable(record.rows, record.fixes, path(kLocalisation));

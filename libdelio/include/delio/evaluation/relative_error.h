@@ -26,4 +26,12 @@ struct RelativeError {
  *  both, of the same moving frame; their fixed frames may differ. */
 RelativeError relativeError(const std::vector<Eigen::Isometry3d>& reference,
                             const std::vector<Eigen::Isometry3d>& estimate, std::size_t delta = 1);
+
+/** Between poses of one fixed frame, such as a map's: nothing is aligned. Same count in both. */
+struct PoseError {
+    Spread translation_m;
+    Spread rotation_deg;
+};
+PoseError poseError(const std::vector<Eigen::Isometry3d>& reference,
+                    const std::vector<Eigen::Isometry3d>& estimate);
 }  // namespace delio::evaluation

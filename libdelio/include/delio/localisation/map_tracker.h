@@ -67,6 +67,7 @@ class MapTracker {
         unsigned missed = 0;               //!< and that do not
         double unseen_m = 0;               //!< path since it was measured
         double unsearched_m = 0;           //!< path since it was searched for
+        std::size_t inVain = 0;            //!< searches since it was in the map
         std::size_t scans = 0;
         Eigen::Isometry3d odometry = Eigen::Isometry3d::Identity();
         std::deque<Seen> recent;  //!< the latest last

@@ -1,12 +1,9 @@
 #pragma once
-#include <deque>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "delio/localisation/stored_map.h"
-#include "delio/loops/closure.h"
-#include "delio/loops/free_space.h"
+#include "delio/loops/grounds.h"
 #include "delio/loops/place_index.h"
 
 namespace delio {
@@ -43,14 +40,6 @@ class PlaceSearch {
     FoundPlace find(const Eigen::Matrix3Xf& cloud, const std::vector<std::size_t>& submaps);
 
  private:
-    /** What a cloud is registered to and compared with. */
-    struct Ground {
-        std::size_t submap;
-        loops::RegistrableSubmap map;
-        loops::FreeSpace free;
-    };
-    const loops::Sketch& sketch(std::size_t submap);
-    std::shared_ptr<const Ground> ground(std::size_t submap);
     FoundPlace verified(const std::vector<loops::Sighting>& sightings,
                         const Eigen::Matrix3Xf& cloud, const loops::Sketch& seen);
 
@@ -58,6 +47,6 @@ class PlaceSearch {
     PlaceSearchOptions options_;
     std::vector<loops::Sketch> sketches_;
     loops::PlaceIndex index_;
-    std::deque<std::shared_ptr<const Ground>> recent_;  //!< the latest first
+    loops::Grounds grounds_{6};
 };
 }  // namespace delio

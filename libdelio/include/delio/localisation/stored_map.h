@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "delio/graph/pose_graph.h"
+#include "delio/io/trajectory.h"
 #include "delio/loops/sketch.h"
 #include "delio/loops/submap.h"
 
@@ -46,9 +47,15 @@ class StoredMap {
     /** Of each submap: maps its coordinates to the map's. */
     const std::vector<Eigen::Isometry3d>& levelFrames() const { return level_; }
 
+    /** Of one of its drives, in the map's frame. */
+    io::Trajectory trajectory(const StoredDrive& drive) const;
+
     /** Throw Error where that part of the file is damaged. */
     loops::Sketch sketch(std::size_t submap) const;
     Eigen::Matrix3Xf points(std::size_t submap) const;
+
+    /** All of them in the map's frame, one in `spacing` metres. */
+    Eigen::Matrix3Xf cloud(double spacing) const;
 
     /** As it would be written once more; refers to this map. */
     MapContent content() const;

@@ -28,6 +28,7 @@ struct MapWays {
     std::vector<Eigen::Isometry3d> keyframes;
     /** Poses of the trajectory, by number, between which a loop was closed. */
     std::vector<std::pair<std::size_t, std::size_t>> loops;
+    std::vector<std::vector<Eigen::Isometry3d>> others = {};  //!< of other drives, drawn alike
 };
 
 /** A map and the ways through it, in the world's frame (metres, z up): points coloured by their

@@ -28,6 +28,9 @@ struct RunSettings {
     std::string storedMap;
     /** Of the vehicle at the first scan in that map, if it is known to some metres. */
     std::optional<Eigen::Isometry3d> initialPose;
+    bool extend = false;  //!< what the drive has seen is added to that map
+    /** A drive that is not in the map keeps its own frame, which is no fault. */
+    bool mayBeElsewhere = false;
     bool loops = true;  //!< places that the drive comes back to are searched for; with `graph`
     /** Told of every warning as it comes. */
     std::function<void(const std::string&)> onWarning;
@@ -72,6 +75,7 @@ class Run {
     void closeLoops();
     void anchor();
     void store();
+    void extend();
     void score();
     evaluation::Comparison compared(const io::Trajectory& vehicle) const;
 
@@ -81,8 +85,8 @@ class Run {
     std::shared_ptr<GraphBuilder> graph_;
     std::shared_ptr<MapListener> map_;
     std::shared_ptr<MapFollower> follower_;
-    std::shared_ptr<LoopCloser> loops_;  //!< keeps the submaps, too
-    std::optional<MapContent> stored_;
+    std::shared_ptr<LoopCloser> loops_;       //!< keeps the submaps, too
+    std::optional<MapContent> own_, stored_;  //!< of the drive; and what is written
     std::optional<io::Trajectory> truth_;
     bool truthIsCam0_ = true, truthWasAskedFor_ = false;
 };

@@ -36,6 +36,7 @@ class RunFolder {
     static constexpr const char* kScans = "scans.csv";
     static constexpr const char* kLoops = "loops.csv";  //!< where loops were searched for
     static constexpr const char* kLocalisation = "localisation.csv";  //!< in a stored map
+    static constexpr const char* kJoints = "joints.csv";              //!< where one was extended
     static constexpr const char* kConfig = "config.ini";
     static constexpr const char* kSimplemap = "map.simplemap";
     static constexpr const char* kPly = "map.ply";
@@ -66,6 +67,7 @@ class RunFolder {
     graph::PoseGraph graph() const;
     io::ScanTable scans() const { return io::readScanTable(path(kScans)); }
     std::vector<LoopRow> loops() const { return readLoopTable(path(kLoops)); }
+    std::vector<LoopRow> joints() const { return readLoopTable(path(kJoints)); }
     std::vector<LocalisationRow> localisation() const {
         return readLocalisationTable(path(kLocalisation));
     }

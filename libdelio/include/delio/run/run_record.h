@@ -44,8 +44,11 @@ struct RunRecord {
     graph::PoseGraph graph;
     graph::OptimisationResult optimisation;
     double optimise_ms = 0;
-    std::string storedMap;      //!< that the drive was localised in; empty: none
-    std::vector<MapFix> fixes;  //!< of every scan, where there is one
+    std::string storedMap;                     //!< that the drive was localised in; empty: none
+    std::vector<MapFix> fixes;                 //!< of every scan, where there is one
+    std::vector<loops::LoopCandidate> joints;  //!< with the map's submaps, where it was extended
+    bool extended = false;
+    std::size_t addedSubmaps = 0;
     bool searchedLoops = false;
     std::vector<loops::LoopCandidate> loops;  //!< and what became of them
     double loop_search_ms = 0;                //!< beside the drive, and after it

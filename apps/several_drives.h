@@ -1,0 +1,26 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "delio/run/run.h"
+
+namespace delio {
+/** How the run of a drive ended. */
+struct DriveResult {
+    int exitCode = 0;
+    bool extended = false;  //!< its map is the one that it was localised in and its own
+    bool grown = false;     //!< which has places that the other did not have
+};
+
+/** Runs one drive into the folder of its settings. Throws where it fails. */
+using SlamDrive =
+    std::function<DriveResult(const std::string& input, const run::RunSettings& settings)>;
+
+/** Several drives in one frame and one map where they meet, and separate where they do not: each in
+ *  a folder of its own name in `settings.folder`; there also map.delio (map-2.delio ... of what is
+ *  separate), NAME_kitti.txt and NAME_tum.txt with each drive's poses in its map, and drives.csv,
+ *  which says what is where. A drive that fails is left out, and the exit code says so. */
+int slamSeveral(const std::vector<std::string>& inputs, const run::RunSettings& settings,
+                const SlamDrive& slam);
+}  // namespace delio
