@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -16,13 +15,13 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
 #include "delio/core/stopwatch.h"
 #include "delio/io/g2o.h"
 #include "delio/io/scan_reader.h"
 #include "delio/picture/illustrate.h"
 #include "delio/run/run.h"
 #include "delio/version.h"
+#include "initial_pose.h"
 #include "live_view.h"
 #include "output_folder.h"
 #include "run_table.h"
@@ -128,22 +127,6 @@ void printConfig(CommandLine& line) {
         std::cout << (text == otherText ? "" : "# ") << text << "\n";
 }
 
-/** Of X,Y,Z,YAW_DEG. */
-Eigen::Isometry3d poseIn(const std::string& text) {
-    std::vector<double> numbers;
-    std::istringstream in(text + ",");
-    for (std::string word; std::getline(in, word, ',');) {
-        const auto number = numberIn<double>(word);
-        if (!number || !std::isfinite(*number)) break;
-        numbers.push_back(*number);
-    }
-    if (numbers.size() != 4 || std::count(text.begin(), text.end(), ',') != 3)
-        throw Error("--initial-pose wants X,Y,Z,YAW_DEG (metres and degrees in the map), not '" +
-                    text + "'");
-    return isometry(rotationExp({0, 0, numbers[3] * M_PI / 180}),
-                    {numbers[0], numbers[1], numbers[2]});
-}
-
 run::RunSettings settingsFor(CommandLine& line, int argc, char** argv) {
     run::RunSettings settings;
     settings.profile = line.profile.getValue();
@@ -154,7 +137,7 @@ run::RunSettings settingsFor(CommandLine& line, int argc, char** argv) {
     settings.loops = !line.noLoops.getValue();
     settings.storedMap = line.map.getValue();
     settings.extend = line.extend.getValue();
-    if (line.initialPose.isSet()) settings.initialPose = poseIn(line.initialPose.getValue());
+    if (line.initialPose.isSet()) settings.initialPose = initialPoseIn(line.initialPose.getValue());
     settings.onWarning = cli::warn;
     return settings;
 }
@@ -302,7 +285,7 @@ int slam(CommandLine& line, int argc, char** argv) {
     cli::catchInterrupts();
     try {
         optionsFor(line, {});
-        if (line.initialPose.isSet()) poseIn(line.initialPose.getValue());
+        if (line.initialPose.isSet()) initialPoseIn(line.initialPose.getValue());
         const std::string contradiction = contradictionIn(line);
         if (!contradiction.empty()) throw Error(contradiction);
         if (line.printConfig.getValue()) {

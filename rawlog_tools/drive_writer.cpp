@@ -130,10 +130,9 @@ void DriveWriter::finish() {
     meta.epoch_s = io::kDriveEpoch_s;
     meta.generator = std::string("synth2rawlog 2 (delio ") + kVersion + ")";
     writer_.finish(meta, times_, calibration(), poses_, faults_, origin());
-    cli::inform(
-        "wrote " + std::to_string(writer_.scans()) + " scans, " +
-        std::to_string(std::lround(
-            std::abs(drive_.station(drive_.scans() - 1) - drive_.station(0)))) +
-        " m, to '" + request_.output + "'");
+    cli::inform("wrote " + std::to_string(writer_.scans()) + " scans, " +
+                std::to_string(
+                    std::lround(std::abs(drive_.station(drive_.scans() - 1) - drive_.station(0)))) +
+                " m, to '" + request_.output + "'");
 }
 }  // namespace delio::synth

@@ -174,6 +174,7 @@ MapFix MapTracker::add(const Increment& increment, const Eigen::Matrix3Xf& point
                        const Eigen::Vector3d& up) {
     before_ = now_;
     MapFix fix;
+    fix.reason = "not searched for at this scan";
     const Eigen::Matrix3d level = scan::turnedUp(up).cast<double>();
     const double moved_m = increment.pose.translation().norm();
     now_.odometry = now_.odometry * increment.pose;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace delio {
-using loops::Closure;
 using loops::Shift;
 
 namespace {
@@ -28,10 +27,11 @@ Shift refined(const loops::Sketch& place, const loops::Sketch& cloud, const Shif
     return best;
 }
 
-struct Hypothesis {
-    std::size_t place;
-    Shift shift;
-};
+bool isElsewhere(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+    constexpr double kElsewhere_m = 5, kElsewhere_rad = 20 * kDeg;
+    const Eigen::Isometry3d apart = a.inverse() * b;
+    return apart.translation().norm() > kElsewhere_m || angleOf(apart.linear()) > kElsewhere_rad;
+}
 }  // namespace
 
 std::vector<OptionField> PlaceSearchOptions::fields() const {
@@ -65,58 +65,65 @@ FoundPlace PlaceSearch::find(const Eigen::Matrix3Xf& cloud,
     return verified(index_.find(seen.image, submaps, kMost), cloud, seen);
 }
 
-FoundPlace PlaceSearch::verified(const std::vector<loops::Sighting>& sightings,
-                                 const Eigen::Matrix3Xf& cloud, const loops::Sketch& seen) {
-    constexpr std::size_t kRegistered = 5;
-    constexpr double kElsewhere_m = 5, kElsewhere_rad = 20 * kDeg;
-    FoundPlace best;
-    best.reason = "nothing alike";
-    std::vector<Hypothesis> hypotheses;
+/** In fine, the best first; those that are clearly worse than the best are left out. */
+std::vector<PlaceSearch::Hypothesis> PlaceSearch::hypotheses(
+    const std::vector<loops::Sighting>& sightings, const loops::Sketch& seen) const {
+    constexpr std::size_t kMost = 5;
+    std::vector<Hypothesis> found;
     for (const auto& sighting : sightings)
-        hypotheses.push_back(
-            {sighting.place, refined(sketches_[sighting.place], seen, sighting.shift)});
-    std::stable_sort(hypotheses.begin(), hypotheses.end(),
+        found.push_back({sighting.place, refined(sketches_[sighting.place], seen, sighting.shift)});
+    std::stable_sort(found.begin(), found.end(),
                      [](const auto& a, const auto& b) { return a.shift.share > b.shift.share; });
     const auto isWorse = [&](const Hypothesis& other) {
-        return other.shift.share < options_.rival * hypotheses.front().shift.share;
+        return other.shift.share < options_.rival * found.front().shift.share;
     };
-    hypotheses.erase(std::find_if(hypotheses.begin(), hypotheses.end(), isWorse), hypotheses.end());
-    if (hypotheses.size() > kRegistered) hypotheses.resize(kRegistered);
-    if (hypotheses.empty()) return best;
+    found.erase(std::find_if(found.begin(), found.end(), isWorse), found.end());
+    if (found.size() > kMost) found.resize(kMost);
+    return found;
+}
 
-    const loops::RegistrableSubmap registrable(cloud);
-    const loops::FreeSpace free(seen.image, cloud);
-    const loops::Submap itself;
+/** Registers the cloud where a hypothesis puts it, and looks whether it can be there. */
+FoundPlace PlaceSearch::registered(const Hypothesis& hypothesis, const loops::Sketch& seen,
+                                   const loops::Ground& cloud) {
+    const auto& image = sketches_[hypothesis.place].image;
+    const auto place = grounds_.at(
+        hypothesis.place, [&] { return loops::Ground(map_->points(hypothesis.place), image); });
     loops::ClosureOptions options;
-    options.min_overlap = options_.min_overlap;
-    for (const auto& hypothesis : hypotheses) {
-        const auto place = grounds_.at(hypothesis.place, [&] {
-            return loops::Ground(map_->points(hypothesis.place), sketches_[hypothesis.place].image);
-        });
-        const Closure closure = closureOf({map_->submaps()[hypothesis.place], place->map},
-                                          {itself, registrable}, poseOf(hypothesis.shift), options);
-        FoundPlace found;
-        found.submap = hypothesis.place;
-        found.overlap = closure.overlap;
-        found.pose = map_->levelFrames()[hypothesis.place] * closure.level;
-        found.reason = closure.reason;
-        found.bare =
-            std::max(place->free.builtOn(seen.image, closure.level),
-                     free.builtOn(sketches_[hypothesis.place].image, closure.level.inverse()));
-        const Eigen::Isometry3d apart = best.pose.inverse() * found.pose;
-        const bool isElsewhere =
-            apart.translation().norm() > kElsewhere_m || angleOf(apart.linear()) > kElsewhere_rad;
-        if (found.overlap <= best.overlap) {
-            if (isElsewhere) best.rival = std::max(best.rival, found.overlap);
-            continue;
-        }
-        found.rival = std::max(best.rival, isElsewhere ? best.overlap : 0);
-        best = found;
+    options.min_overlap = 0;  // it is judged by what the place could have seen
+    const loops::Submap itself;
+    const auto closure = closureOf({map_->submaps()[hypothesis.place], place->map},
+                                   {itself, cloud.map}, poseOf(hypothesis.shift), options);
+    FoundPlace found;
+    found.submap = hypothesis.place;
+    found.pose = map_->levelFrames()[hypothesis.place] * closure.level;
+    found.overlap = place->map.support(cloud.map, closure.level);
+    found.bare = std::max(place->free.builtOn(seen.image, closure.level),
+                          cloud.free.builtOn(image, closure.level.inverse()));
+    found.reason = closure.reason;
+    if (found.reason.empty() && found.overlap < options_.min_overlap)
+        found.reason = "too little overlap";
+    if (found.reason.empty() && found.bare > options_.max_bare)
+        found.reason = "walls of one are free space of the other";
+    return found;
+}
+
+FoundPlace PlaceSearch::verified(const std::vector<loops::Sighting>& sightings,
+                                 const Eigen::Matrix3Xf& cloud, const loops::Sketch& seen) {
+    const loops::Ground ground(cloud, seen.image);
+    std::vector<FoundPlace> places;
+    for (const auto& hypothesis : hypotheses(sightings, seen))
+        places.push_back(registered(hypothesis, seen, ground));
+    FoundPlace best;
+    best.reason = "nothing alike";
+    for (const auto& place : places) {
+        const bool isFound = place.reason.empty(), hasBest = best.reason.empty();
+        if (isFound != hasBest ? isFound : place.overlap > best.overlap) best = place;
     }
-    if (best.reason.empty() && best.bare > options_.max_bare)
-        best.reason = "walls of one are free space of the other";
-    if (best.reason.empty() && best.rival > options_.rival * best.overlap)
-        best.reason = "two places look alike";
+    if (!best.reason.empty()) return best;
+    for (const auto& place : places)
+        if (place.reason.empty() && isElsewhere(place.pose, best.pose))
+            best.rival = std::max(best.rival, place.overlap);
+    if (best.rival > options_.rival * best.overlap) best.reason = "two places look alike";
     return best;
 }
 }  // namespace delio

@@ -21,6 +21,10 @@ planes::PlaneMapOptions denseMap() {
     return options;
 }
 
+std::uint64_t columnOf(const Eigen::Vector3d& point) {
+    return scan::voxelKey(scan::floorOf(point.x()), scan::floorOf(point.y()), 0);
+}
+
 Eigen::Matrix3Xd thinned(const Eigen::Matrix3Xf& points, double spacing) {
     return scan::firstOfVoxels(points, spacing).cast<double>();
 }
@@ -51,6 +55,11 @@ RegistrableSubmap::RegistrableSubmap(const Eigen::Matrix3Xf& points)
     points_.add(all);
     for (Eigen::Index i = 0; i < standing_.cols(); ++i)
         filled_.insert(scan::voxelKey(standing_.col(i), kThinned_m));
+    for (Eigen::Index i = 0; i < all.cols(); ++i) {
+        const auto number = columns_.insert(columnOf(all.col(i)));
+        if (number == tops_.size()) tops_.push_back(all(2, i));
+        tops_[number] = std::max(tops_[number], all(2, i));
+    }
 }
 
 planes::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& other,
@@ -68,6 +77,25 @@ planes::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& oth
     const auto& unseen = found.translation.unobservedAxes;
     found.translation.covariance += std::pow(kUnseen_m, 2) * unseen * unseen.transpose();
     return found;
+}
+
+double RegistrableSubmap::support(const RegistrableSubmap& other,
+                                  const Eigen::Isometry3d& pose) const {
+    constexpr double kLeast = 0.3;
+    scan::VoxelIndex theirs;
+    double visible = 0, both = 0;
+    for (Eigen::Index i = 0; i < other.standing_.cols(); ++i) {
+        const Eigen::Vector3d point = pose * other.standing_.col(i);
+        const auto key = scan::voxelKey(point, kThinned_m);
+        const std::size_t before = theirs.size();
+        theirs.insert(key);
+        if (theirs.size() == before) continue;
+        const bool isFilled = filled_.find(key) != scan::VoxelIndex::kNone;
+        const auto column = columns_.find(columnOf(point));
+        visible += isFilled || column == scan::VoxelIndex::kNone || point.z() <= tops_[column];
+        both += isFilled;
+    }
+    return both / std::max({1.0, visible, kLeast * static_cast<double>(theirs.size())});
 }
 
 double RegistrableSubmap::overlap(const RegistrableSubmap& other,

@@ -22,7 +22,7 @@ TEST(SynthBack, TheOtherWayInTheOtherLane) {
         const Eigen::Isometry3d went = there.lidarPose(kScans - 1 - i), comes = back.lidarPose(i);
         const Eigen::Vector3d beside = went.inverse() * comes.translation();
         EXPECT_NEAR(beside.x(), 0, 0.05) << i;
-        EXPECT_NEAR(beside.y(), apart, 0.05) << i;
+        EXPECT_NEAR(beside.y(), apart, 0.1) << i;  // the road is higher in its middle
         EXPECT_LT(went.linear().col(0).dot(comes.linear().col(0)), -0.99) << i;
         EXPECT_GT(went.linear().col(2).dot(comes.linear().col(2)), 0.99) << i;
     }

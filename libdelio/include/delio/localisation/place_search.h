@@ -8,7 +8,7 @@
 
 namespace delio {
 struct PlaceSearchOptions : public StageOptions {
-    double min_overlap = 0.5;
+    double min_overlap = 0.45;
     double max_bare = 0.2;
     double rival = 0.8;
 
@@ -21,7 +21,7 @@ struct FoundPlace {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< the cloud's frame to the map's
     double overlap = 0;  //!< of what stands in the cloud so much stands in the map
     double bare = 0;     //!< of the walls of one so much is free space of the other
-    double rival = 0;    //!< overlap at the best place elsewhere
+    double rival = 0;    //!< overlap at another place where it could be, too
     std::size_t submap = 0;
     std::string reason;  //!< empty: it was found
 };
@@ -40,6 +40,14 @@ class PlaceSearch {
     FoundPlace find(const Eigen::Matrix3Xf& cloud, const std::vector<std::size_t>& submaps);
 
  private:
+    struct Hypothesis {
+        std::size_t place;
+        loops::Shift shift;
+    };
+    std::vector<Hypothesis> hypotheses(const std::vector<loops::Sighting>& sightings,
+                                       const loops::Sketch& seen) const;
+    FoundPlace registered(const Hypothesis& hypothesis, const loops::Sketch& seen,
+                          const loops::Ground& cloud);
     FoundPlace verified(const std::vector<loops::Sighting>& sightings,
                         const Eigen::Matrix3Xf& cloud, const loops::Sketch& seen);
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "delio/core/increment.h"
 #include "delio/loops/submap.h"
@@ -35,11 +36,18 @@ class RegistrableSubmap {
      *  Szymkiewicz and Simpson's coefficient, 0 to 1. (Ground lies on ground anywhere.) */
     double overlap(const RegistrableSubmap& other, const Eigen::Isometry3d& pose) const;
 
+    /** Of the voxels of 0.5 m that the other fills above the ground the share that this one fills,
+     *  too; 0 to 1. Those above all that this one saw in that column are left out (a sensor sees so
+     *  high only), 70 % at most. */
+    double support(const RegistrableSubmap& other, const Eigen::Isometry3d& pose) const;
+
  private:
     planes::PlaneMap planes_;
     points::PointMap points_;
     Eigen::Matrix3Xd coarse_, thinned_, standing_;
-    scan::VoxelIndex filled_;  //!< by what stands
+    scan::VoxelIndex filled_;   //!< by what stands
+    scan::VoxelIndex columns_;  //!< of 1 m in which anything was seen
+    std::vector<double> tops_;  //!< of each of them
 };
 
 /** What became of an attempt to bring two submaps together. */

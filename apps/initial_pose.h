@@ -1,0 +1,10 @@
+#pragma once
+#include <Eigen/Geometry>
+
+#include <string>
+
+namespace delio {
+/** The pose that --initial-pose says: X,Y,Z,YAW_DEG, metres and degrees. Error for anything else.
+ */
+Eigen::Isometry3d initialPoseIn(const std::string& text);
+}  // namespace delio
