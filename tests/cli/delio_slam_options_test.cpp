@@ -68,18 +68,48 @@ TEST_F(DelioSlam, ItsConfigHasTheSectionsInUseOnly) {
             if (!line.empty() && line[0] == '[') names.push_back(line);
         return names;
     };
-    EXPECT_EQ(sections("accurate"),
-              Words({"[odometry]", "[scan]", "[prediction]", "[plane_tracker]", "[scan_to_map]",
-                     "[point_map]", "[point_registration]", "[plane_map]", "[plane_registration]",
-                     "[moving_objects]", "[segments]", "[normals]", "[bilateral_filter]",
-                     "[pattern_registration]", "[graph]", "[map]", "[submaps]", "[loops]",
-                     "[closures]"}));
-    EXPECT_EQ(
-        sections("paper"),
-        Words({"[odometry]", "[scan]", "[normals]", "[bilateral_filter]", "[outlier_removal]",
-               "[mean_shift]", "[pattern_registration]", "[rotation_in_place]", "[line_cloud]",
-               "[line_registration]", "[prediction]", "[point_check]", "[point_map]",
-               "[point_registration]", "[graph]", "[map]", "[submaps]", "[loops]", "[closures]"}));
+    EXPECT_EQ(sections("accurate"), Words({"[odometry]",
+                                           "[scan]",
+                                           "[prediction]",
+                                           "[plane_tracker]",
+                                           "[scan_to_map]",
+                                           "[point_map]",
+                                           "[point_registration]",
+                                           "[plane_map]",
+                                           "[plane_registration]",
+                                           "[moving_objects]",
+                                           "[segments]",
+                                           "[normals]",
+                                           "[bilateral_filter]",
+                                           "[pattern_registration]",
+                                           "[graph]",
+                                           "[map]",
+                                           "[submaps]",
+                                           "[loops]",
+                                           "[closures]",
+                                           "[place_search]",
+                                           "[localisation]"}));
+    EXPECT_EQ(sections("paper"), Words({"[odometry]",
+                                        "[scan]",
+                                        "[normals]",
+                                        "[bilateral_filter]",
+                                        "[outlier_removal]",
+                                        "[mean_shift]",
+                                        "[pattern_registration]",
+                                        "[rotation_in_place]",
+                                        "[line_cloud]",
+                                        "[line_registration]",
+                                        "[prediction]",
+                                        "[point_check]",
+                                        "[point_map]",
+                                        "[point_registration]",
+                                        "[graph]",
+                                        "[map]",
+                                        "[submaps]",
+                                        "[loops]",
+                                        "[closures]",
+                                        "[place_search]",
+                                        "[localisation]"}));
 }
 
 /** Every option of `ini` has its meaning in the line above it. Returns how many there are. */

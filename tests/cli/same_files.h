@@ -23,7 +23,7 @@ inline void expectSameResults(const std::filesystem::path& one,
                               const std::filesystem::path& other) {
     for (const char* name : {"trajectory_kitti.txt", "trajectory_odometry_kitti.txt",
                              "trajectory_kitti_cam0.txt", "trajectory_tum.txt", "posegraph.g2o",
-                             "posegraph.graph", "loops.csv", "config.ini", "map.ply"})
+                             "posegraph.graph", "loops.csv", "config.ini", "map.ply", "map.delio"})
         // Not EXPECT_EQ, which would print maps.
         EXPECT_TRUE(readText(one / name) == readText(other / name)) << other << " " << name;
     for (const char* name : {"map.simplemap", "map.3Dscene"}) {

@@ -85,7 +85,7 @@ TEST(Synth2rawlogSensor, AllOptionsTogetherGiveTheSameBytesForAnyNumberOfThreads
         ++files;
     }
     const auto written = io::readTimes(folder / "1" / "d.times.txt").size();
-    EXPECT_EQ(files, 4 * written + 6);
+    EXPECT_EQ(files, 4 * written + 7);
 }
 
 TEST(Synth2rawlogSensor, SideFilesHaveAValueForEachPoint) {

@@ -112,7 +112,7 @@ TEST(Synth2rawlog, GivesTheSameBytesForAnyNumberOfThreads) {
                 << name;
         ++files;
     }
-    EXPECT_EQ(files, 2 * 4U + 6U);  // points and rings of each scan; rawlog and side files
+    EXPECT_EQ(files, 2 * 4U + 7U);  // points and rings of each scan; rawlog and side files
 }
 
 TEST(Synth2rawlog, SideFilesAreConsistent) {

@@ -77,6 +77,16 @@ TEST_F(InTheTown, TheOtherWayToo) {
     expectAt(fixes.back(), poses.back());
 }
 
+// Another vehicle, whose sensor is mounted elsewhere.
+TEST_F(InTheTown, AtAnotherHeightToo) {
+    Poses poses;
+    for (int i = 0; i < 8; ++i) poses.push_back(test::poseAt(20 + 2.0 * i, 0, 0.6));
+    auto one = tracker();
+    const auto fixes = follow(one, poses, town());
+    ASSERT_TRUE(isAnchor(fixes.back())) << fixes.back().reason;
+    expectAt(fixes.back(), poses.back());
+}
+
 TEST_F(InTheTown, WhoIsElsewhereIsNotFound) {
     test::Scene other{{{-100, -100, -2.8}, {160, 140, -1.8}}};
     test::Noise noise(99);

@@ -15,6 +15,7 @@ using Words = std::vector<std::string>;
 /** All that is left without pictures. */
 const Words kNames = {"config.ini",
                       "loops.csv",
+                      "map.delio",
                       "map.ply",
                       "map.simplemap",
                       "posegraph.g2o",
@@ -76,6 +77,12 @@ TEST_F(ToyRun, EveryFileIsReadBack) {
         EXPECT_NEAR(table.stamps_s[i], record.rows[i].stamp_s, 1e-9);
 
     EXPECT_EQ(textOf(folder.options()), textOf(options));
+
+    const auto map = folder.storedMap();
+    EXPECT_EQ(map.graph().poses().size(), kScans);
+    ASSERT_EQ(map.submaps().size(), 1U);
+    EXPECT_GT(map.points(0).cols(), 1000);
+    EXPECT_EQ(map.drives().at(0).stamps_s, record.odometry.stamps_s);
 
     const auto summary = folder.summary();
     EXPECT_TRUE(summary.complete);

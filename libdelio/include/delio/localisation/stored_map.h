@@ -39,6 +39,8 @@ class StoredMap {
     /** Throws Error where the file is missing, no such map, of another version or cut off. */
     explicit StoredMap(const std::string& path);
     ~StoredMap();
+    StoredMap(const StoredMap&) = delete;
+    StoredMap& operator=(const StoredMap&) = delete;
 
     const std::string& path() const { return path_; }
     const graph::PoseGraph& graph() const { return graph_; }
