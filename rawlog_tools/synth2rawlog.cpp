@@ -249,8 +249,7 @@ int makeDrive(Arguments& args) {
     const auto world =
         makeScene({args.scene.getValue(), static_cast<std::uint64_t>(args.seed.getValue()),
                    count + scansBefore(start), args.trajectory.getValue(), lidarToCam0()});
-    Drive drive(world->road(), count, request.scanner.seed, gaitOf(args.motion.getValue()),
-                      start);
+    Drive drive(world->road(), count, request.scanner.seed, gaitOf(args.motion.getValue()), start);
     if (args.reverse.isSet()) drive.turnBack();
     suit(request, drive.carrier());
     if (drive.scans() < count)

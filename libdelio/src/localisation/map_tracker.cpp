@@ -50,8 +50,8 @@ MapTracker::MapTracker(std::shared_ptr<const StoredMap> map, const PlaceSearchOp
 
 void MapTracker::expect(const Eigen::Isometry3d& vehicle) {
     constexpr double kOff_m = 3, kOff_rad = 0.1;
-    now_.vehicle = Increment{vehicle, Matrix6::Zero()};
-    now_.vehicle->covariance.diagonal() << Eigen::Vector3d::Constant(kOff_m * kOff_m),
+    now_.belief.vehicle = Increment{vehicle, Matrix6::Zero()};
+    now_.belief.vehicle->covariance.diagonal() << Eigen::Vector3d::Constant(kOff_m * kOff_m),
         Eigen::Vector3d::Constant(kOff_rad * kOff_rad);
 }
 
@@ -69,62 +69,76 @@ void MapTracker::remember(const Eigen::Matrix3Xf& points) {
     if (now_.recent.size() > kMost) now_.recent.pop_front();
 }
 
-/** Registers the scan to the map, from where the odometry puts it. */
-bool MapTracker::track(const Eigen::Matrix3Xf& points, const Eigen::Matrix3d& level, MapFix& fix) {
+/** Registers the scan to the map, from where it is predicted. */
+std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
+                                           const Eigen::Matrix3d& level, const Increment& predicted,
+                                           MapFix& fix) {
     constexpr double kMeets_m = 0.3, kLeast_m = 0.5, kMost_m = 2;
-    local_.follow(now_.vehicle->pose.translation());
+    // Posts in a row look alike, but not as much as the place.
+    const double usual = (now_.where == Whereabouts::kInMap ? 0.75 : 0.85) * now_.usualShare;
+    local_.follow(predicted.pose.translation());
     const auto& map = local_.scanToMap();
     fix.reason = points.cols() == 0 ? "no points" : "the map has nothing here";
-    if (!map.isUsable() || points.cols() == 0) return false;
+    if (!map.isUsable() || points.cols() == 0) return {};
     const ScanView view = viewOf(points);
-    const Eigen::Isometry3d& predicted = now_.vehicle->pose;
-    const auto placed = map.place(view.coarse, predicted,
-                                  std::clamp(3 * sigma_m(*now_.vehicle), kLeast_m, kMost_m));
+    const auto placed = map.place(view.coarse, predicted.pose,
+                                  std::clamp(3 * sigma_m(predicted), kLeast_m, kMost_m));
     fix.reason = "not registered to the map";
-    if (!placed.valid) return false;
-    const auto found = map.refine(view, placed, predicted, std::nullopt);
+    if (!placed.valid) return {};
+    auto found = map.refine(view, placed, predicted.pose, std::nullopt);
     // Ground lies on ground anywhere: what stands on it has to meet.
     const auto standing = loops::aboveGround((level * view.thinned).cast<float>());
-    fix.share = standing.cols() == 0
-                    ? 0
-                    : map.shareAt(standing, found.pose() * turned(level.transpose()), kMeets_m);
+    if (standing.cols() > 0)
+        fix.share = map.shareAt(standing, found.pose() * turned(level.transpose()), kMeets_m);
     fix.reason = "does not look like the map";
-    if (!found.valid || fix.share < options_.min_share) return false;
+    if (!found.valid || fix.share < std::max(options_.min_share, usual)) return {};
     fix.reason.clear();
-    now_.vehicle = incrementOf(found.rotation, found.translation);
-    return true;
+    // Along what the map does not show the odometry goes on, and so does what it is off.
+    const Eigen::Matrix3d R = predicted.pose.linear();
+    const Eigen::Matrix3d drifted = R * predicted.covariance.topLeftCorner<3, 3>() * R.transpose();
+    const auto& unseen = found.translation.unobservedAxes;
+    for (Eigen::Index i = 0; i < unseen.cols(); ++i)
+        found.translation.covariance +=
+            unseen.col(i).dot(drifted * unseen.col(i)) * unseen.col(i) * unseen.col(i).transpose();
+    return incrementOf(found.rotation, found.translation);
 }
 
-/** Of a scan that was compared with the map. */
-void MapTracker::judge(bool agrees) {
-    if (agrees) {
-        ++now_.confirmed;
+/** Of a scan that was compared with the map. Until the next ones have confirmed a place, what was
+ *  believed before goes on beside it. */
+void MapTracker::judge(const std::optional<Increment>& found, double share) {
+    constexpr double kForget = 0.1;
+    const bool isInMap = now_.where == Whereabouts::kInMap;
+    if (found) {
+        auto& usual = now_.usualShare;
+        usual = usual == 0 ? share : (1 - kForget) * usual + kForget * share;
+        if (!isInMap && now_.confirmed == 0) now_.otherwise = now_.belief;
+        now_.belief = {found, 0};
         now_.missed = 0;
-        now_.unseen_m = 0;
-        if (now_.confirmed < kConfirmed) return;
+        if (++now_.confirmed < kConfirmed) return;
         now_.where = Whereabouts::kInMap;
         now_.inVain = 0;
         return;
     }
     ++now_.missed;
-    if (now_.where == Whereabouts::kInMap && now_.missed >= kPatience)
+    if (isInMap && now_.missed < kPatience) return;
+    if (isInMap)
         now_.where = Whereabouts::kOutside;
-    if (now_.where == Whereabouts::kInMap) return;
-    const bool wasFoundOnly = now_.where == Whereabouts::kUnknown && now_.confirmed > 0;
+    else if (now_.confirmed > 0)
+        now_.belief = now_.otherwise;
     now_.confirmed = 0;
-    if (wasFoundOnly) now_.vehicle.reset();  // a place that the next scans do not confirm
+    now_.usualShare = 0;
 }
 
 double MapTracker::reach_m() const {
     constexpr double kLeast_m = 2;
-    return kLeast_m + 3 * (options_.drift * now_.unseen_m + sigma_m(*now_.vehicle));
+    return kLeast_m + 3 * (options_.drift * now_.belief.unseen_m + sigma_m(*now_.belief.vehicle));
 }
 
 std::vector<std::size_t> MapTracker::nearSubmaps(double reach_m) const {
     constexpr double kNear_m = 25;
     std::vector<std::size_t> near;
     for (std::size_t i = 0; i < map_->submaps().size(); ++i)
-        if ((map_->levelFrames()[i].translation() - now_.vehicle->pose.translation())
+        if ((map_->levelFrames()[i].translation() - now_.belief.vehicle->pose.translation())
                 .head<2>()
                 .norm() <= kNear_m + reach_m)
             near.push_back(i);
@@ -140,7 +154,8 @@ bool MapTracker::isTimeToSearch() const {
            (now_.scans <= kAtFirst || now_.unsearched_m >= spacing);
 }
 
-void MapTracker::search(const Eigen::Matrix3d& level, MapFix& fix) {
+/** What was seen last, in the latest scan's frame, levelled. */
+Eigen::Matrix3Xf MapTracker::recentCloud(const Eigen::Matrix3d& level) const {
     const Eigen::Isometry3d here = now_.odometry * turned(level.transpose());
     Eigen::Index count = 0;
     for (const auto& seen : now_.recent) count += seen.points.cols();
@@ -151,23 +166,30 @@ void MapTracker::search(const Eigen::Matrix3d& level, MapFix& fix) {
             (here.inverse() * seen.pose).cast<float>() * seen.points;
         count += seen.points.cols();
     }
-    const double reach = now_.vehicle ? reach_m() : std::numeric_limits<double>::infinity();
-    const auto submaps = now_.vehicle ? nearSubmaps(reach) : std::vector<std::size_t>();
-    if (count == 0 || (now_.vehicle && submaps.empty())) return;
+    return cloud;
+}
+
+/** All of the map, or, where something is known, as far as that may be off. */
+std::optional<Increment> MapTracker::search(const Eigen::Matrix3d& level, MapFix& fix) {
+    constexpr double kFound_m = 0.1, kFound_rad = 0.01;
+    const auto cloud = recentCloud(level);
+    const auto& known = now_.belief.vehicle;
+    const double reach = known ? reach_m() : std::numeric_limits<double>::infinity();
+    const auto submaps = known ? nearSubmaps(reach) : std::vector<std::size_t>();
+    if (cloud.cols() == 0 || (known && submaps.empty())) return {};
     now_.unsearched_m = 0;
     ++now_.inVain;
     fix.searched = true;
-    const auto found = now_.vehicle ? search_.find(cloud, submaps) : search_.find(cloud);
+    const auto found = known ? search_.find(cloud, submaps) : search_.find(cloud);
     fix.reason = found.reason;
-    if (!found.reason.empty()) return;
-    const Eigen::Isometry3d vehicle = found.pose * turned(level);
-    if (now_.vehicle && (vehicle.translation() - now_.vehicle->pose.translation()).norm() > reach) {
-        fix.reason = "found farther off than it may be";
-        return;
-    }
-    now_.vehicle = Increment{vehicle, 0.01 * Matrix6::Identity()};
-    now_.vehicle->covariance.bottomRightCorner<3, 3>() *= 0.01;
-    local_.load(vehicle.translation());
+    if (!found.reason.empty()) return {};
+    Increment there{found.pose * turned(level), Matrix6::Zero()};
+    fix.reason = "found farther off than it may be";
+    if (known && (there.pose.translation() - known->pose.translation()).norm() > reach) return {};
+    there.covariance.diagonal() << Eigen::Vector3d::Constant(kFound_m * kFound_m),
+        Eigen::Vector3d::Constant(kFound_rad * kFound_rad);
+    local_.load(there.pose.translation());
+    return there;
 }
 
 MapFix MapTracker::add(const Increment& increment, const Eigen::Matrix3Xf& points,
@@ -178,24 +200,27 @@ MapFix MapTracker::add(const Increment& increment, const Eigen::Matrix3Xf& point
     const Eigen::Matrix3d level = scan::turnedUp(up).cast<double>();
     const double moved_m = increment.pose.translation().norm();
     now_.odometry = now_.odometry * increment.pose;
-    now_.unseen_m += moved_m;
     now_.unsearched_m += moved_m;
-    if (now_.vehicle && now_.scans > 0) now_.vehicle = chained(*now_.vehicle, increment);
+    for (auto* belief : {&now_.belief, &now_.otherwise}) {
+        belief->unseen_m += moved_m;
+        if (belief->vehicle && now_.scans > 0)
+            belief->vehicle = chained(*belief->vehicle, increment);
+    }
     ++now_.scans;
     remember(points);
-    if (now_.vehicle) {
-        fix.measured = track(points, level, fix);
-        judge(fix.measured);
+    std::optional<Increment> found;
+    if (now_.belief.vehicle) {
+        found = track(points, level, *now_.belief.vehicle, fix);
+        judge(found, fix.share);
     }
-    if (!fix.measured && isTimeToSearch()) {
-        search(level, fix);
-        if (fix.searched && fix.reason.empty()) {
-            fix.measured = track(points, level, fix);
-            judge(fix.measured);
+    if (!found && isTimeToSearch())
+        if (const auto there = search(level, fix)) {
+            found = track(points, level, *there, fix);
+            if (found) judge(found, fix.share);
         }
-    }
+    fix.measured = found.has_value();
     fix.where = now_.where;
-    if (now_.vehicle) fix.vehicle = *now_.vehicle;
+    if (now_.belief.vehicle) fix.vehicle = *now_.belief.vehicle;
     return fix;
 }
 }  // namespace delio

@@ -14,21 +14,26 @@ Eigen::Isometry3d poseOf(const Shift& shift) {
            Eigen::AngleAxisd(shift.yaw, Eigen::Vector3d::UnitZ()) * Eigen::Isometry3d::Identity();
 }
 
-/** In fine, about a sighting: rotations first, then the shift under each. */
-Shift refined(const loops::Sketch& place, const loops::Sketch& cloud, const Shift& seen) {
-    constexpr double kTurn_rad = 7 * kDeg, kReach_m = 4, kApart_m = 2;
+/** In fine, about a sighting: rotations first, then the shift under each. The best, and others
+ *  beside it: what stands in rows looks alike from one to the next. */
+std::vector<Shift> refined(const loops::Sketch& place, const loops::Sketch& cloud,
+                           const Shift& seen) {
+    constexpr double kTurn_rad = 7 * kDeg, kReach_m = 8, kApart_m = 2;
+    constexpr std::size_t kMost = 3;
     auto turns = place.azimuths.turnsOf(cloud.azimuths, seen.yaw, kTurn_rad, 2);
     turns.push_back(seen.yaw);
-    Shift best;
-    for (const double yaw : turns)
-        for (const auto& shift : shiftsOf(place.image, cloud.image, yaw, seen.translation.head<2>(),
-                                          kReach_m, kApart_m, 1))
-            if (shift.share > best.share) best = shift;
+    std::vector<Shift> best;
+    for (const double yaw : turns) {
+        auto shifts = shiftsOf(place.image, cloud.image, yaw, seen.translation.head<2>(), kReach_m,
+                               kApart_m, kMost);
+        if (best.empty() || (!shifts.empty() && shifts.front().share > best.front().share))
+            best = std::move(shifts);
+    }
     return best;
 }
 
 bool isElsewhere(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-    constexpr double kElsewhere_m = 5, kElsewhere_rad = 20 * kDeg;
+    constexpr double kElsewhere_m = 2, kElsewhere_rad = 20 * kDeg;
     const Eigen::Isometry3d apart = a.inverse() * b;
     return apart.translation().norm() > kElsewhere_m || angleOf(apart.linear()) > kElsewhere_rad;
 }
@@ -68,10 +73,11 @@ FoundPlace PlaceSearch::find(const Eigen::Matrix3Xf& cloud,
 /** In fine, the best first; those that are clearly worse than the best are left out. */
 std::vector<PlaceSearch::Hypothesis> PlaceSearch::hypotheses(
     const std::vector<loops::Sighting>& sightings, const loops::Sketch& seen) const {
-    constexpr std::size_t kMost = 5;
+    constexpr std::size_t kMost = 6;
     std::vector<Hypothesis> found;
     for (const auto& sighting : sightings)
-        found.push_back({sighting.place, refined(sketches_[sighting.place], seen, sighting.shift)});
+        for (const auto& shift : refined(sketches_[sighting.place], seen, sighting.shift))
+            found.push_back({sighting.place, shift});
     std::stable_sort(found.begin(), found.end(),
                      [](const auto& a, const auto& b) { return a.shift.share > b.shift.share; });
     const auto isWorse = [&](const Hypothesis& other) {

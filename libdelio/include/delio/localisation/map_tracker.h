@@ -60,23 +60,31 @@ class MapTracker {
         Eigen::Isometry3d pose;  //!< by the odometry
         Eigen::Matrix3Xf points;
     };
+    /** In the map, as far as it is known. */
+    struct Belief {
+        std::optional<Increment> vehicle;
+        double unseen_m = 0;  //!< path since it was measured
+    };
     struct State {
         Whereabouts where = Whereabouts::kUnknown;
-        std::optional<Increment> vehicle;  //!< in the map, as far as it is known
-        unsigned confirmed = 0;            //!< scans in a row that agree with the map
-        unsigned missed = 0;               //!< and that do not
-        double unseen_m = 0;               //!< path since it was measured
-        double unsearched_m = 0;           //!< path since it was searched for
-        std::size_t inVain = 0;            //!< searches since it was in the map
+        Belief belief;
+        Belief otherwise;        //!< what is believed if the next scans do not confirm that
+        double usualShare = 0;   //!< of what stands in a scan, that stands in the map; 0: not known
+        unsigned confirmed = 0;  //!< scans in a row that agree with the map
+        unsigned missed = 0;     //!< and that do not
+        double unsearched_m = 0;  //!< path since it was searched for
+        std::size_t inVain = 0;   //!< searches since it was in the map
         std::size_t scans = 0;
         Eigen::Isometry3d odometry = Eigen::Isometry3d::Identity();
         std::deque<Seen> recent;  //!< the latest last
     };
     void remember(const Eigen::Matrix3Xf& points);
-    bool track(const Eigen::Matrix3Xf& points, const Eigen::Matrix3d& level, MapFix& fix);
-    void judge(bool agrees);
+    std::optional<Increment> track(const Eigen::Matrix3Xf& points, const Eigen::Matrix3d& level,
+                                   const Increment& predicted, MapFix& fix);
+    void judge(const std::optional<Increment>& found, double share);
     bool isTimeToSearch() const;
-    void search(const Eigen::Matrix3d& level, MapFix& fix);
+    Eigen::Matrix3Xf recentCloud(const Eigen::Matrix3d& level) const;
+    std::optional<Increment> search(const Eigen::Matrix3d& level, MapFix& fix);
     std::vector<std::size_t> nearSubmaps(double reach_m) const;
     double reach_m() const;
 
