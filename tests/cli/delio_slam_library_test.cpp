@@ -21,6 +21,7 @@ TEST_F(DelioSlam, TheLibraryLeavesTheSameFolder) {
     ASSERT_TRUE(scan);
     run::RunSettings settings;
     settings.sensorLabel = reader->label();
+    settings.drive = "d";  // after the rawlog
     run::Run run(Options::forDrive("accurate", reader->meta()), settings);
     run.readSideFiles(rawlog_);
     for (; scan; scan = reader->next()) run.process(*scan);

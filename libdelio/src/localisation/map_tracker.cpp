@@ -75,7 +75,7 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
                                            MapFix& fix) {
     constexpr double kMeets_m = 0.3, kLeast_m = 0.5, kMost_m = 2;
     // Posts in a row look alike, but not as much as the place.
-    const double usual = (now_.where == Whereabouts::kInMap ? 0.75 : 0.85) * now_.usualShare;
+    const double usual = (now_.where == Whereabouts::kInMap ? 0.8 : 0.85) * now_.usualShare;
     local_.follow(predicted.pose.translation());
     const auto& map = local_.scanToMap();
     fix.reason = points.cols() == 0 ? "no points" : "the map has nothing here";

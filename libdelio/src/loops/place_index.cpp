@@ -37,10 +37,9 @@ PlaceIndex::Raster PlaceIndex::rasterOf(const HeightImage& image, double yaw, in
     raster.y0 = cells.row(1).minCoeff() - margin;
     raster.width = cells.row(0).maxCoeff() + margin + 1 - raster.x0;
     raster.height = cells.row(1).maxCoeff() + margin + 1 - raster.y0;
-    raster.bands.assign(static_cast<std::size_t>(raster.width * raster.height), 0);
+    raster.bands.assign(raster.at(0, raster.height), 0);
     for (Eigen::Index i = 0; i < cells.cols(); ++i) {
-        auto& cell = raster.bands[static_cast<std::size_t>(
-            (cells(1, i) - raster.y0) * raster.width + cells(0, i) - raster.x0)];
+        auto& cell = raster.bands[raster.at(cells(0, i) - raster.x0, cells(1, i) - raster.y0)];
         cell = static_cast<std::uint8_t>(cell | image.bands()[static_cast<std::size_t>(i)]);
     }
     return raster;
@@ -58,7 +57,7 @@ std::vector<PlaceIndex::Turned> PlaceIndex::turnsOf(const HeightImage& cloud) {
         const Raster raster = rasterOf(cloud, turned.yaw, 0);
         for (int y = 0; y < raster.height; ++y)
             for (int x = 0; x < raster.width; ++x) {
-                const auto bands = raster.bands[static_cast<std::size_t>(y * raster.width + x)];
+                const auto bands = raster.bands[raster.at(x, y)];
                 if (bands == 0) continue;
                 turned.cells.push_back({raster.x0 + x, raster.y0 + y, bands});
                 turned.bits += bitsOf(bands);
@@ -75,8 +74,7 @@ Sighting PlaceIndex::best(const Raster& place, const std::vector<Turned>& turns)
             const int x = cell.x - kReach - place.x0, y = cell.y - kReach - place.y0;
             if (x < 0 || x + static_cast<int>(kSide) > place.width) continue;
             for (int dy = std::max(0, -y); dy < kRows && y + dy < place.height; ++dy) {
-                const auto* row =
-                    &place.bands[static_cast<std::size_t>((y + dy) * place.width + x)];
+                const auto* row = &place.bands[place.at(x, y + dy)];
                 auto& counts = sums[static_cast<std::size_t>(dy)];
                 for (std::size_t dx = 0; dx < kSide; ++dx)
                     counts[dx] = static_cast<std::uint16_t>(

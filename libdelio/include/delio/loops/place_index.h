@@ -30,6 +30,11 @@ class PlaceIndex {
     struct Raster {
         int x0 = 0, y0 = 0, width = 0, height = 0;
         std::vector<std::uint8_t> bands;
+
+        std::size_t at(int x, int y) const {
+            return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                   static_cast<std::size_t>(x);
+        }
     };
     struct Cell {
         int x, y;
