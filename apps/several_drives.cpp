@@ -130,7 +130,10 @@ void report(const Joiner& joiner, const std::string& folder) {
             const std::string path = (fs::path(folder) / drive.name).string();
             const auto trajectory = map.trajectory(drive);
             io::writeKitti(trajectory, path + "_kitti.txt");
-            io::writeTum(trajectory, path + "_tum.txt");
+            const auto& stamps = trajectory.stamps_s;
+            if (std::adjacent_find(stamps.begin(), stamps.end(), std::greater_equal<>()) ==
+                stamps.end())  // a clock that was set back: no file could be read again
+                io::writeTum(trajectory, path + "_tum.txt");
             table += name + "," + drive.name + "\n";
             drives += (drives.empty() ? "" : ", ") + drive.name;
         }
