@@ -35,8 +35,8 @@ class SnapshotTool : public testing::Test {
         for (std::size_t i = 0; i < poses.size(); ++i)
             builder.add(i, poses[i], cloud, test::poseAt(0, 0, 1.7),
                         mrpt::Clock::fromDouble(1316995200.0));
-        map::saveSimplemap(builder.simplemap(poses), at("map.simplemap"));
-        const auto points = builder.points(poses);
+        map::saveSimplemap(builder.build(poses).simplemap, at("map.simplemap"));
+        const auto points = map::cloudOf(builder.build(poses).points);
         count_ = points.size();
         map::savePly(points, at("map.ply"));
         picture::saveScene(*picture::mapScene(points, {poses, {}, {}, {}}), at("map.3Dscene"));

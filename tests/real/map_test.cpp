@@ -73,7 +73,7 @@ Coverage coverageOf(const mrpt::img::CImage& image) {
 void expectAPictureOfStreets(const std::string& name, std::size_t minKeyframes) {
     const Drive drive = readDrive(name);
     EXPECT_GE(drive.builder.keyframes(), minKeyframes);
-    const auto points = drive.builder.points(drive.poses);
+    const auto points = map::cloudOf(drive.builder.build(drive.poses).points);
     EXPECT_GT(points.size(), 50000U);
     const auto scene = picture::mapScene(points, {drive.poses, {}, {}, {}});
     const auto coverage = coverageOf(picture::picture(*scene, {}));

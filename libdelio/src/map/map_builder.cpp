@@ -1,11 +1,14 @@
 #include "delio/map/map_builder.h"
 
-#include <mrpt/obs/CSensoryFrame.h>
-#include <mrpt/poses/CPose3DPDFGaussian.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
 
+#include <chrono>
+#include <utility>
+
+#include "build_map.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "spooled_scan.h"
+#include "stored_scan.h"
 #include "voxel_set.h"
 
 namespace delio::map {
@@ -16,11 +19,51 @@ using mrpt::maps::CPointsMapXYZI;
 namespace {
 constexpr double kDeg = M_PI / 180;
 
-const Isometry3d& poseOf(std::size_t index, const std::vector<Isometry3d>& poses) {
-    if (index >= poses.size())
-        throw Error("the map needs pose " + std::to_string(index) + ", but there are only " +
-                    std::to_string(poses.size()) + " poses");
-    return poses[index];
+/** The points that are used: those that stand still, then those that move; of either the first one
+ *  of each voxel. x y z intensity each. */
+struct Thinned {
+    io::Spool::Floats floats;
+    std::size_t still = 0;
+};
+
+Thinned thinned(const CPointsMap& points, const Isometry3d& sensorInWorld,
+                const std::vector<std::uint8_t>& moving, const MapOptions& options) {
+    const auto& x = points.getPointsBufferRef_x();
+    const auto& y = points.getPointsBufferRef_y();
+    const auto& z = points.getPointsBufferRef_z();
+    const auto* withIntensity = dynamic_cast<const CPointsMapXYZI*>(&points);
+    Thinned result;
+    io::Spool::Floats movingFloats;
+    VoxelSet stillVoxels(options.voxelSize_m), movingVoxels(options.voxelSize_m);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const Eigen::Vector3d p(double{x[i]}, double{y[i]}, double{z[i]});
+        const double range = p.norm();
+        // Written so that a NaN is left out as well.
+        const bool usable = range >= options.minRange_m && range <= options.maxRange_m;
+        if (!usable) continue;
+        const bool moves = !moving.empty() && moving[i];
+        if (!(moves ? movingVoxels : stillVoxels).insert(sensorInWorld * p)) continue;
+        auto& to = moves ? movingFloats : result.floats;
+        to.insert(to.end(),
+                  {x[i], y[i], z[i], withIntensity ? withIntensity->getPointIntensity_fast(i) : 0});
+    }
+    result.still = result.floats.size() / 4;
+    result.floats.insert(result.floats.end(), movingFloats.begin(), movingFloats.end());
+    return result;
+}
+
+Eigen::Matrix3Xf finitePoints(const CPointsMap& points) {
+    const auto& x = points.getPointsBufferRef_x();
+    const auto& y = points.getPointsBufferRef_y();
+    const auto& z = points.getPointsBufferRef_z();
+    Eigen::Matrix3Xf finite(3, x.size());
+    Eigen::Index count = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const Eigen::Vector3f p(x[i], y[i], z[i]);
+        if (p.allFinite()) finite.col(count++) = p;
+    }
+    finite.conservativeResize(3, count);
+    return finite;
 }
 }  // namespace
 
@@ -43,162 +86,83 @@ void MapOptions::check(const std::string& section) const {
     requireOrder(section + ".min_range", minRange_m, section + ".max_range", maxRange_m);
 }
 
-struct MapBuilder::Keyframe {
-    std::size_t poseIndex = 0;
-    Isometry3d sensorPose = Isometry3d::Identity();
-    mrpt::Clock::time_point stamp;
-    bool withIntensity = false;
-    io::Spool::Place points;
-};
-
-/** A scan's points, their place, and which of them move. */
-struct MapBuilder::Input {
-    const CPointsMap& points;
-    const CPointsMapXYZI* withIntensity;  //!< the same points; null where there is none
-    const Isometry3d& sensorInWorld;
-    const std::vector<std::uint8_t>& moving;
-};
-
 MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel, std::string folder)
-    : options_(options),
-      sensorLabel_(std::move(sensorLabel)),
-      folder_(std::move(folder)),
-      seen_(std::make_unique<VoxelSet>(options.voxelSize_m)) {}
+    : options_(options), sensorLabel_(std::move(sensorLabel)), folder_(std::move(folder)) {}
 
 MapBuilder::~MapBuilder() = default;
 MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
 MapBuilder& MapBuilder::operator=(MapBuilder&&) noexcept = default;
 
-std::size_t MapBuilder::keyframes() const { return keyframes_.size(); }
-
 bool MapBuilder::isFarFromLastKeyframe(const Isometry3d& pose) const {
-    const Eigen::Vector3d moved = pose.translation() - lastKeyPose_.translation();
-    const Eigen::Matrix3d turned = lastKeyPose_.linear().transpose() * pose.linear();
+    const Eigen::Vector3d moved = pose.translation() - now_.keyPose.translation();
+    const Eigen::Matrix3d turned = now_.keyPose.linear().transpose() * pose.linear();
     return moved.norm() >= options_.keyframeDistance_m ||
            angleOf(turned) >= options_.keyframeAngle_deg * kDeg;
 }
 
-io::Spool::Floats MapBuilder::sift(const Input& scan, bool isKeyframe, std::vector<Point>& fresh) {
-    const auto& x = scan.points.getPointsBufferRef_x();
-    const auto& y = scan.points.getPointsBufferRef_y();
-    const auto& z = scan.points.getPointsBufferRef_z();
-    // Room for all, so that no point can be lost whose voxel is taken already.
-    fresh.reserve(x.size());
-    VoxelSet ofThisScan(options_.voxelSize_m);
-    io::Spool::Floats whole;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const Eigen::Vector3d p(double{x[i]}, double{y[i]}, double{z[i]});
-        const double range = p.norm();
-        // Written so that a NaN is left out as well.
-        const bool usable = range >= options_.minRange_m && range <= options_.maxRange_m;
-        if (!usable || (!scan.moving.empty() && scan.moving[i])) continue;
-        const float intensity =
-            scan.withIntensity ? scan.withIntensity->getPointIntensity_fast(i) : 0;
-        if (isKeyframe && ofThisScan.insert(p))
-            whole.insert(whole.end(), {x[i], y[i], z[i], intensity});
-        if (seen_->insert(scan.sensorInWorld * p)) fresh.push_back({x[i], y[i], z[i], intensity});
-    }
-    fresh.shrink_to_fit();
-    return whole;
+/** One that stands sees what comes and goes, too. */
+bool MapBuilder::isFarFromLastView(const Isometry3d& pose, mrpt::Clock::time_point stamp) const {
+    constexpr std::chrono::duration<double> kPause(0.45);  // stamps are rounded
+    return now_.views == 0 || stamp - now_.viewStamp >= kPause ||
+           (pose.translation() - now_.viewPose.translation()).norm() >= options_.removal.spacing_m;
 }
 
-void MapBuilder::keep(Keyframe keyframe, const io::Spool::Floats& points) {
-    try {
-        if (!spool_) spool_ = std::make_shared<io::Spool>(folder_, "keyframes", "--no-map");
-        keyframe.points = spool_->append(points);
-    } catch (const Error& e) {
-        spoolFault_ = e.what();
-        last_.spoolFault = true;
-        return;
-    }
-    keyframes_.push_back(keyframe);
-    last_.keyframe = true;
+void MapBuilder::putAside(const std::vector<float>& points, const CPointsMap* view,
+                          StoredScan& scan) {
+    if (!spool_) spool_ = std::make_shared<io::Spool>(folder_, "scans for the map", "--no-map");
+    scan.points = spool_->append(points);
+    if (!view) return;
+    const auto packed = scan::RangeImage(finitePoints(*view), options_.removal.cell_deg).packed();
+    scan.viewFirstRow = packed.firstRow;
+    scan.view = map::putAside(packed, *spool_);
 }
 
 bool MapBuilder::add(std::size_t poseIndex, const Isometry3d& approximatePose,
                      const CPointsMap& sensorPoints, const Isometry3d& sensorPose,
                      mrpt::Clock::time_point stamp, const std::vector<std::uint8_t>& moving) {
-    const bool isKeyframe =
-        spoolFault_.empty() && (keyframes_.empty() || isFarFromLastKeyframe(approximatePose));
-    last_ = {};
-    last_.sensorInWorld = approximatePose * sensorPose;
-    last_.keyPoseBefore = lastKeyPose_;
-    const auto* withIntensity = dynamic_cast<const CPointsMapXYZI*>(&sensorPoints);
+    before_ = now_;
+    canUndo_ = true;
+    const auto points = thinned(sensorPoints, approximatePose * sensorPose, moving, options_);
+    if (points.floats.empty() || !now_.fault.empty()) return false;
+    StoredScan scan;
+    scan.poseIndex = poseIndex;
+    scan.sensorPose = sensorPose;
+    scan.stamp = stamp;
+    scan.withIntensity = dynamic_cast<const CPointsMapXYZI*>(&sensorPoints) != nullptr;
+    scan.still = points.still;
+    scan.isKeyframe =
+        scan.still > 0 && (now_.keyframes == 0 || isFarFromLastKeyframe(approximatePose));
+    const bool isView = options_.removal.enabled && isFarFromLastView(approximatePose, stamp);
     try {
-        scans_.push_back({poseIndex, sensorPose, {}});
-        last_.points = true;
-        const auto whole = sift({sensorPoints, withIntensity, last_.sensorInWorld, moving},
-                                isKeyframe, scans_.back().points);
-        if (!whole.empty())
-            keep({poseIndex, sensorPose, stamp, withIntensity != nullptr, {}}, whole);
-    } catch (...) {
-        undo();
-        throw;
+        putAside(points.floats, isView ? &sensorPoints : nullptr, scan);
+    } catch (const Error& e) {
+        now_.fault = e.what();
+        return false;
     }
-    if (scans_.back().points.empty()) {
-        scans_.pop_back();
-        last_.points = false;
+    scans_.push_back(scan);
+    now_.scans = scans_.size();
+    if (scan.isKeyframe) {
+        ++now_.keyframes;
+        now_.keyPose = approximatePose;
     }
-    if (last_.keyframe) lastKeyPose_ = approximatePose;
-    return last_.keyframe;
+    if (isView) {
+        ++now_.views;
+        now_.viewPose = approximatePose;
+        now_.viewStamp = stamp;
+    }
+    return scan.isKeyframe;
 }
 
 void MapBuilder::undo() noexcept {
-    if (last_.points) {
-        for (const Point& p : scans_.back().points)
-            seen_->erase(last_.sensorInWorld *
-                         Eigen::Vector3d(double{p.x}, double{p.y}, double{p.z}));
-        scans_.pop_back();
-    }
-    // Its points stay on the disk: a simplemap that was given out may still need them.
-    if (last_.keyframe) {
-        keyframes_.pop_back();
-        lastKeyPose_ = last_.keyPoseBefore;
-    }
-    if (last_.spoolFault) spoolFault_.clear();
-    last_ = {};
+    if (!canUndo_) return;
+    // What was put aside stays on the disk: a simplemap that was given out may still need it.
+    now_ = std::move(before_);
+    scans_.erase(scans_.begin() + static_cast<std::ptrdiff_t>(now_.scans), scans_.end());
+    canUndo_ = false;
 }
 
-mrpt::maps::CSimpleMap MapBuilder::simplemap(const std::vector<Isometry3d>& poses) const {
-    if (!spoolFault_.empty()) throw Error(spoolFault_);
-    mrpt::maps::CSimpleMap map;
-    for (const auto& keyframe : keyframes_) {
-        auto pose = mrpt::poses::CPose3DPDFGaussian::Create();
-        pose->mean = toMrpt(poseOf(keyframe.poseIndex, poses));
-        auto observation =
-            std::make_shared<SpooledScan>(spool_, keyframe.points, keyframe.withIntensity);
-        observation->sensorLabel = sensorLabel_;
-        observation->timestamp = keyframe.stamp;
-        observation->sensorPose = toMrpt(keyframe.sensorPose);
-        auto frame = mrpt::obs::CSensoryFrame::Create();
-        frame->insert(observation);
-        map.insert(pose, frame);
-    }
-    return map;
-}
-
-std::vector<Isometry3d> MapBuilder::keyPoses(const std::vector<Isometry3d>& poses) const {
-    std::vector<Isometry3d> result;
-    for (const auto& keyframe : keyframes_) result.push_back(poseOf(keyframe.poseIndex, poses));
-    return result;
-}
-
-CPointsMapXYZI MapBuilder::points(const std::vector<Isometry3d>& poses) const {
-    std::size_t most = 0;
-    for (const auto& scan : scans_) most += scan.points.size();
-    CPointsMapXYZI map;
-    map.reserve(most);
-    VoxelSet taken(options_.voxelSize_m);
-    for (const auto& scan : scans_) {
-        const Isometry3d sensorInWorld = poseOf(scan.poseIndex, poses) * scan.sensorPose;
-        for (const Point& p : scan.points) {
-            const Eigen::Vector3d at =
-                sensorInWorld * Eigen::Vector3d(double{p.x}, double{p.y}, double{p.z});
-            if (taken.insert(at))
-                map.insertPointRGB(static_cast<float>(at.x()), static_cast<float>(at.y()),
-                                   static_cast<float>(at.z()), p.intensity, 0, 0);
-        }
-    }
-    return map;
+BuiltMap MapBuilder::build(const std::vector<Isometry3d>& poses) const {
+    if (!now_.fault.empty()) throw Error(now_.fault);
+    return buildMap({scans_, spool_, options_, sensorLabel_}, poses);
 }
 }  // namespace delio::map

@@ -10,11 +10,15 @@ void SpooledScan::load() const {
     const auto withIntensity = withIntensity_ ? mrpt::maps::CPointsMapXYZI::Create() : nullptr;
     mrpt::maps::CPointsMap::Ptr cloud = withIntensity;
     if (!cloud) cloud = mrpt::maps::CSimplePointsMap::Create();
-    cloud->resize(floats.size() / 4);
-    for (std::size_t i = 0; i < cloud->size(); ++i) {
+    cloud->reserve(floats.size() / 4);
+    for (std::size_t i = 0; 4 * i < floats.size(); ++i) {
         const float* p = &floats[4 * i];
-        cloud->setPointFast(i, p[0], p[1], p[2]);
-        if (withIntensity) withIntensity->setPointIntensity(i, p[3]);
+        if (votes_->isDynamic(sensorInWorld_ * Eigen::Vector3f(p[0], p[1], p[2]).cast<double>()))
+            continue;
+        if (withIntensity)
+            withIntensity->insertPointRGB(p[0], p[1], p[2], p[3], 0, 0);
+        else
+            cloud->insertPointFast(p[0], p[1], p[2]);
     }
     cloud->mark_as_modified();
     // MRPT's own load() of scans that are stored elsewhere does the same to a const object.

@@ -3,16 +3,23 @@
 
 #include <memory>
 
-#include "../io/spool.h"
+#include "stored_scan.h"
+#include "visibility_votes.h"
 
 namespace delio::map {
-/** A CObservationPointCloud whose points are fetched from the disk while they are needed: a
- *  simplemap of such scans is written with one of them in memory at a time, and what is written is
- *  a plain CObservationPointCloud with its points embedded. */
+/** A CObservationPointCloud whose points, without those that are dynamic, are fetched from the disk
+ * while they are needed: a simplemap of such scans is written with one of them in memory at a time,
+ * and what is written is a plain CObservationPointCloud with its points embedded. */
 class SpooledScan : public mrpt::obs::CObservationPointCloud {
  public:
-    SpooledScan(std::shared_ptr<const io::Spool> spool, io::Spool::Place place, bool withIntensity)
-        : spool_(std::move(spool)), place_(place), withIntensity_(withIntensity) {}
+    SpooledScan(std::shared_ptr<const io::Spool> spool, const StoredScan& scan,
+                const Eigen::Isometry3d& sensorInWorld,
+                std::shared_ptr<const VisibilityVotes> votes)
+        : spool_(std::move(spool)),
+          place_(scan.stillPoints()),
+          withIntensity_(scan.withIntensity),
+          sensorInWorld_(sensorInWorld),
+          votes_(std::move(votes)) {}
 
     void load() const override;
     void unload() const override;
@@ -25,5 +32,7 @@ class SpooledScan : public mrpt::obs::CObservationPointCloud {
     std::shared_ptr<const io::Spool> spool_;
     io::Spool::Place place_;
     bool withIntensity_;
+    Eigen::Isometry3d sensorInWorld_;
+    std::shared_ptr<const VisibilityVotes> votes_;
 };
 }  // namespace delio::map

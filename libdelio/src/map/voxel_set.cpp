@@ -32,11 +32,4 @@ bool VoxelSet::insert(const Eigen::Vector3d& point) {
     layer |= place.bit;
     return true;
 }
-
-void VoxelSet::erase(const Eigen::Vector3d& point) noexcept {
-    if (size_ == 0) return;
-    const Place place = placeOf(point);
-    const auto block = blocks_.find(place.block);
-    if (block != blocks_.end()) block->second[place.layer] &= ~place.bit;
-}
 }  // namespace delio::map

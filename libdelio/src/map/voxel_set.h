@@ -19,9 +19,6 @@ class VoxelSet {
     /** Takes the point's voxel; false if it was taken already. */
     bool insert(const Eigen::Vector3d& point);
 
-    /** Sets the point's voxel free again. */
-    void erase(const Eigen::Vector3d& point) noexcept;
-
  private:
     using Block = std::array<std::uint64_t, 8>;  //!< a layer of 8 x 8 voxels a word
     struct Place {

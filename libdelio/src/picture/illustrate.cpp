@@ -24,12 +24,12 @@ void drawTrajectory(const run::RunRecord& record, const std::string& path) {
 }
 }  // namespace
 
-void illustrate(const run::RunRecord& record, const mrpt::maps::CPointsMapXYZI& points,
-                const std::vector<Eigen::Isometry3d>& keyframes, const run::RunFolder& folder) {
+void illustrate(const run::RunRecord& record, const map::BuiltMap& map,
+                const run::RunFolder& folder) {
     using run::RunFolder;
-    if (!points.empty()) {
-        const auto scene =
-            mapScene(points, {record.final.poses, record.truth, keyframes, record.closedLoops()});
+    if (!map.points.empty()) {
+        const auto scene = mapScene(map::cloudOf(map.points), {record.final.poses, record.truth,
+                                                               map.keyPoses, record.closedLoops()});
         saveScene(*scene, folder.path(RunFolder::kScene));
         savePicture(*scene, SnapshotOptions(), folder.path(RunFolder::kMapPicture));
     }

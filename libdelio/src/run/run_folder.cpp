@@ -113,15 +113,14 @@ void RunFolder::writeTrajectories(const RunRecord& record) const {
 void RunFolder::writeMaps(const RunRecord& record, const RunMaps& maps,
                           const Illustrate& illustrate) const {
     if (maps.stored) StoredMap::save(*maps.stored, path(kStoredMap));
-    mrpt::maps::CPointsMapXYZI points;
-    std::vector<Eigen::Isometry3d> keyframes;
+    map::BuiltMap map;
     if (maps.points) {
-        map::saveSimplemap(maps.points->simplemap(record.final.poses), path(kSimplemap));
-        points = maps.points->points(record.final.poses);
-        keyframes = maps.points->keyPoses(record.final.poses);
-        map::savePly(points, path(kPly));
+        map = maps.points->build(record.final.poses);
+        map::saveSimplemap(map.simplemap, path(kSimplemap));
+        map::savePly(map::cloudOf(map.points), path(kPly));
+        if (maps.keepDynamic) map::savePly(map::cloudOf(map.dynamic), path(kDynamicPly));
     }
-    if (illustrate) illustrate(record, points, keyframes, *this);
+    if (illustrate) illustrate(record, map, *this);
 }
 
 std::string RunFolder::write(RunRecord record, const RunMaps& maps,
@@ -144,7 +143,8 @@ std::string RunFolder::write(RunRecord record, const RunMaps& maps,
         writeLocalisationTable(record.rows, record.fixes, path(kLocalisation));
     io::replaceTextFile(path(kConfig), [&](std::ostream& out) { record.options.write(out); });
     Stopwatch watch;
-    for (const char* name : {kStoredMap, kSimplemap, kPly, kScene, kMapPicture, kTrajectoryPicture})
+    for (const char* name :
+         {kStoredMap, kSimplemap, kPly, kDynamicPly, kScene, kMapPicture, kTrajectoryPicture})
         remove(name);
     try {
         writeMaps(record, maps, illustrate);

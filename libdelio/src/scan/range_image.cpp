@@ -2,38 +2,66 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 
 #include "delio/core/approximate_atan2.h"
 
 namespace delio::scan {
+namespace {
+constexpr int kEnough = 3;  // cells seen of a neighbourhood, to call it free
+constexpr float kPerMetre = 100;
+}  // namespace
+
 RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
     : perRadian_(static_cast<float>(180 / M_PI / cell_deg)),
-      rows_(static_cast<int>(std::lround(180 / cell_deg))),
-      columns_(static_cast<int>(std::lround(360 / cell_deg))),
-      nearest_(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_)) {
+      allRows_(static_cast<int>(std::lround(180 / cell_deg))),
+      columns_(static_cast<int>(std::lround(360 / cell_deg))) {
     struct Beam {
-        std::int32_t cell;
+        int row, column;
         float range;
     };
     std::vector<Beam> beams(static_cast<std::size_t>(points.cols()));
     tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
         const Eigen::Vector3f point = points.col(i);
-        beams[static_cast<std::size_t>(i)] = {rowOf(point) * columns_ + columnOf(point),
-                                              point.norm()};
+        beams[static_cast<std::size_t>(i)] = {rowOf(point), columnOf(point), point.norm()};
     });
+    if (beams.empty()) return;
+    const auto [lowest, highest] = std::minmax_element(
+        beams.begin(), beams.end(), [](const Beam& a, const Beam& b) { return a.row < b.row; });
+    firstRow_ = lowest->row;
+    nearest_.resize(static_cast<std::size_t>((highest->row - firstRow_ + 1) * columns_));
     for (const Beam& beam : beams) {
-        float& nearest = nearest_[static_cast<std::size_t>(beam.cell)];
+        float& nearest =
+            nearest_[static_cast<std::size_t>((beam.row - firstRow_) * columns_ + beam.column)];
         if (nearest == 0 || beam.range < nearest) nearest = beam.range;
     }
+}
+
+RangeImage::RangeImage(const PackedRanges& packed, double cell_deg)
+    : RangeImage(Eigen::Matrix3Xf(3, 0), cell_deg) {
+    firstRow_ = packed.firstRow;
+    nearest_.reserve(packed.ranges_cm.size());
+    for (const auto range_cm : packed.ranges_cm)
+        nearest_.push_back(static_cast<float>(range_cm) / kPerMetre);
+    summarise();
+}
+
+PackedRanges RangeImage::packed() const {
+    PackedRanges packed{firstRow_, {}};
+    packed.ranges_cm.reserve(nearest_.size());
+    constexpr float kMost = 65535;
+    for (const float range : nearest_)
+        packed.ranges_cm.push_back(
+            static_cast<std::uint16_t>(std::min(std::round(range * kPerMetre), kMost)));
+    return packed;
 }
 
 int RangeImage::rowOf(const Eigen::Vector3f& point) const {
     const float elevation = approximateAtan2(point.z(), point.head<2>().norm());
     const int row = static_cast<int>((elevation + static_cast<float>(M_PI_2)) * perRadian_);
-    return std::clamp(row, 0, rows_ - 1);
+    return std::clamp(row, 0, allRows_ - 1);
 }
 
 int RangeImage::columnOf(const Eigen::Vector3f& point) const {
@@ -41,22 +69,58 @@ int RangeImage::columnOf(const Eigen::Vector3f& point) const {
     return static_cast<int>(azimuth * perRadian_) % columns_;
 }
 
+template <typename Visit>
+void RangeImage::forNeighbours(int row, int column, const Visit& visit) const {
+    const std::array<int, 3> columns = {column == 0 ? columns_ - 1 : column - 1, column,
+                                        column + 1 == columns_ ? 0 : column + 1};
+    const int last = firstRow_ + static_cast<int>(rows()) - 1;
+    for (int r = std::max(row - 1, firstRow_); r <= std::min(row + 1, last); ++r)
+        for (const int c : columns) {
+            const float nearest =
+                nearest_[static_cast<std::size_t>((r - firstRow_) * columns_ + c)];
+            if (nearest > 0) visit(nearest);
+        }
+}
+
+void RangeImage::summarise() {
+    leastAbout_.resize(nearest_.size());
+    tbb::parallel_for(std::size_t{0}, rows(), [&](std::size_t r) {
+        for (int c = 0; c < columns_; ++c) {
+            int seen = 0;
+            float least = 0;
+            forNeighbours(firstRow_ + static_cast<int>(r), c, [&](float nearest) {
+                if (seen++ == 0 || nearest < least) least = nearest;
+            });
+            leastAbout_[r * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c)] =
+                seen >= kEnough ? least : -least;
+        }
+    });
+}
+
+Place RangeImage::lookAbout(int row, int column, float range, float margin) const {
+    int seen = 0, passed = 0;
+    bool taken = false;
+    forNeighbours(row, column, [&](float nearest) {
+        taken = taken || std::abs(nearest - range) <= margin;
+        ++seen;
+        passed += nearest > range;
+    });
+    if (taken) return Place::kTaken;
+    return seen >= kEnough && passed == seen ? Place::kFree : Place::kUnknown;
+}
+
 Place RangeImage::at(const Eigen::Vector3f& point, float margin) const {
     const float range = point.norm();
     const int row = rowOf(point), column = columnOf(point);
-    const std::array<int, 3> columns = {column == 0 ? columns_ - 1 : column - 1, column,
-                                        column + 1 == columns_ ? 0 : column + 1};
-    int seen = 0, passed = 0;
-    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r)
-        for (const int c : columns) {
-            const int cell = r * columns_ + c;
-            const float nearest = nearest_[static_cast<std::size_t>(cell)];
-            if (nearest == 0) continue;
-            if (std::abs(nearest - range) <= margin) return Place::kTaken;
-            ++seen;
-            passed += nearest > range;
-        }
-    constexpr int kEnough = 3;
-    return seen >= kEnough && passed == seen ? Place::kFree : Place::kUnknown;
+    const int r = row - firstRow_;
+    if (leastAbout_.empty() || r < 0 || r >= static_cast<int>(rows()))
+        return lookAbout(row, column, range, margin);
+    // Mostly the least of the neighbourhood tells all.
+    const float about = leastAbout_[static_cast<std::size_t>(r * columns_ + column)];
+    const float least = std::abs(about);
+    if (least > range + margin) return about > 0 ? Place::kFree : Place::kUnknown;
+    if (least == 0) return Place::kUnknown;
+    if (least >= range - margin) return Place::kTaken;
+    return lookAbout(row, column, range, margin);
 }
 }  // namespace delio::scan

@@ -69,6 +69,7 @@ StageList Options::allStages() {
     StageList all{{"odometry", &method},
                   {"graph", &graph},
                   {"map", &map},
+                  {"removal", &map.removal},
                   {"submaps", &submaps},
                   {"loops", &loops},
                   {"closures", &closures},
@@ -83,6 +84,7 @@ ConstStageList Options::stages() const {
     auto used = stagesOf(*this);
     used.emplace_back("graph", &graph);
     used.emplace_back("map", &map);
+    used.emplace_back("removal", &map.removal);
     used.emplace_back("submaps", &submaps);
     used.emplace_back("loops", &loops);
     used.emplace_back("closures", &closures);

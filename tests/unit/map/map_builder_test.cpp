@@ -75,7 +75,7 @@ TEST(MapBuilder, UnusablePointsAreDroppedAndAnEmptyScanIsNoKeyframe) {
     EXPECT_TRUE(builder.add(
         0, kHere, oneCloud({{nan, 3, 0}, {0, 0, 3}, {0, inf, 0}, {3, nan, 0}, {0, 59, 0}}), kHere,
         kStamp));
-    const auto points = builder.points({kHere});
+    const auto points = map::cloudOf(builder.build({kHere}).points);
     ASSERT_EQ(points.size(), 2U);
     EXPECT_EQ(points.getPointsBufferRef_z()[0], 3);
     EXPECT_EQ(points.getPointsBufferRef_y()[1], 59);
@@ -97,7 +97,7 @@ TEST(MapBuilder, OnePointPerVoxelAsBruteForceFindsIt) {
                                     cloud.getPointsBufferRef_z()[i], size))
                     .second)
                 expected.push_back(i);
-        const auto points = builder.points({kHere});
+        const auto points = map::cloudOf(builder.build({kHere}).points);
         ASSERT_EQ(points.size(), expected.size()) << size;
         for (std::size_t k = 0; k < expected.size(); ++k) {
             const std::size_t i = expected[k];
@@ -117,7 +117,7 @@ TEST(MapBuilder, WhatSeveralScansSawIsThereOnce) {
         MapBuilder builder(options);
         builder.add(0, kHere, cloud, kHere, kStamp);
         builder.add(1, second, cloud, kHere, kStamp);
-        return builder.points({kHere, second}).size();
+        return map::cloudOf(builder.build({kHere, second}).points).size();
     };
     EXPECT_EQ(2 * pointsOfTwo(kHere), pointsOfTwo(poseAt(100, 0, 0)));
     // What was thought to lie apart and comes together in the end is there once as well.
@@ -125,7 +125,7 @@ TEST(MapBuilder, WhatSeveralScansSawIsThereOnce) {
     builder.add(0, kHere, cloud, kHere, kStamp);
     builder.add(1, poseAt(100, 0, 0), cloud, kHere, kStamp);
     EXPECT_EQ(builder.keyframes(), 2U);
-    EXPECT_EQ(builder.points({kHere, kHere}).size(), pointsOfTwo(kHere));
+    EXPECT_EQ(map::cloudOf(builder.build({kHere, kHere}).points).size(), pointsOfTwo(kHere));
 }
 
 TEST(MapBuilder, ScansBetweenKeyframesAddWhatWasNotSeenBefore) {
@@ -136,21 +136,21 @@ TEST(MapBuilder, ScansBetweenKeyframesAddWhatWasNotSeenBefore) {
     const std::vector<Isometry3d> poses = {kHere, poseAt(1, 0, 0)};
     EXPECT_TRUE(builder.add(0, poses[0], oneCloud({{10.1F, 0, 0}}), kHere, kStamp));
     EXPECT_FALSE(builder.add(1, poses[1], oneCloud({{9.1F, 0, 0}, {20.1F, 0, 0}}), kHere, kStamp));
-    const auto points = builder.points(poses);
+    const auto points = map::cloudOf(builder.build(poses).points);
     ASSERT_EQ(points.size(), 2U) << "the first place is one voxel, seen twice";
     EXPECT_NEAR(points.getPointsBufferRef_x()[1], 21.1, 1e-4);
     EXPECT_EQ(builder.keyframes(), 1U);
-    EXPECT_EQ(builder.keyPoses(poses).size(), 1U);
+    EXPECT_EQ(builder.build(poses).keyPoses.size(), 1U);
 }
 
 TEST(MapBuilder, WhatMovesIsLeftOut) {
     MapBuilder builder(everything());
     EXPECT_TRUE(builder.add(0, kHere, oneCloud({{10, 0, 0}, {11, 0, 0}, {12, 0, 0}}), kHere, kStamp,
                             {0, 1, 0}));
-    const auto points = builder.points({kHere});
+    const auto points = map::cloudOf(builder.build({kHere}).points);
     ASSERT_EQ(points.size(), 2U);
     EXPECT_EQ(points.getPointsBufferRef_x()[1], 12);
-    EXPECT_EQ(map::pointsOf(builder.simplemap({kHere})).size(), 2U);
+    EXPECT_EQ(map::pointsOf(builder.build({kHere}).simplemap).size(), 2U);
     EXPECT_FALSE(builder.add(1, poseAt(50, 0, 0), oneCloud({{10, 0, 0}}), kHere, kStamp, {1}));
 }
 
@@ -177,7 +177,7 @@ TEST(MapBuilder, MemoryGrowsWithTheSpaceAndNotWithTheScans) {
     EXPECT_EQ(builder.keyframes(), 205U);
     // Written one scan after the other as well.
     const test::TemporaryFolder folder;
-    map::saveSimplemap(builder.simplemap({kHere}), folder / "map.simplemap");
+    map::saveSimplemap(builder.build({kHere}).simplemap, folder / "map.simplemap");
     EXPECT_LT(memoryInUse_mb(), before + 30);
 }
 
@@ -186,11 +186,10 @@ TEST(MapBuilder, KeyframesLeaveNoFileBehind) {
     MapBuilder builder(everything(), "lidar", folder.path().string());
     builder.add(0, kHere, randomCloud(100, 10), kHere, kStamp);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-    EXPECT_EQ(map::pointsOf(builder.simplemap({kHere})).size(), 100U);
+    EXPECT_EQ(map::pointsOf(builder.build({kHere}).simplemap).size(), 100U);
     MapBuilder nowhere(everything(), "lidar", folder / "no/such/folder");
     EXPECT_FALSE(nowhere.add(0, kHere, randomCloud(9, 1), kHere, kStamp));
-    EXPECT_EQ(nowhere.points({kHere}).size(), 9U);
-    EXPECT_THROW(nowhere.simplemap({kHere}), Error);
+    EXPECT_THROW(nowhere.build({kHere}).simplemap, Error);
 }
 
 TEST(MapBuilder, FinalPosesAndTheSensorsPlaceAreApplied) {
@@ -200,7 +199,7 @@ TEST(MapBuilder, FinalPosesAndTheSensorsPlaceAreApplied) {
     builder.add(3, kHere, cloud, sensor, kStamp);
     std::vector<Isometry3d> poses(4, kHere);
     poses[3] = poseAt(40, -7, 3, -2.5, 0.2, 0.4);
-    const auto points = builder.points(poses);
+    const auto points = map::cloudOf(builder.build(poses).points);
     ASSERT_EQ(points.size(), cloud.size());
     const Eigen::Matrix4d T = poses[3].matrix() * sensor.matrix();
     for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -212,7 +211,7 @@ TEST(MapBuilder, FinalPosesAndTheSensorsPlaceAreApplied) {
         EXPECT_NEAR(points.getPointsBufferRef_z()[i], q.z(), 1e-4);
     }
     // The simplemap tells the same.
-    const auto fromSimplemap = map::pointsOf(builder.simplemap(poses));
+    const auto fromSimplemap = map::pointsOf(builder.build(poses).simplemap);
     ASSERT_EQ(fromSimplemap.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         EXPECT_NEAR(fromSimplemap.getPointsBufferRef_x()[i], points.getPointsBufferRef_x()[i],
@@ -224,8 +223,8 @@ TEST(MapBuilder, FinalPosesAndTheSensorsPlaceAreApplied) {
 TEST(MapBuilder, MissingPosesAreAnError) {
     MapBuilder builder(everything());
     builder.add(5, kHere, randomCloud(10, 5), kHere, kStamp);
-    EXPECT_THROW(builder.points(std::vector<Isometry3d>(5, kHere)), Error);
-    EXPECT_THROW(builder.simplemap({}), Error);
-    EXPECT_THROW(builder.keyPoses({}), Error);
+    EXPECT_THROW(map::cloudOf(builder.build(std::vector<Isometry3d>(5, kHere)).points), Error);
+    EXPECT_THROW(builder.build({}).simplemap, Error);
+    EXPECT_THROW(builder.build({}).keyPoses, Error);
 }
 }  // namespace

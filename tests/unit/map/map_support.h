@@ -23,12 +23,13 @@ inline mrpt::maps::CPointsMapXYZI randomCloud(std::size_t count, unsigned seed, 
     return cloud;
 }
 
-/** Every point of every scan. */
+/** Every point of every scan that was not told to move. */
 inline map::MapOptions everything() {
     map::MapOptions options;
     options.voxelSize_m = 0;
     options.minRange_m = 0;
     options.maxRange_m = 1e6;
+    options.removal.enabled = false;
     return options;
 }
 }  // namespace delio::test

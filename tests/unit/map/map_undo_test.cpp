@@ -52,11 +52,11 @@ TEST(MapBuilder, UndoTakesAScanBackAsIfItHadNeverCome) {
     for (const double voxel_m : {0.0, 0.5, 2.0}) {
         const auto builder = builderOfDrive(voxel_m, true);
         const auto other = builderOfDrive(voxel_m, false);
-        expectSamePoints(builder.points(kDrive), other.points(kDrive));
+        expectSamePoints(map::cloudOf(builder.build(kDrive).points), map::cloudOf(other.build(kDrive).points));
         EXPECT_EQ(builder.keyframes(), other.keyframes());
-        expectSamePoints(map::pointsOf(builder.simplemap(kDrive)),
-                         map::pointsOf(other.simplemap(kDrive)));
-        EXPECT_EQ(builder.keyPoses(kDrive).back().matrix(), kDrive[2].matrix());
+        expectSamePoints(map::pointsOf(builder.build(kDrive).simplemap),
+                         map::pointsOf(other.build(kDrive).simplemap));
+        EXPECT_EQ(builder.build(kDrive).keyPoses.back().matrix(), kDrive[2].matrix());
     }
 }
 
@@ -66,13 +66,13 @@ TEST(MapBuilder, UndoTakesBackTheLastScanOnly) {
     MapBuilder builder(options);
     builder.undo();  // nothing to take back
     builder.add(0, kHere, randomCloud(500, 14), kHere, kStamp);
-    const auto points = builder.points(kDrive);
+    const auto points = map::cloudOf(builder.build(kDrive).points);
     // No keyframe, and not a point that is new.
     EXPECT_FALSE(builder.add(1, kHere, randomCloud(500, 14), kHere, kStamp));
     builder.undo();
     builder.undo();
     EXPECT_EQ(builder.keyframes(), 1U);
-    expectSamePoints(builder.points(kDrive), points);
+    expectSamePoints(map::cloudOf(builder.build(kDrive).points), points);
 }
 
 TEST(MapBuilder, UndoTakesBackAFaultOfTheDisk) {
@@ -80,11 +80,11 @@ TEST(MapBuilder, UndoTakesBackAFaultOfTheDisk) {
     const std::string later = folder / "later";
     MapBuilder builder(everything(), "lidar", later);
     EXPECT_FALSE(builder.add(0, kHere, randomCloud(9, 1), kHere, kStamp));
-    EXPECT_THROW(builder.simplemap({kHere}), Error);
+    EXPECT_THROW(builder.build({kHere}).simplemap, Error);
     builder.undo();
     std::filesystem::create_directory(later);
     EXPECT_TRUE(builder.add(0, kHere, randomCloud(9, 1), kHere, kStamp));
-    EXPECT_EQ(map::pointsOf(builder.simplemap({kHere})).size(), 9U);
+    EXPECT_EQ(map::pointsOf(builder.build({kHere}).simplemap).size(), 9U);
 }
 
 TEST(MapBuilder, AnAddThatThrowsLeavesTheMapAsItWas) {
@@ -94,17 +94,17 @@ TEST(MapBuilder, AnAddThatThrowsLeavesTheMapAsItWas) {
     options.keyframeDistance_m = 100;
     MapBuilder builder(options);
     builder.add(0, kHere, randomCloud(500, 15), kHere, kStamp);
-    const auto before = builder.points(kDrive);
+    const auto before = map::cloudOf(builder.build(kDrive).points);
     const auto large = randomCloud(2000000, 16, 4000);  // in nearly as many voxels
     {
         const test::MemoryLimit limit(100);  // 32 for the points, more for the voxels
         EXPECT_THROW(builder.add(1, kDrive[1], large, kHere, kStamp), std::bad_alloc);
     }
-    expectSamePoints(builder.points(kDrive), before);
+    expectSamePoints(map::cloudOf(builder.build(kDrive).points), before);
     builder.add(1, kDrive[1], randomCloud(500, 17), kHere, kStamp);
     MapBuilder other(options);
     other.add(0, kHere, randomCloud(500, 15), kHere, kStamp);
     other.add(1, kDrive[1], randomCloud(500, 17), kHere, kStamp);
-    expectSamePoints(builder.points(kDrive), other.points(kDrive));
+    expectSamePoints(map::cloudOf(builder.build(kDrive).points), map::cloudOf(other.build(kDrive).points));
 }
 }  // namespace

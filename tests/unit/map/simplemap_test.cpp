@@ -30,7 +30,7 @@ TEST(Simplemap, ReloadsEqualAndRepeatsByteForByte) {
         MapBuilder builder(MapOptions(), "velodyne");
         builder.add(0, poses[0], randomCloud(3000, 6), sensor, kStamp);
         builder.add(1, poses[1], randomCloud(3000, 7), sensor, kStamp);
-        map::saveSimplemap(builder.simplemap(poses), folder / name);
+        map::saveSimplemap(builder.build(poses).simplemap, folder / name);
     }
     EXPECT_EQ(test::readText(folder / "a.simplemap"), test::readText(folder / "b.simplemap"));
 
@@ -50,7 +50,7 @@ TEST(Simplemap, ReloadsEqualAndRepeatsByteForByte) {
     EXPECT_LT(test::metresBetween(fromMrpt(scan->sensorPose), sensor), 1e-9);
     MapBuilder again((MapOptions()));
     again.add(0, sensor.inverse(), randomCloud(3000, 7), sensor, kStamp);
-    const auto kept = again.points({sensor.inverse()});
+    const auto kept = map::cloudOf(again.build({sensor.inverse()}).points);
     ASSERT_EQ(scan->pointcloud->size(), kept.size());
 }
 
@@ -58,7 +58,7 @@ TEST(Simplemap, CutOffAnywhereIsAnError) {
     const test::TemporaryFolder folder;
     MapBuilder builder(everything());
     builder.add(0, kHere, randomCloud(300, 8), kHere, kStamp);
-    map::saveSimplemap(builder.simplemap({kHere}), folder / "whole.simplemap");
+    map::saveSimplemap(builder.build({kHere}).simplemap, folder / "whole.simplemap");
     const std::string whole = test::readText(folder / "whole.simplemap");
     for (std::size_t length = 0;
          length<whole.size(); length += length + 40> whole.size() ? 1 : 17) {

@@ -28,7 +28,7 @@ TEST_F(ToyRun, NotesEachScan) {
     EXPECT_EQ(record.final.stamps_s, record.odometry.stamps_s);
     EXPECT_FALSE(record.optimised());
     EXPECT_FALSE(record.metrics);  // no truth
-    EXPECT_GT(run.maps().points->points(record.final.poses).size(), 1000U);
+    EXPECT_GT(map::cloudOf(run.maps().points->build(record.final.poses).points).size(), 1000U);
 }
 
 TEST_F(ToyRun, ContradictingOptionsAreRefused) {

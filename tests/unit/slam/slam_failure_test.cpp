@@ -71,8 +71,8 @@ struct State {
     explicit State(const Mapping& mapping)
         : trajectory(mapping.slam.trajectory()),
           graph(mapping.graph->graph()),
-          points(mapping.map->builder().points(mapping.poses())),
-          keyPoses(mapping.map->builder().keyPoses(mapping.poses())) {}
+          points(map::cloudOf(mapping.map->builder().build(mapping.poses()).points)),
+          keyPoses(mapping.map->builder().build(mapping.poses()).keyPoses) {}
 
     io::Trajectory trajectory;
     graph::PoseGraph graph;

@@ -5,6 +5,6 @@ namespace delio::picture {
 /** The pictures of a run: map.3Dscene and map.png where there are points, and trajectory.png, from
  *  above; where the graph had something to optimise, before and after it side by side. To be given
  *  to run::RunFolder::write(). Throws Error where one cannot be drawn or written. */
-void illustrate(const run::RunRecord& record, const mrpt::maps::CPointsMapXYZI& points,
-                const std::vector<Eigen::Isometry3d>& keyframes, const run::RunFolder& folder);
+void illustrate(const run::RunRecord& record, const map::BuiltMap& map,
+                const run::RunFolder& folder);
 }  // namespace delio::picture

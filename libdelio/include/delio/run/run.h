@@ -21,8 +21,9 @@ struct RunSettings {
     /** Where keyframes are put aside while the drive goes on; empty: the system's folder for
      *  temporary files. */
     std::string folder;
-    bool graph = true;  //!< false: the chain of increments alone, not optimised
-    bool map = true;    //!< false: memory grows by the poses alone
+    bool graph = true;         //!< false: the chain of increments alone, not optimised
+    bool map = true;           //!< false: memory grows by the poses alone
+    bool keepDynamic = false;  //!< map_dynamic.ply: what was taken out of the map
     /** A stored map in which the drive is localised; its file, or the folder of the run that made
      *  it. Empty: none. */
     std::string storedMap;
@@ -65,7 +66,8 @@ class Run {
     const RunRecord& record() const { return record_; }
     /** Of a run that is finished; they live as long as it does. */
     RunMaps maps() const {
-        return {map_ ? &map_->builder() : nullptr, stored_ ? &*stored_ : nullptr};
+        return {map_ ? &map_->builder() : nullptr, stored_ ? &*stored_ : nullptr,
+                settings_.keepDynamic};
     }
 
  private:

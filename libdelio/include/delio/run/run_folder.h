@@ -19,8 +19,7 @@ std::string storedMapIn(const std::string& path);
 /** Draws what a run found into its folder: RunFolder::kScene, kMapPicture (where there are points)
  *  and kTrajectoryPicture. delio::picture has one; without, there are no pictures. */
 using Illustrate =
-    std::function<void(const RunRecord& record, const mrpt::maps::CPointsMapXYZI& points,
-                       const std::vector<Eigen::Isometry3d>& keyframes, const RunFolder& folder)>;
+    std::function<void(const RunRecord& record, const map::BuiltMap& map, const RunFolder& folder)>;
 
 /** The folder that a run leaves. Every result file has its name, its writer and its reader here;
  *  summary.yaml is removed first and written last: a folder that has one is whole. */
@@ -40,6 +39,7 @@ class RunFolder {
     static constexpr const char* kConfig = "config.ini";
     static constexpr const char* kSimplemap = "map.simplemap";
     static constexpr const char* kPly = "map.ply";
+    static constexpr const char* kDynamicPly = "map_dynamic.ply";  //!< what was taken out of it
     static constexpr const char* kStoredMap = "map.delio";
     static constexpr const char* kScene = "map.3Dscene";
     static constexpr const char* kMapPicture = "map.png";

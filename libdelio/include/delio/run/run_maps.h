@@ -7,5 +7,6 @@ namespace delio::run {
 struct RunMaps {
     const map::MapBuilder* points = nullptr;
     const MapContent* stored = nullptr;  //!< to come back to
+    bool keepDynamic = false;            //!< what is taken out of `points` has a file of its own
 };
 }  // namespace delio::run

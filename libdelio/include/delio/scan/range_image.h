@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 namespace delio::scan {
@@ -10,6 +11,12 @@ enum class Place {
     kTaken     //!< a beam ended there
 };
 
+/** A range image to be put aside: the rows that hold anything, in centimetres. */
+struct PackedRanges {
+    int firstRow = 0;
+    std::vector<std::uint16_t> ranges_cm;  //!< row by row from below; 0: nothing was seen
+};
+
 /** The nearest range in each direction of a scan: which space it saw to be free. */
 class RangeImage {
  public:
@@ -18,17 +25,32 @@ class RangeImage {
     /** `points`: metres, sensor's frame. Directions are told apart by `cell_deg` (degrees of
      * azimuth and of elevation). */
     RangeImage(const Eigen::Matrix3Xf& points, double cell_deg);
+    /** The same image again, to the centimetre; made for many questions. */
+    RangeImage(const PackedRanges& packed, double cell_deg);
+
+    PackedRanges packed() const;
 
     /** `point`: in this scan's sensor frame. Free only where the beams of all neighbouring cells
      *  went on by more than `margin` metres; taken where one of them ended within as much. */
     Place at(const Eigen::Vector3f& point, float margin) const;
 
  private:
+    /** In the whole sphere. */
     int rowOf(const Eigen::Vector3f& point) const;
     int columnOf(const Eigen::Vector3f& point) const;
+    std::size_t rows() const { return nearest_.size() / static_cast<std::size_t>(columns_); }
+    /** Of the cells about one and it: calls visit(range) for each where something was seen. */
+    template <typename Visit>
+    void forNeighbours(int row, int column, const Visit& visit) const;
+    Place lookAbout(int row, int column, float range, float margin) const;
+    void summarise();
 
     float perRadian_;
-    int rows_, columns_;
+    int allRows_, columns_;
+    int firstRow_ = 0;            //!< that is kept
     std::vector<float> nearest_;  //!< metres, row by row from below; 0: nothing was seen
+    /** The least of each cell's neighbourhood, negative where too little was seen there to call
+     *  anything free; empty where it was not asked for. */
+    std::vector<float> leastAbout_;
 };
 }  // namespace delio::scan

@@ -1,0 +1,20 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "delio/map/map_builder.h"
+#include "stored_scan.h"
+
+namespace delio::map {
+/** What a map is made of. */
+struct MapParts {
+    const std::vector<StoredScan>& scans;
+    std::shared_ptr<const io::Spool> spool;  //!< null: there are no scans
+    const MapOptions& options;
+    const std::string& sensorLabel;
+};
+
+/** Throws Error if a scan's poseIndex is outside `poses`, or if the disk fails. */
+BuiltMap buildMap(const MapParts& parts, const std::vector<Eigen::Isometry3d>& poses);
+}  // namespace delio::map

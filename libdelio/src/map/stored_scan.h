@@ -1,0 +1,30 @@
+#pragma once
+#include <mrpt/core/Clock.h>
+
+#include <Eigen/Geometry>
+#include <cstddef>
+
+#include "../io/spool.h"
+#include "delio/scan/range_image.h"
+
+namespace delio::map {
+/** A scan that was put aside on the disk. */
+struct StoredScan {
+    std::size_t poseIndex = 0;
+    Eigen::Isometry3d sensorPose = Eigen::Isometry3d::Identity();
+    mrpt::Clock::time_point stamp;
+    bool withIntensity = false, isKeyframe = false;
+    /** x y z intensity each, sensor's frame: first the `still` ones, then those told to move. */
+    io::Spool::Place points;
+    std::size_t still = 0;
+    /** What it saw, of all its points; without floats: it is not asked what it looked through. */
+    io::Spool::Place view;
+    int viewFirstRow = 0;
+
+    /** Of the points that were told to stand still. */
+    io::Spool::Place stillPoints() const { return {points.offset, 4 * still}; }
+};
+
+io::Spool::Place putAside(const scan::PackedRanges& view, io::Spool& spool);
+scan::PackedRanges readView(const StoredScan& scan, const io::Spool& spool);
+}  // namespace delio::map

@@ -1,0 +1,175 @@
+#include "visibility_votes.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+
+namespace delio::map {
+namespace {
+using Voxel = Eigen::Array3i;
+
+std::uint64_t keyOf(const Voxel& voxel) {
+    // 21 bits an axis: blocks within a million to either side of the origin do not mix.
+    const auto part = [](int v) {
+        return static_cast<std::uint64_t>(static_cast<std::int64_t>(v >> 3)) & ((1U << 21) - 1);
+    };
+    return part(voxel.x()) << 42 | part(voxel.y()) << 21 | part(voxel.z());
+}
+
+unsigned numberOf(const Voxel& voxel) {
+    return static_cast<unsigned>((voxel.z() & 7) << 6 | (voxel.y() & 7) << 3 | (voxel.x() & 7));
+}
+
+void count(std::uint16_t& counter) {
+    counter += counter < std::numeric_limits<std::uint16_t>::max();
+}
+}  // namespace
+
+std::vector<OptionField> RemovalOptions::fields() const {
+    return {
+        {"enabled", &RemovalOptions::enabled,
+         "true: once the drive is over, what scans looked through is taken out of the map"},
+        {"voxel_size", &RemovalOptions::voxelSize_m,
+         "m; edge of the voxels that scans are asked of", 0.02, 10},
+        {"cell_deg", &RemovalOptions::cell_deg, "deg; directions are told apart by this", 0.1, 10},
+        {"margin", &RemovalOptions::margin_m,
+         "m; a beam that went on by this looked through a voxel", 0, 10},
+        {"spacing", &RemovalOptions::spacing_m,
+         "m; between the scans that are asked (standing, one in half a second)", 0, 100},
+        {"witnesses", &RemovalOptions::witnesses, "scans that have to have looked through it", 1,
+         1000},
+        {"free_per_taken", &RemovalOptions::freePerTaken,
+         "a voxel is dynamic where this many times the scans that looked through it outnumber "
+         "those "
+         "that saw something there",
+         0, 100},
+        {"grown_share", &RemovalOptions::grownShare,
+         "of the voxels above and beside one of which little is known, those dynamic: it is, too",
+         0, 1},
+    };
+}
+
+std::size_t VisibilityVotes::Block::rankOf(unsigned number) const {
+    std::size_t rank = 0;
+    for (unsigned word = 0; word < number >> 6; ++word)
+        rank += static_cast<std::size_t>(__builtin_popcountll(taken[word]));
+    const std::uint64_t before = (std::uint64_t{1} << (number & 63)) - 1;
+    return rank + static_cast<std::size_t>(__builtin_popcountll(taken[number >> 6] & before));
+}
+
+void VisibilityVotes::hit(const Eigen::Vector3d& point, bool moving, std::uint32_t scan) {
+    const Eigen::Array3d scaled = point.array() / options_.voxelSize_m;
+    const Eigen::Array3d whole = scaled.floor();
+    const Voxel voxel = whole.cast<int>();
+    Block& block = blocks_[blocks_.insert(keyOf(voxel))];
+    if (block.cells.empty())
+        block.first = voxel.unaryExpr([](int v) { return static_cast<int>(v & ~7U); });
+    const unsigned number = numberOf(voxel);
+    const std::size_t rank = block.rankOf(number);
+    const auto cell = block.cells.begin() + static_cast<std::ptrdiff_t>(rank);
+    if (!block.has(number)) {
+        block.taken[number >> 6] |= std::uint64_t{1} << (number & 63);
+        const Eigen::Array3d place = (scaled - whole) * 256;
+        const auto byte = [&](int axis) { return static_cast<std::uint8_t>(place[axis]); };
+        block.cells.insert(cell, {scan, 1, moving, 0, 0, {byte(0), byte(1), byte(2)}});
+    } else if (cell->lastScan != scan) {
+        cell->lastScan = scan;
+        count(cell->hits);
+        if (moving) count(cell->moving);
+    }
+}
+
+template <typename Visit>
+void VisibilityVotes::forCells(Block& block, const Visit& visit) {
+    std::size_t rank = 0;
+    for (unsigned number = 0; rank < block.cells.size(); ++number) {
+        if (!block.has(number)) continue;
+        const Voxel inside(static_cast<int>(number & 7), static_cast<int>(number >> 3 & 7),
+                           static_cast<int>(number >> 6));
+        visit(Voxel(block.first + inside), block.cells[rank++]);
+    }
+}
+
+Eigen::Vector3f VisibilityVotes::pointOf(const Voxel& voxel, const Cell& cell) const {
+    const Eigen::Array3d within(cell.place[0], cell.place[1], cell.place[2]);
+    return ((voxel.cast<double>() + (within + 0.5) / 256) * options_.voxelSize_m)
+        .matrix()
+        .cast<float>();
+}
+
+void VisibilityVotes::look(const scan::RangeImage& view, const Eigen::Isometry3d& sensorInWorld) {
+    constexpr float kNearest_m = 2, kFarthest_m = 60;
+    const Eigen::Isometry3f toSensor = sensorInWorld.inverse().cast<float>();
+    const auto reach = static_cast<float>(kFarthest_m + 8 * options_.voxelSize_m);
+    const auto margin = static_cast<float>(options_.margin_m);
+    tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t i) {
+        Block& block = blocks_[static_cast<std::uint32_t>(i)];
+        const Eigen::Vector3f corner =
+            (block.first.cast<double>() * options_.voxelSize_m).matrix().cast<float>();
+        if ((toSensor * corner).squaredNorm() > reach * reach) return;
+        forCells(block, [&](const Voxel& voxel, Cell& cell) {
+            const Eigen::Vector3f point = toSensor * pointOf(voxel, cell);
+            const float range = point.squaredNorm();
+            if (range < kNearest_m * kNearest_m || range > kFarthest_m * kFarthest_m) return;
+            const auto place = view.at(point, margin);
+            if (place == scan::Place::kFree) count(cell.free);
+            if (place == scan::Place::kTaken) count(cell.taken);
+        });
+    });
+}
+
+const VisibilityVotes::Cell* VisibilityVotes::find(const Voxel& voxel) const {
+    const Block* block = blocks_.find(keyOf(voxel));
+    const unsigned number = numberOf(voxel);
+    return block && block->has(number) ? &block->cells[block->rankOf(number)] : nullptr;
+}
+
+const VisibilityVotes::Cell* VisibilityVotes::at(const Eigen::Vector3d& point) const {
+    return find((point.array() / options_.voxelSize_m).floor().cast<int>());
+}
+
+/** The lowest parts of what moves stand beside and below the rest; what they stand on lies below.
+ */
+bool VisibilityVotes::isSurrounded(const Voxel& voxel) const {
+    constexpr int kBeside = 2, kAbove = 3, kLeast = 4;
+    int dynamic = 0, all = 0;
+    for (int x = -kBeside; x <= kBeside; ++x)
+        for (int y = -kBeside; y <= kBeside; ++y)
+            for (int z = 0; z <= kAbove; ++z) {
+                if (x == 0 && y == 0 && z == 0) continue;
+                const Cell* other = find(voxel + Voxel(x, y, z));
+                all += other != nullptr;
+                dynamic += other && other->seed;
+            }
+    return dynamic >= kLeast && dynamic >= options_.grownShare * all;
+}
+
+void VisibilityVotes::decide() {
+    constexpr unsigned kLittle = 3;
+    const auto forAll = [&](const auto& visit) {
+        tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t i) {
+            forCells(blocks_[static_cast<std::uint32_t>(i)], visit);
+        });
+    };
+    forAll([&](const Voxel&, Cell& cell) {
+        cell.seed = 2 * cell.moving > cell.hits ||
+                    (cell.free >= options_.witnesses &&
+                     options_.freePerTaken * cell.free > double{static_cast<double>(cell.taken)});
+    });
+    forAll([&](const Voxel& voxel, Cell& cell) {
+        const bool isKnown = cell.free == 0 && cell.taken >= kLittle;
+        cell.grown = !cell.seed && !isKnown && isSurrounded(voxel);
+    });
+}
+
+bool VisibilityVotes::isDynamic(const Eigen::Vector3d& point) const {
+    const Cell* cell = at(point);
+    return cell && (cell->seed || cell->grown);
+}
+
+std::uint16_t VisibilityVotes::observations(const Eigen::Vector3d& point) const {
+    const Cell* cell = at(point);
+    return cell ? cell->hits : std::uint16_t{0};
+}
+}  // namespace delio::map

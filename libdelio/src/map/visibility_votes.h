@@ -1,0 +1,65 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "delio/map/removal_options.h"
+#include "delio/scan/range_image.h"
+#include "delio/scan/voxel_table.h"
+
+namespace delio::map {
+/** What the scans of a whole drive say of each voxel in which they saw something: how many saw it,
+ *  how many of these took it for a part of what moves, and how many, before or later, looked
+ * through it. (The idea of Removert, Kim and Kim, IROS 2020, and of DUFOMap, Duberg et al., RA-L
+ * 2024; voted by range images instead of cast rays.) First all hits, then all looks, then decide().
+ *  World frame, metres. */
+class VisibilityVotes {
+ public:
+    explicit VisibilityVotes(const RemovalOptions& options) : options_(options) {}
+
+    /** Scan number `scan`, rising, saw something at `point`; `moving`: as a part of what moves. */
+    void hit(const Eigen::Vector3d& point, bool moving, std::uint32_t scan);
+
+    /** Asks a scan of every voxel about it. */
+    void look(const scan::RangeImage& view, const Eigen::Isometry3d& sensorInWorld);
+
+    /** Tells what is dynamic: voxels that were looked through, or hit as a part of what moves; and
+     *  those of which little is known and above or beside which most is dynamic. */
+    void decide();
+
+    /** After decide(). False where nothing was hit. */
+    bool isDynamic(const Eigen::Vector3d& point) const;
+
+    /** Scans that hit its voxel. */
+    std::uint16_t observations(const Eigen::Vector3d& point) const;
+
+ private:
+    using Voxel = Eigen::Array3i;
+    struct Cell {
+        std::uint32_t lastScan;
+        std::uint16_t hits = 0, moving = 0, free = 0, taken = 0;
+        std::array<std::uint8_t, 3> place;  //!< of its first point: 1/256 of the voxel
+        bool seed = false, grown = false;
+    };
+    /** Of 8 x 8 x 8 voxels those that were hit, in the order of their numbers. */
+    struct Block {
+        Voxel first = Voxel::Zero();
+        std::array<std::uint64_t, 8> taken{};
+        std::vector<Cell> cells;
+
+        std::size_t rankOf(unsigned number) const;
+        bool has(unsigned number) const { return taken[number >> 6] >> (number & 63) & 1; }
+    };
+    /** Calls visit(voxel, cell) for each of a block's. */
+    template <typename Visit>
+    static void forCells(Block& block, const Visit& visit);
+    const Cell* find(const Voxel& voxel) const;
+    const Cell* at(const Eigen::Vector3d& point) const;
+    Eigen::Vector3f pointOf(const Voxel& voxel, const Cell& cell) const;
+    bool isSurrounded(const Voxel& voxel) const;
+
+    RemovalOptions options_;
+    scan::VoxelTable<Block> blocks_;
+};
+}  // namespace delio::map
