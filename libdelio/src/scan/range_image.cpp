@@ -12,6 +12,7 @@ namespace delio::scan {
 namespace {
 constexpr int kEnough = 3;  // cells seen of a neighbourhood, to call it free
 constexpr float kPerMetre = 100;
+constexpr float kWidestGap = 3.0F * static_cast<float>(M_PI) / 180;  // between two rings
 }  // namespace
 
 RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
@@ -45,6 +46,7 @@ RangeImage::RangeImage(const PackedRanges& packed, double cell_deg)
     nearest_.reserve(packed.ranges_cm.size());
     for (const auto range_cm : packed.ranges_cm)
         nearest_.push_back(static_cast<float>(range_cm) / kPerMetre);
+    fillGaps();
     summarise();
 }
 
@@ -80,6 +82,24 @@ void RangeImage::forNeighbours(int row, int column, const Visit& visit) const {
                 nearest_[static_cast<std::size_t>((r - firstRow_) * columns_ + c)];
             if (nearest > 0) visit(nearest);
         }
+}
+
+/** Between two rings the nearer one counts. */
+void RangeImage::fillGaps() {
+    const int widest = static_cast<int>(kWidestGap * perRadian_);
+    const auto columns = static_cast<std::size_t>(columns_);
+    tbb::parallel_for(std::size_t{0}, columns, [&](std::size_t c) {
+        int below = -1;  // the last row that saw something
+        for (int r = 0; r < static_cast<int>(rows()); ++r) {
+            const float range = nearest_[static_cast<std::size_t>(r) * columns + c];
+            if (range == 0) continue;
+            if (below >= 0 && r - below <= widest)
+                for (int k = below + 1; k < r; ++k)
+                    nearest_[static_cast<std::size_t>(k) * columns + c] = std::min(
+                        range, nearest_[static_cast<std::size_t>(below) * columns + c]);
+            below = r;
+        }
+    });
 }
 
 void RangeImage::summarise() {

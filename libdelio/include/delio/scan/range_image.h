@@ -25,7 +25,9 @@ class RangeImage {
     /** `points`: metres, sensor's frame. Directions are told apart by `cell_deg` (degrees of
      * azimuth and of elevation). */
     RangeImage(const Eigen::Matrix3Xf& points, double cell_deg);
-    /** The same image again, to the centimetre; made for many questions. */
+    /** The same image again, to the centimetre, made for many questions: between two rings that are
+     *  not far apart the nearer one counts, so that what lies between them is free only where both
+     *  went on. */
     RangeImage(const PackedRanges& packed, double cell_deg);
 
     PackedRanges packed() const;
@@ -43,6 +45,7 @@ class RangeImage {
     template <typename Visit>
     void forNeighbours(int row, int column, const Visit& visit) const;
     Place lookAbout(int row, int column, float range, float margin) const;
+    void fillGaps();
     void summarise();
 
     float perRadian_;
