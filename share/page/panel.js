@@ -7,7 +7,7 @@ const byId = id => document.getElementById(id);
 // points have the value itself or its share of the limits.
 const values = {
   height: {range: about.z_most, unit: 'm', share: false},
-  ground: {range: about.ground_most, unit: 'm above ground', share: false},
+  ground: {range: about.ground_most, unit: 'm above the ground', share: false},
   intensity: {range: about.intensity, unit: 'as the sensor gives it', share: true},
   time: {range: about.time, unit: 's', share: true},
   observations: {range: about.observations, unit: 'scans', share: false},
