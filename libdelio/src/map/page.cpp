@@ -41,7 +41,7 @@ std::string readThreeJs(const std::string& file, const std::string& page) {
     std::ifstream in(file, std::ios::binary);
     std::ostringstream read;
     read << in.rdbuf();
-    const std::string text = read.str();
+    std::string text = read.str();
     if (text.empty())
         throw Error("cannot write '" + page + "': three.js, which draws it, is not at '" + file +
                     "'; install Debian's libjs-three");

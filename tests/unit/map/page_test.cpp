@@ -173,6 +173,7 @@ TEST_F(Page, TakesAnyTitleAndFetchesNothing) {
     EXPECT_EQ(page.find("<script>alert"), std::string::npos);
     for (const char* link : {"src=\"", "href=\"", "url(", "<link", "@import", "<iframe", "<img"})
         EXPECT_EQ(page.find(link), std::string::npos) << link;
+    EXPECT_NE(page.find("default-src 'none'"), std::string::npos);  // nor could it
     EXPECT_NE(page.find("THREE"), std::string::npos);
 }
 
