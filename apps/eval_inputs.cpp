@@ -178,9 +178,13 @@ std::vector<Comparison> compareSequences(const std::string& reference, const Est
     const bool calibrationGiven = settings.Tr.has_value();
     std::vector<Comparison> comparisons;
     const auto sequences = sharedSequences(reference, estimate.path);
-    for (const auto& [truth, path] : sequences)
+    for (const auto& [truth, path] : sequences) {
         comparisons.push_back(
             compareFiles(estimate.name, truth, poseFile(path, calibrationGiven), settings));
+        const RunFolder folder(path);
+        if (folder.has(RunFolder::kMapPage))
+            comparisons.back().mapPage = folder.path(RunFolder::kMapPage);
+    }
     if (std::none_of(sequences.begin(), sequences.end(), hasLoops)) return comparisons;
     for (const auto& [truth, path] : sequences)
         if (RunFolder(path).has(RunFolder::kOdometry))

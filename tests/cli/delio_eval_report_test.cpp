@@ -127,6 +127,30 @@ TEST_F(DelioEval, MarksPredictedScansAndSkipsUnusedOnes) {
     EXPECT_NE(unlike.err.find("has 30 poses, the reference 60"), std::string::npos) << unlike.err;
 }
 
+TEST_F(DelioEval, AReportLinksToTheMapOfARun) {
+    for (const std::string run : {"a run: 50% \"b\"", "bare"}) {
+        fs::create_directory(folder_ / run);
+        fs::copy(in("est.txt"), in(run + "/trajectory_kitti.txt"));
+    }
+    test::writeText(folder_ / "a run: 50% \"b\"/map.html", "<html></html>");
+    const auto pageOf = [&](const std::string& report) {
+        const auto result = eval({"--ref", in("ref.txt"), "--est", "<a>=" + in("a run: 50% \"b\""),
+                                  "--est", in("bare"), "-o", in(report)});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return test::readText(in(report + "/report.html"));
+    };
+    const auto page = pageOf("deep/report");
+    EXPECT_NE(page.find("<a href=\"../../a%20run%3A%2050%25%20%22b%22/map.html\">Map of "
+                        "&lt;a&gt;</a>"),
+              std::string::npos);
+    EXPECT_EQ(page.find("Map of bare"), std::string::npos);
+    for (const char* link : {"src=\"http", "href=\"http", "url(", "<script", "<link"})
+        EXPECT_EQ(page.find(link), std::string::npos) << link;
+    // Into the run's own folder: the link stays right wherever that is moved.
+    EXPECT_NE(pageOf("a run: 50% \"b\"/report").find("<a href=\"../map.html\">"),
+              std::string::npos);
+}
+
 TEST_F(DelioEval, ScoresAFolderOfRuns) {
     for (const char* name : {"truth", "runs", "runs/00", "runs/01"})
         fs::create_directory(folder_ / name);

@@ -10,9 +10,9 @@
 #include <cmath>
 
 #include "../io/gz_object.h"
+#include "../map/ground_height.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "ground_height.h"
 #include "legend.h"
 #include "round_length.h"
 #include "wide_line.h"
@@ -21,6 +21,7 @@ namespace delio::picture {
 using Eigen::Isometry3d;
 using map::Colormap;
 using map::colourAt;
+using map::GroundHeight;
 using map::robustRange;
 using map::ValueRange;
 using mrpt::img::TColor;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "delio/core/approximate_atan2.h"
 
@@ -88,18 +89,26 @@ void RangeImage::forNeighbours(int row, int column, const Visit& visit) const {
 void RangeImage::fillGaps() {
     const int widest = static_cast<int>(kWidestGap * perRadian_);
     const auto columns = static_cast<std::size_t>(columns_);
-    tbb::parallel_for(std::size_t{0}, columns, [&](std::size_t c) {
+    std::vector<std::size_t> gaps(static_cast<std::size_t>(widest) + 1);  // how many of each width
+    for (std::size_t c = 0; c < columns; ++c) {
         int below = -1;  // the last row that saw something
         for (int r = 0; r < static_cast<int>(rows()); ++r) {
             const float range = nearest_[static_cast<std::size_t>(r) * columns + c];
             if (range == 0) continue;
-            if (below >= 0 && r - below <= widest)
+            if (below >= 0 && r - below <= widest) {
+                ++gaps[static_cast<std::size_t>(r - below)];
                 for (int k = below + 1; k < r; ++k)
                     nearest_[static_cast<std::size_t>(k) * columns + c] = std::min(
                         range, nearest_[static_cast<std::size_t>(below) * columns + c]);
+            }
             below = r;
         }
-    });
+    }
+    const auto all = std::accumulate(gaps.begin(), gaps.end(), std::size_t{0});
+    std::size_t median = 0;
+    for (std::size_t narrower = 0; median < gaps.size(); ++median)
+        if ((narrower += gaps[median]) * 2 > all) break;
+    ringSpacing_ = static_cast<float>(median) / perRadian_;
 }
 
 void RangeImage::summarise() {

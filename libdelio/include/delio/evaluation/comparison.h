@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "delio/core/error.h"
@@ -22,6 +23,7 @@ struct Comparison {
     bool timesAreAssumed = false;  //!< no file has times: ten poses a second, as KITTI has it
     std::vector<bool> predicted;   //!< scans that were not registered; empty where not known
     RelativeError perScan;         //!< of the motion from each pose to the next
+    std::string mapPage;           //!< path of a page with the estimate's map; empty: there is none
     double end_error_m = 0;  //!< between the last poses, each seen from the first of its trajectory
     std::size_t unusedReference = 0;     //!< rows of the reference for scans that were not used
     std::size_t unmatchedReference = 0;  //!< poses of the reference (unused ones apart) and of the

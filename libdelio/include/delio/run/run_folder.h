@@ -40,6 +40,7 @@ class RunFolder {
     static constexpr const char* kSimplemap = "map.simplemap";
     static constexpr const char* kPly = "map.ply";
     static constexpr const char* kDynamicPly = "map_dynamic.ply";  //!< what was taken out of it
+    static constexpr const char* kMapPage = "map.html";
     static constexpr const char* kStoredMap = "map.delio";
     static constexpr const char* kScene = "map.3Dscene";
     static constexpr const char* kMapPicture = "map.png";

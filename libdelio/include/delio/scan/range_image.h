@@ -32,6 +32,9 @@ class RangeImage {
 
     PackedRanges packed() const;
 
+    /** Of one that was packed: between two rings, radians. */
+    float ringSpacing() const { return ringSpacing_; }
+
     /** `point`: in this scan's sensor frame. Free only where the beams of all neighbouring cells
      *  went on by more than `margin` metres; taken where one of them ended within as much. */
     Place at(const Eigen::Vector3f& point, float margin) const;
@@ -48,7 +51,7 @@ class RangeImage {
     void fillGaps();
     void summarise();
 
-    float perRadian_;
+    float perRadian_, ringSpacing_ = 0;
     int allRows_, columns_;
     int firstRow_ = 0;            //!< that is kept
     std::vector<float> nearest_;  //!< metres, row by row from below; 0: nothing was seen

@@ -300,8 +300,13 @@ void writeSequences(const Page& page, const std::vector<Section>& sections, std:
         out << "</nav>\n";
     }
     for (std::size_t i = 0; i < sections.size(); ++i) {
-        out << "<h2 id=\"s" << i << "\">Sequence " << html(sections[i].sequence.name) << "</h2>\n";
-        page.plots(sections[i].charts);
+        const auto& section = sections[i];
+        out << "<h2 id=\"s" << i << "\">Sequence " << html(section.sequence.name) << "</h2>\n";
+        for (std::size_t k = 0; k < section.maps.size(); ++k)
+            if (!section.maps[k].empty())
+                out << "<p><a href=\"" << section.maps[k] << "\">Map of "
+                    << html(section.sequence.members[k]->row.name) << "</a></p>\n";
+        page.plots(section.charts);
     }
 }
 }  // namespace

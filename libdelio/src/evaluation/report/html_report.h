@@ -11,6 +11,7 @@ namespace delio::evaluation {
 struct Section {
     Group sequence;
     std::vector<Chart> charts;
+    std::vector<std::string> maps;  //!< address of each member's map; empty: it has none
 };
 
 /** Writes the page. `plotFolder` holds NAME.svg of every chart. `averages`: the rows "avg". */

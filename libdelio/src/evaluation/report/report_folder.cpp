@@ -1,6 +1,8 @@
 #include "delio/evaluation/report/report_folder.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <ostream>
 #include <set>
@@ -60,6 +62,27 @@ std::string prefixOf(const std::string& sequence, std::set<std::string>& taken) 
     return unique + "_";
 }
 
+/** A file's address in a page of `folder`: relative, so that both can be moved or sent together. */
+std::string addressOf(const fs::path& file, const fs::path& folder) {
+    constexpr const char* kDigits = "0123456789ABCDEF";
+    std::string address;
+    for (const char c : fs::proximate(file, folder).generic_string()) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code < 0x80 && (std::isalnum(code) || std::strchr("-._~/", c)))
+            address += c;
+        else
+            address += {'%', kDigits[code >> 4], kDigits[code & 15]};
+    }
+    return address;
+}
+
+std::vector<std::string> mapsOf(const Group& sequence, const fs::path& folder) {
+    std::vector<std::string> addresses;
+    for (const auto* member : sequence.members)
+        addresses.push_back(member->mapPage.empty() ? "" : addressOf(member->mapPage, folder));
+    return addresses;
+}
+
 void dropEmpty(std::vector<Chart>& charts) {
     charts.erase(std::remove_if(charts.begin(), charts.end(),
                                 [](const Chart& chart) { return chart.empty(); }),
@@ -87,7 +110,8 @@ void writeReportFolder(const std::vector<Comparison>& comparisons,
     std::vector<Section> sections;
     std::vector<Chart> overview, all;
     for (const auto& sequence : bySequence) {
-        sections.push_back({sequence, sequenceCharts(sequence, prefixOf(sequence.name, taken))});
+        sections.push_back({sequence, sequenceCharts(sequence, prefixOf(sequence.name, taken)),
+                            mapsOf(sequence, folder)});
         auto& charts = sections.back().charts;
         dropEmpty(charts);
         all.insert(all.end(), charts.begin(), charts.end());

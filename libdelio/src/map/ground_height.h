@@ -3,7 +3,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace delio::picture {
+namespace delio::map {
 /** Height of the ground around a place, as the low points of each cell of a coarse grid give it,
  *  straight lines between the cells: so that a street on a hill looks like one in the valley. */
 class GroundHeight {
@@ -26,4 +26,4 @@ class GroundHeight {
 
     std::unordered_map<std::uint64_t, double> cells_;
 };
-}  // namespace delio::picture
+}  // namespace delio::map

@@ -1,0 +1,37 @@
+#pragma once
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "delio/map/map_point.h"
+
+namespace delio::map {
+/** What a page shows, in the map's frame. All but the points may be empty. */
+struct PageContent {
+    std::string title;  //!< any text
+    MapPoints points;
+    MapPoints dynamic;  //!< of movers, kept apart
+    std::vector<Eigen::Isometry3d> trajectory;
+    std::vector<Eigen::Isometry3d> odometry;  //!< before the graph; not shown where it is the same
+    std::vector<std::pair<std::size_t, std::size_t>> loops;  //!< places of `trajectory`
+    std::vector<Eigen::Isometry3d> truth;
+};
+
+/** Of more points, a page shows so many, taken evenly, and says so: what a laptop draws fluently
+ *  and mail still takes. */
+constexpr std::size_t kMostPagePoints = 2000000;
+constexpr std::size_t kMostPageDynamic = 200000;
+
+/** Where the build found three.js, which draws a page. */
+std::string threeJsFile();
+
+/** Writes one HTML file with which a browser shows the map, without a network and without any other
+ *  file; the same bytes for the same content. A point of it lies within a millimetre of the map's,
+ *  its height above the ground within a centimetre. `threeJs` is put into it.
+ *  Error where there is no point, a loop names no pose, or three.js is not there. */
+void savePage(const PageContent& content, const std::string& path,
+              const std::string& threeJs = threeJsFile());
+}  // namespace delio::map

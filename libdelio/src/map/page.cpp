@@ -1,0 +1,249 @@
+#include "delio/map/page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <ostream>
+#include <sstream>
+
+#include "delio/core/error.h"
+#include "delio/io/output_file.h"
+#include "page_cloud.h"
+#include "page_texts.h"
+
+namespace delio::map {
+namespace {
+using Poses = std::vector<Eigen::Isometry3d>;
+
+std::string html(const std::string& text) {
+    std::string result;
+    for (const char c : text) switch (c) {
+            case '&':
+                result += "&amp;";
+                break;
+            case '<':
+                result += "&lt;";
+                break;
+            case '>':
+                result += "&gt;";
+                break;
+            case '"':
+                result += "&quot;";
+                break;
+            default:
+                result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+        }
+    return result;
+}
+
+std::string readThreeJs(const std::string& file, const std::string& page) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream read;
+    read << in.rdbuf();
+    std::string text = read.str();
+    if (text.empty())
+        throw Error("cannot write '" + page + "': three.js, which draws it, is not at '" + file +
+                    "'; install Debian's libjs-three");
+    if (text.find("</script") != std::string::npos || text.find("<!--") != std::string::npos)
+        throw Error("cannot write '" + page + "': '" + file + "' cannot stand in a page");
+    return text;
+}
+
+/** A row of numbers; `null` where what they say is not known. */
+void writeRange(const char* name, const ValueRange& range, bool known, std::ostream& out) {
+    out << '"' << name << "\":";
+    if (known)
+        out << '[' << range.low << ',' << range.high << ']';
+    else
+        out << "null";
+}
+
+void writePath(const char* name, const Poses& poses, std::ostream& out) {
+    out << ",\n\"" << name << "\":[";
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const Eigen::Vector3d at = poses[i].translation();
+        out << (i == 0 ? "[" : ",[") << at.x() << ',' << at.y() << ',' << at.z() << ']';
+    }
+    out << ']';
+}
+
+void writeCloud(const char* name, const PageCloud& cloud, std::size_t total, std::ostream& out) {
+    out << ",\n\"" << name << "\":{\"shown\":" << cloud.size() << ",\"total\":" << total
+        << ",\"tiles\":[";
+    for (std::size_t i = 0; i < cloud.tiles.size(); ++i) {
+        const auto& tile = cloud.tiles[i];
+        out << (i == 0 ? "[" : ",[") << tile.origin_m[0] << ',' << tile.origin_m[1] << ','
+            << tile.origin_m[2] << ',' << tile.begin << ',' << tile.count << ']';
+    }
+    out << "]}";
+}
+
+/** The library's own colours, as a page of its own would have them. */
+void writeColours(std::ostream& out) {
+    out << ",\n\"colours\":{";
+    for (const auto& name : colormapNames()) {
+        out << (name == colormapNames().front() ? "\"" : ",\"") << name << "\":\"" << std::hex
+            << std::setfill('0');
+        for (int i = 0; i < 64; ++i) {
+            const auto colour = colourAt(colormapNamed(name), i / 63.0);
+            for (const int channel : {colour.R, colour.G, colour.B}) out << std::setw(2) << channel;
+        }
+        out << std::dec << '"';
+    }
+    out << '}';
+}
+
+/** Where values of the points lie: all of them, or all but the outliers. */
+template <typename Value>
+ValueRange rangeOf(const MapPoints& points, bool robust, const Value& value) {
+    std::vector<float> values;
+    values.reserve(points.size());
+    for (const auto& point : points) values.push_back(value(point));
+    if (robust) return robustRange(std::move(values));
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return {double{*low}, double{*high}};
+}
+
+/** All that the page has besides the points themselves. */
+class About {
+ public:
+    About(const PageContent& content, const MapPoints& shown, const PageScales& scales)
+        : content_(content), shown_(shown), scales_(scales) {}
+
+    void write(const PageCloud& cloud, const PageCloud& dynamic, std::ostream& out) const {
+        out << std::fixed << std::setprecision(3) << "{";
+        writeRanges(cloud, out);
+        writeCloud("points", cloud, content_.points.size(), out);
+        writeCloud("dynamic", dynamic, content_.dynamic.size(), out);
+        writePath("trajectory", content_.trajectory, out);
+        writePath("odometry", odometryDiffers() ? content_.odometry : Poses{}, out);
+        writePath("truth", content_.truth, out);
+        out << ",\n\"loops\":[";
+        for (std::size_t i = 0; i < content_.loops.size(); ++i)
+            out << (i == 0 ? "[" : ",[") << content_.loops[i].first << ','
+                << content_.loops[i].second << ']';
+        out << ']';
+        writeColours(out);
+        out << "}\n";
+    }
+
+ private:
+    void writeRanges(const PageCloud& cloud, std::ostream& out) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::string name(1, "xyz"[axis]);
+            const auto place = [&](const MapPoint& point) { return point.position[axis]; };
+            writeRange(name.c_str(), rangeOf(shown_, false, place), true, out);
+            out << ',';
+            writeRange((name + "_most").c_str(), rangeOf(shown_, true, place), true, out);
+            out << ',';
+        }
+        std::vector<float> heights;
+        for (std::size_t i = 3; i < cloud.places.size(); i += 4)
+            heights.push_back(static_cast<float>(cloud.places[i] * PageCloud::kGroundQuantum_m +
+                                                 PageCloud::kLowestGround_m));
+        const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+        writeRange("ground", {double{*low}, double{*high}}, true, out);
+        out << ',';
+        writeRange("ground_most", robustRange(heights), true, out);
+        const auto observations = [](const MapPoint& point) {
+            return static_cast<float>(std::min<int>(point.observations, 255));
+        };
+        const auto any = [&](const auto& value) {
+            return std::any_of(shown_.begin(), shown_.end(),
+                               [&](const MapPoint& point) { return value(point) != 0; });
+        };
+        out << ',';
+        writeRange("intensity", scales_.intensity, any([](const auto& p) { return p.intensity; }),
+                   out);
+        out << ',';
+        writeRange("time", scales_.time_s, scales_.time_s.high > scales_.time_s.low, out);
+        out << ',';
+        writeRange("observations", rangeOf(shown_, true, observations), any(observations), out);
+    }
+
+    bool odometryDiffers() const {
+        const auto& a = content_.trajectory;
+        const auto& b = content_.odometry;
+        if (a.size() != b.size()) return true;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            if ((a[i].translation() - b[i].translation()).norm() > PageCloud::kQuantum_m)
+                return true;
+        return false;
+    }
+
+    const PageContent& content_;
+    const MapPoints& shown_;
+    const PageScales& scales_;
+};
+
+void check(const PageContent& content, const MapPoints& shown, const std::string& path) {
+    const std::string beginning = "cannot write '" + path + "': ";
+    if (shown.empty()) throw Error(beginning + "the map has no points");
+    for (const auto* poses : {&content.trajectory, &content.odometry, &content.truth})
+        for (const auto& pose : *poses)
+            if (!pose.translation().allFinite())
+                throw Error(beginning + "a trajectory has a pose that is not finite");
+    for (const auto& [from, to] : content.loops)
+        if (std::max(from, to) >= content.trajectory.size())
+            throw Error(beginning + "a loop names pose " + std::to_string(std::max(from, to)) +
+                        " of " + std::to_string(content.trajectory.size()));
+}
+
+template <typename Number>
+void writeNumbers(const std::vector<Number>& numbers, std::ostream& out) {
+    writeBase64(reinterpret_cast<const std::uint8_t*>(numbers.data()),
+                numbers.size() * sizeof(Number), out);
+}
+
+GroundHeight groundOf(const MapPoints& points) {
+    std::vector<float> x, y, z;
+    for (const auto& point : points) {
+        x.push_back(point.position.x());
+        y.push_back(point.position.y());
+        z.push_back(point.position.z());
+    }
+    return GroundHeight(x, y, z);
+}
+}  // namespace
+
+void savePage(const PageContent& content, const std::string& path, const std::string& threeJs) {
+    const MapPoints shown = thinned(content.points, kMostPagePoints);
+    check(content, shown, path);
+    const std::string three = readThreeJs(threeJs, path);
+    const PageScales scales = pageScalesOf(shown);
+    const GroundHeight ground = groundOf(shown);
+    const PageCloud cloud = pageCloudOf(shown, scales, ground);
+    const PageCloud dynamic =
+        pageCloudOf(thinned(content.dynamic, kMostPageDynamic), scales, ground);
+
+    const std::string& page = pageTexts().at("page.html");
+    io::replaceTextFile(path, [&](std::ostream& out) {
+        // The page as it is, and what each {{name}} in it stands for.
+        for (std::size_t at = 0; at < page.size();) {
+            const std::size_t begin = std::min(page.find("{{", at), page.size());
+            out.write(&page[at], static_cast<std::streamsize>(begin - at));
+            if (begin == page.size()) break;
+            const std::size_t end = page.find("}}", begin);
+            const std::string name = page.substr(begin + 2, end - begin - 2);
+            at = end + 2;
+            if (name == "title")
+                out << html(content.title);
+            else if (name == "three.js")
+                out << three;
+            else if (name == "about")
+                About(content, shown, scales).write(cloud, dynamic, out);
+            else if (name == "places")
+                writeNumbers(cloud.places, out);
+            else if (name == "known")
+                writeNumbers(cloud.known, out);
+            else if (name == "dynamic places")
+                writeNumbers(dynamic.places, out);
+            else if (name == "dynamic known")
+                writeNumbers(dynamic.known, out);
+            else
+                out << pageTexts().at(name);
+        }
+    });
+}
+}  // namespace delio::map

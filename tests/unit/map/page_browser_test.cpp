@@ -1,0 +1,290 @@
+#include <gtest/gtest.h>
+#include <mrpt/img/CImage.h>
+
+#include <cmath>
+#include <regex>
+
+#include "command.h"
+#include "delio/map/page.h"
+#include "page_file.h"
+#include "test_data.h"
+#include "virtual_display.h"
+
+namespace {
+using namespace delio;
+using map::MapPoint;
+using mrpt::img::TColor;
+
+MapPoint pointAt(float x, float y, float z) {
+    MapPoint point;
+    point.position = {x, y, z};
+    point.intensity = x < 0 ? 10.0F : 90.0F;
+    point.time_s = 20 + x;
+    point.observations = static_cast<std::uint16_t>(20 + y);
+    return point;
+}
+
+/** Ground of 40 m by 20 m about the origin, a wall of 6 m in the north, a mover in the south. The
+ *  west is dark, the east is bright. */
+map::PageContent toyMap() {
+    map::PageContent content;
+    content.title = "A toy";
+    for (int i = -200; i < 200; ++i) {
+        const float x = 0.05F + 0.1F * static_cast<float>(i);
+        for (int k = -100; k <= 80; ++k)
+            content.points.push_back(pointAt(x, 0.1F * static_cast<float>(k), 0));
+        for (int k = 1; k <= 60; ++k)
+            content.points.push_back(pointAt(x, 8, 0.1F * static_cast<float>(k)));
+    }
+    for (int i = 0; i < 30; ++i)
+        for (int k = 0; k < 20; ++k)
+            content.dynamic.push_back(
+                pointAt(-12 + 0.1F * static_cast<float>(i), -7 + 0.1F * static_cast<float>(k), 1));
+    for (int i = 0; i <= 30; ++i) {
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+        pose.translation() << i - 15, -3, 1.7;
+        content.trajectory.push_back(pose);
+        pose.translation().y() = -3.5 - 0.05 * i;
+        content.odometry.push_back(pose);
+        pose.translation().y() = -2.5;
+        content.truth.push_back(pose);
+    }
+    content.loops = {{0, 30}};
+    return content;
+}
+
+struct Shot {
+    std::string dom, state, result;
+    mrpt::img::CImage image;
+
+    TColor at(int x, int y) const {
+        const auto* pixel =
+            image.ptr<std::uint8_t>(static_cast<unsigned>(x), static_cast<unsigned>(y));
+        return {pixel[2], pixel[1], pixel[0]};  // CImage has blue first
+    }
+    /** Pixels of a rectangle that `is` holds for. */
+    template <typename Is>
+    int count(int x0, int y0, int x1, int y1, const Is& is) const {
+        int found = 0;
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) found += is(at(x, y)) ? 1 : 0;
+        return found;
+    }
+};
+
+bool isRed(const TColor& c) { return c.R > 200 && c.G < 90 && c.B < 80; }
+bool isOrange(const TColor& c) { return c.R > 230 && c.G > 130 && c.G < 175 && c.B < 80; }
+bool isGreen(const TColor& c) { return c.R < 110 && c.G > 205 && c.B < 140; }
+bool isWhite(const TColor& c) { return c.R > 245 && c.G > 245 && c.B > 245; }
+bool isDark(const TColor& c) { return c.R < 30 && c.G < 33 && c.B < 38; }
+bool isDarkGray(const TColor& c) { return std::abs(c.R - 51) < 6 && c.R == c.G && c.G == c.B; }
+
+class PageInBrowser : public testing::Test {
+ protected:
+    void SetUp() override {
+        if (!test::isInstalled("chromium")) {
+            if (test::dataIsRequired()) FAIL() << "chromium is not installed";
+            GTEST_SKIP() << "chromium is not installed (share/scripts/dependencies test)";
+        }
+        map::savePage(toyMap(), folder_ / "map.html");
+    }
+
+    /** Opens the page as its reader does, without a network, screen or graphics card. */
+    Shot open(const std::string& state, const std::string& size = "1280,800",
+              const std::string& more = "--enable-unsafe-swiftshader") const {
+        const std::string picture = folder_ / "shot.png";
+        const auto run = test::runTool(
+            "timeout",
+            {"120", "chromium", "--headless=new", "--no-sandbox", "--use-gl=angle",
+             "--use-angle=swiftshader", more, "--window-size=" + size, "--hide-scrollbars",
+             "--user-data-dir=" + std::string(folder_ / "chromium"), "--enable-logging=stderr",
+             "--virtual-time-budget=3000", "--dump-dom", "--screenshot=" + picture,
+             "file://" + std::string(folder_ / "map.html") + "#" + state});
+        EXPECT_EQ(run.exitCode, 0) << run.err;
+        EXPECT_EQ(run.err.find("CONSOLE"), std::string::npos) << run.err;
+        Shot shot;
+        shot.dom = run.out;
+        std::smatch found;
+        if (std::regex_search(run.out, found, std::regex("data-state=\"([^\"]*)\"")))
+            shot.state = found[1];
+        if (std::regex_search(run.out, found, std::regex("id=\"result\"[^>]*>([^<]*)<")))
+            shot.result = found[1];
+        EXPECT_TRUE(shot.image.loadFromFile(picture));
+        return shot;
+    }
+
+    /** The same, where the page has to come to its end. */
+    Shot ready(const std::string& state, const std::string& size = "1280,800") const {
+        auto shot = open(state, size);
+        EXPECT_EQ(shot.state, "ready 96400 points");
+        return shot;
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+// On 1280 pixels the panel takes the 300 on the left: the map's middle is at 790, 400.
+constexpr const char* kTopInGray = "view=top&color=intensity&colours=gray&size=20";
+
+TEST_F(PageInBrowser, ShowsTheMapItsLinesAndThePanel) {
+    const auto shot = ready(kTopInGray);
+    ASSERT_EQ(shot.image.getWidth(), 1280U);
+    ASSERT_EQ(shot.image.getHeight(), 800U);
+    EXPECT_GT(shot.count(400, 300, 750, 400, isDarkGray), 0.95 * 350 * 100);
+    EXPECT_GT(shot.count(830, 300, 1180, 400, isWhite), 0.95 * 350 * 100);
+    EXPECT_GT(shot.count(310, 60, 1280, 120, isDark), 0.95 * 970 * 60);  // beyond the map
+    EXPECT_GT(shot.count(300, 400, 790, 800, isWhite), 500);             // the trajectory
+    EXPECT_GT(shot.count(300, 400, 1280, 800, isOrange), 1000);
+    EXPECT_GT(shot.count(300, 400, 790, 800, isGreen), 500);
+    EXPECT_EQ(shot.count(300, 60, 1280, 770, isRed), 0);
+    EXPECT_GT(shot.count(12, 70, 290, 500, isDark), 0.5 * 278 * 430);  // the panel, and its words
+    EXPECT_GT(shot.count(12, 70, 290, 500, [](const TColor& c) { return c.R > 200; }), 1000);
+    EXPECT_NE(shot.dom.find("96\u202f400 points \u00b7 40 \u00d7 18 \u00d7 6 m"),
+              std::string::npos);
+}
+
+TEST_F(PageInBrowser, AnAddressSwitchesWhatIsShown) {
+    const auto bare = ready(std::string(kTopInGray) +
+                            "&dynamic=1&trajectory=0&odometry=0&truth=0&loops=0&panel=0");
+    EXPECT_EQ(bare.count(0, 60, 640, 770, isWhite), 0);
+    EXPECT_EQ(bare.count(0, 60, 1280, 770, isOrange), 0);
+    EXPECT_GT(bare.count(0, 400, 640, 770, isRed), 1000);  // the mover, and no panel over it
+    EXPECT_EQ(bare.count(640, 400, 1280, 770, isRed), 0);
+
+    const auto section = ready(std::string(kTopInGray) + "&low=3");
+    EXPECT_GT(section.count(400, 300, 750, 400, isDark), 0.99 * 350 * 100);  // no ground
+    EXPECT_GT(section.count(300, 60, 790, 300, isDarkGray), 300);            // but the wall
+
+    const auto byTime = ready("view=top&color=time&size=20");
+    const TColor west = byTime.at(400, 350), east = byTime.at(1180, 350);
+    EXPECT_GT(west.B, west.R + 50);
+    EXPECT_GT(east.R, east.B + 50);
+}
+
+TEST_F(PageInBrowser, MeasuresBetweenPoints) {
+    const auto shot = ready("view=top&measure=-10,0,0,5,8,6");
+    std::smatch found;
+    const std::regex form("([0-9.]+) m; level ([0-9.]+) m, height \\+([0-9.]+) m");
+    ASSERT_TRUE(std::regex_match(shot.result, found, form)) << shot.result;
+    EXPECT_NEAR(std::stod(found[1]), std::hypot(15, 8, 6), 0.3);
+    EXPECT_NEAR(std::stod(found[2]), std::hypot(15, 8), 0.3);
+    EXPECT_NEAR(std::stod(found[3]), 6, 0.11);
+    EXPECT_EQ(ready("view=top&measure=0,0,0").result, "Measure: click the second point");
+}
+
+TEST_F(PageInBrowser, WalksAlongTheTrajectory) {
+    const auto shot = ready("view=walk&color=intensity&colours=gray&size=30&shading=0");
+    // It looks east: bright ground below, the sky above, the wall on the left.
+    EXPECT_GT(shot.count(700, 600, 1200, 760, isWhite), 0.7 * 500 * 160);
+    EXPECT_GT(shot.count(800, 80, 1270, 300, isDark), 0.99 * 470 * 220);
+    EXPECT_GT(shot.count(310, 100, 500, 380, isWhite), 1000);
+}
+
+TEST_F(PageInBrowser, FitsAPhone) {
+    const std::string phone = "375,667";
+    const auto shot = ready(kTopInGray, phone);
+    ASSERT_EQ(shot.image.getWidth(), 375U);
+    EXPECT_GT(shot.count(50, 310, 180, 330, isDarkGray), 0.9 * 130 * 20);
+    EXPECT_GT(shot.count(200, 310, 330, 330, isWhite), 0.9 * 130 * 20);
+    // A button and no panel, which then comes with a margin on its right.
+    EXPECT_GT(shot.count(12, 12, 90, 48, [](const TColor& c) { return c.R > 200; }), 30);
+    const auto border = [](const TColor& c) { return c.R > 50 && c.R < 70 && c.B > c.R + 10; };
+    EXPECT_EQ(shot.count(364, 70, 365, 400, border), 0);
+    const auto open = ready(std::string(kTopInGray) + "&panel=1", phone);
+    EXPECT_GT(open.count(364, 70, 365, 400, border), 300);
+    EXPECT_EQ(open.count(368, 70, 375, 200, isDark), 7 * 130);
+}
+
+// What hands do, from within the page: each line of it says whether it did what it must.
+const char* const kHands = R"(<script>
+const said = [];
+const say = (name, is) => said.push(name + (is ? ' yes' : ' NO'));
+const view = byId('view'), eye = page.eye;
+view.setPointerCapture = () => {};
+function pointer(type, id, x, y, more) {
+  view.dispatchEvent(new PointerEvent(type, {pointerId: id, clientX: x, clientY: y, button: 0,
+                                             buttons: 1, bubbles: true, ...more}));
+}
+function drag(dx, dy, more) {
+  pointer('pointerdown', 1, 400, 300, more);
+  for (let i = 1; i <= 5; ++i) pointer('pointermove', 1, 400 + i * dx / 5, 300 + i * dy / 5, more);
+  pointer('pointerup', 1, 400 + dx, 300 + dy, more);
+}
+const key = (type, code, name) => document.body.dispatchEvent(
+    new KeyboardEvent(type, {code, key: name || '', bubbles: true}));
+let before = [eye.yaw, eye.pitch];
+drag(100, -50);
+say('turn', eye.yaw < before[0] && eye.pitch > before[1]);
+before = eye.target.clone();
+drag(50, 0, {shiftKey: true});
+say('pan', eye.target.distanceTo(before) > 0.5);
+before = eye.distance;
+view.dispatchEvent(new WheelEvent('wheel', {deltaY: -200, cancelable: true}));
+say('wheel', eye.distance < before);
+before = eye.distance;
+pointer('pointerdown', 1, 300, 300);
+pointer('pointerdown', 2, 400, 300);
+pointer('pointermove', 2, 500, 300);
+pointer('pointerup', 2, 500, 300);
+pointer('pointerup', 1, 300, 300);
+say('pinch', eye.distance < 0.6 * before);
+before = eye.target.clone();
+key('keydown', 'KeyW');
+say('held', page.hands.busy);
+page.hands.step(0.5);
+key('keyup', 'KeyW');
+say('go', eye.target.distanceTo(before) > 0.5 && !page.hands.busy);
+key('keydown', 'KeyT');
+say('top', eye.pitch === -Math.PI / 2);
+page.draw();
+key('keydown', 'KeyM');
+for (const place of [[-5, 0, 0], [5, 0, 0]]) {
+  const at = page.picture.seen(new THREE.Vector3(...place));
+  pointer('pointerdown', 1, ...at);
+  pointer('pointerup', 1, ...at);
+}
+say('measure', /^(9[.]9|10[.][01])/.test(byId('result').textContent));
+key('keydown', 'Escape');
+say('end', byId('result').hidden && document.querySelectorAll('#marks i').length === 0);
+key('keydown', 'KeyG');
+say('walk', eye.onFoot && Math.abs(eye.target.z - 3.4) < 1e-6);
+byId('low').value = 50;
+byId('low').dispatchEvent(new Event('input'));
+byId('high').value = 20;
+byId('high').dispatchEvent(new Event('input'));
+say('section', byId('low').value === '20');
+page.panel.fold(false);
+byId('keys').hidden = false;
+say('finger', [...document.querySelectorAll('button, select, input[type=range], .check')].every(
+    each => each.getBoundingClientRect().height >= 40));
+say('width', document.documentElement.scrollWidth <= window.innerWidth &&
+    byId('panel').scrollWidth <= byId('panel').clientWidth);
+const labelled = each => each.labels.length > 0;
+say('labels', [...document.querySelectorAll('input, select')].every(labelled));
+setTimeout(() => {
+  say('rest', !page.asked);
+  document.body.dataset.said = said.join(', ');
+}, 1500);
+</script></body>)";
+
+TEST_F(PageInBrowser, ObeysHands) {
+    auto page = test::readText(folder_ / "map.html");
+    page.replace(page.rfind("</body>"), 7, kHands);
+    test::writeText(folder_ / "map.html", page);
+    for (const char* size : {"1280,800", "375,667"}) {
+        const auto shot = ready("", size);
+        std::smatch found;
+        ASSERT_TRUE(std::regex_search(shot.dom, found, std::regex("data-said=\"([^\"]*)\"")));
+        EXPECT_EQ(found.str(1),
+                  "turn yes, pan yes, wheel yes, pinch yes, held yes, go yes, top yes, measure "
+                  "yes, end yes, walk yes, section yes, finger yes, width yes, labels yes, rest "
+                  "yes");
+    }
+}
+
+TEST_F(PageInBrowser, SaysWhereThereIsNoWebGl) {
+    const auto shot = open("", "1280,800", "--disable-3d-apis");
+    EXPECT_EQ(shot.state.rfind("error: This browser cannot draw", 0), 0U) << shot.state;
+    EXPECT_GT(shot.count(400, 300, 900, 500, isWhite), 10000);
+}
+}  // namespace
