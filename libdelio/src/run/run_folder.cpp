@@ -119,7 +119,7 @@ void RunFolder::writeMaps(const RunRecord& record, const RunMaps& maps,
         map::saveSimplemap(maps.points->simplemap(record.final.poses), path(kSimplemap));
         points = maps.points->points(record.final.poses);
         keyframes = maps.points->keyPoses(record.final.poses);
-        map::savePly(points, path(kPly));
+        map::savePly(map::pointsOf(points), path(kPly));
     }
     if (illustrate) illustrate(record, points, keyframes, *this);
 }

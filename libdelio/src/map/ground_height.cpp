@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace delio::picture {
+namespace delio::map {
 namespace {
 constexpr double kCell_m = 15;
 // Below these lie reflections in wet streets and the like.
@@ -41,4 +41,4 @@ double GroundHeight::at(double x, double y) const {
     return (1 - fv) * ((1 - fu) * ofCell(column, row, own) + fu * ofCell(column + 1, row, own)) +
            fv * ((1 - fu) * ofCell(column, row + 1, own) + fu * ofCell(column + 1, row + 1, own));
 }
-}  // namespace delio::picture
+}  // namespace delio::map
