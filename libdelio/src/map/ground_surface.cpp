@@ -14,6 +14,8 @@ constexpr float kPit_m = 0.5F;
 // Farther than the middle of a car is from its edge, and near enough not to take a terrace for a
 // thing on the street below it.
 constexpr double kReach_m = 4;
+constexpr double kIsland_m2 = 10;
+constexpr float kRough_m = 0.2F;
 }  // namespace
 
 GroundSurface::GroundSurface(const MapPoints& points, double cell) : cell_(cell) {
@@ -35,6 +37,7 @@ GroundSurface::GroundSurface(const MapPoints& points, double cell) : cell_(cell)
     for (const auto& each : lows) heights_[each.cell] = each.height;
     liftPits(lows);
     lowerWhatStandsOut(lows);
+    findIslands(lows);
 }
 
 std::uint32_t GroundSurface::cellOf(const Eigen::Vector3f& point) const {
@@ -93,6 +96,42 @@ void GroundSurface::lowerWhatStandsOut(std::vector<Low>& lows) {
             }
     }
     for (const auto& low : lows) heights_[low.cell] = low.height;
+}
+
+template <typename Visit>
+void GroundSurface::visitNeighbours(std::uint32_t cell, const Visit& visit) const {
+    const std::int64_t column = cell % columns_, row = cell / columns_;
+    const float steepest = kRough_m + 1.5F * kSteepest * static_cast<float>(cell_);
+    for (std::int64_t r = row - 1; r <= row + 1; ++r)
+        for (std::int64_t c = column - 1; c <= column + 1; ++c)
+            if (std::abs(height(c, r) - heights_[cell]) <= steepest)  // not of NaN
+                visit(static_cast<std::uint32_t>(r * columns_ + c));
+}
+
+void GroundSurface::findIslands(const std::vector<Low>& lows) {
+    isGround_.assign(heights_.size(), false);
+    std::vector<bool> met(heights_.size(), false);
+    std::vector<std::uint32_t> piece;
+    for (const auto& low : lows) {
+        if (met[low.cell]) continue;
+        piece = {low.cell};
+        met[low.cell] = true;
+        for (std::size_t i = 0; i < piece.size(); ++i)
+            visitNeighbours(piece[i], [&](std::uint32_t other) {
+                if (met[other]) return;
+                met[other] = true;
+                piece.push_back(other);
+            });
+        if (static_cast<double>(piece.size()) * cell_ * cell_ < kIsland_m2) continue;
+        for (const auto cell : piece) isGround_[cell] = true;
+    }
+}
+
+bool GroundSurface::isGround(double x, double y) const {
+    const auto column = static_cast<std::int64_t>(std::floor(x / cell_)) - firstColumn_;
+    const auto row = static_cast<std::int64_t>(std::floor(y / cell_)) - firstRow_;
+    if (std::isnan(height(column, row))) return false;
+    return isGround_[static_cast<std::size_t>(row * columns_ + column)];
 }
 
 double GroundSurface::at(double x, double y) const {

@@ -16,6 +16,10 @@ class GroundSurface {
     /** Where no cell around has points, NaN. */
     double at(double x, double y) const;
 
+    /** False where the low points are an island of a few square metres: the top of a tree or a
+     *  wall that was seen from afar, the ground below them was not. */
+    bool isGround(double x, double y) const;
+
  private:
     struct Low {
         std::uint32_t cell;
@@ -26,9 +30,14 @@ class GroundSurface {
     std::vector<Low> lowsOf(const MapPoints& points) const;
     void liftPits(std::vector<Low>& lows);
     void lowerWhatStandsOut(std::vector<Low>& lows);
+    void findIslands(const std::vector<Low>& lows);
+    /** Those around it that go on at about its height. */
+    template <typename Visit>
+    void visitNeighbours(std::uint32_t cell, const Visit& visit) const;
 
     double cell_;
     std::int64_t firstColumn_ = 0, firstRow_ = 0, columns_ = 0, rows_ = 0;
     std::vector<float> heights_;  //!< NaN: no points
+    std::vector<bool> isGround_;
 };
 }  // namespace delio::map

@@ -48,8 +48,8 @@ Marks::Marks(const Eigen::AlignedBox2d& extent, double resolution) : resolution_
     if (width * height > kMostCells)
         throw Error("the grid would have " + digitsOf(std::round(width)) + " x " +
                     digitsOf(std::round(height)) + " cells, more than " +
-                    digitsOf(std::round(kMostCells)) +
-                    "; take a coarser resolution or a part of the map");
+                    digitsOf(std::round(kMostCells / 1e6)) +
+                    " million; take a coarser resolution or a part of the map");
     firstX_ = numberOf(extent.min().x());
     firstY_ = numberOf(extent.min().y());
     const auto corner = [&](std::int64_t number) {
@@ -166,7 +166,7 @@ COccupancyGridMap2D occupancyGrid(const MapPoints& points,
         const double height = double{point.position.z()} - ground.at(x, y);
         if (height >= options.low_m && height <= options.height_m)
             marks.mark(x, y, kOccupied);
-        else if (height >= kDeepest_m && height < options.low_m)
+        else if (height >= kDeepest_m && height < options.low_m && ground.isGround(x, y))
             marks.mark(x, y, kGround);
     }
     marks.widenGround(static_cast<int>(std::lround(options.groundReach_m / options.resolution_m)));

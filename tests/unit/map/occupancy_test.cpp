@@ -118,8 +118,8 @@ TEST(Occupancy, WhatTheVehicleDroveOverIsFree) {
 TEST(Occupancy, OddMapsMakeGridsToo) {
     EXPECT_THROW(map::occupancyGrid({}, {}), Error);
     EXPECT_EQ(map::occupancyGrid({pointAt(3, 4, 5)}, {}).getSizeX(), 1U);
-    // A bridge, a step, and a point far below the ground.
-    map::MapPoints points = {pointAt(10, 5, -30)};
+    // A bridge, a step, a point far below the ground, and the top of a tree away from all.
+    map::MapPoints points = {pointAt(10, 5, -30), pointAt(30, 0, 5), pointAt(30.5, 0, 5)};
     for (int x = 0; x < 200; ++x)
         for (int y = 0; y < 100; ++y) {
             points.push_back(pointAt(middle(x), middle(y), x < 100 ? 0 : 3));
@@ -129,6 +129,7 @@ TEST(Occupancy, OddMapsMakeGridsToo) {
     EXPECT_GT(grid.getCell(20, 50), 0.9);   // under the bridge
     EXPECT_GT(grid.getCell(90, 20), 0.9);   // up to the step
     EXPECT_GT(grid.getCell(170, 20), 0.9);  // above it
+    EXPECT_NEAR(grid.getPos(30, 0), 0.5, 0.02);
     map::OccupancyOptions coarse;
     coarse.resolution_m = 5;
     EXPECT_GT(map::occupancyGrid(points, {}, coarse).getSizeX(), 3U);
