@@ -56,6 +56,7 @@ bool isKnown(const MapPoints& points, const Value& value) {
 
 std::vector<std::string> colourByNames() {
     std::vector<std::string> names;
+    names.reserve(kValues.size());
     for (const auto& value : kValues) names.emplace_back(value.option);
     return names;
 }

@@ -177,7 +177,7 @@ TEST(Occupancy, MapServerGetsAnImageWithItsFirstRowOnTop) {
     const std::string image = test::readText(folder / "a \"map\".pgm");
     const std::string header = "P5\n200 100\n255\n";
     ASSERT_EQ(image.substr(0, header.size()), header);
-    ASSERT_EQ(image.size(), header.size() + 200 * 100);
+    ASSERT_EQ(image.size(), header.size() + std::size_t{200} * 100);
     for (int x = 0; x < 200; ++x)
         for (int y = 0; y < 100; ++y) {
             const auto at = header.size() + static_cast<std::size_t>((99 - y) * 200 + x);

@@ -47,7 +47,7 @@ TEST(Pcd, IsWhatThePointCloudLibraryReads) {
         "SIZE 4 4 4 4 4 4 4 4 4 2 4\nTYPE F F F F F F F F F U F\nCOUNT 1 1 1 1 1 1 1 1 1 1 1\n"
         "WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA binary\n";
     ASSERT_EQ(text.substr(0, header.size()), header);
-    ASSERT_EQ(text.size(), header.size() + 2 * 42);
+    ASSERT_EQ(text.size(), header.size() + std::size_t{2} * 42);
     float x = 0;
     std::memcpy(&x, text.data() + header.size() + 42, sizeof(x));
     EXPECT_EQ(x, points[1].position.x());
