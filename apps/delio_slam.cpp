@@ -87,6 +87,8 @@ struct CommandLine {
                      "X,Y,Z,YAW_DEG",
                      cmd};
     Switch extend{"", "extend", "Add what is new to that map: OUTDIR/map.delio is both", cmd};
+    Switch keepDynamic{"", "keep-dynamic",
+                       "Write what was taken out of the map as moving, too: map_dynamic.ply", cmd};
     Switch noMap{"", "no-map", "Leave out map, scene and map.png", cmd};
     Switch noLoops{"", "no-loops", "Do not search for places that the drive comes back to", cmd};
     Switch noGraph{"", "no-graph", "Leave out the pose graph's optimisation, and loops", cmd};
@@ -134,6 +136,7 @@ run::RunSettings settingsFor(CommandLine& line, int argc, char** argv) {
     settings.folder = line.output.getValue();
     settings.graph = !line.noGraph.getValue();
     settings.map = !line.noMap.getValue();
+    settings.keepDynamic = line.keepDynamic.getValue();
     settings.loops = !line.noLoops.getValue();
     settings.storedMap = line.map.getValue();
     settings.extend = line.extend.getValue();
@@ -258,6 +261,8 @@ std::string contradictionIn(CommandLine& line) {
         return "--initial-pose is a pose in a stored map: it needs --map";
     if (line.extend.isSet() && !line.map.isSet())
         return "--extend adds to a stored map: it needs --map";
+    if (line.noMap.isSet() && line.keepDynamic.isSet())
+        return "--keep-dynamic keeps what is taken out of the map: it does not go with --no-map";
     if (line.noMap.isSet() && (line.extend.isSet() || inputs.size() > 1))
         return "--no-map does not go with what is to become one map";
     if (inputs.size() < 2) return "";

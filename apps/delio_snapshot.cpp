@@ -10,13 +10,11 @@
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
-#include "delio/localisation/stored_map.h"
-#include "delio/map/ply.h"
-#include "delio/map/simplemap.h"
 #include "delio/picture/png.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
 #include "delio/version.h"
+#include "map_input.h"
 
 namespace {
 namespace map = delio::map;
@@ -79,41 +77,19 @@ class RangeConstraint : public TCLAP::Constraint<double> {
     double min_, max_;
 };
 
-/** Opens whichever of the four kinds of file it is, by its name. */
+/** Opens whichever kind of file it is, by its name. */
 mrpt::opengl::COpenGLScene::Ptr open(const std::string& path, const picture::SceneOptions& options,
                                      bool colormapGiven) {
-    const std::string kind = std::filesystem::path(path).extension().string();
-    if (kind == ".3Dscene") {
-        if (options.colourBy == picture::ColourBy::Intensity)
-            throw delio::Error("a .3Dscene has no intensities: take the .ply or the .simplemap");
+    if (std::filesystem::path(path).extension() == ".3Dscene") {
+        if (options.colourBy != picture::ColourBy::Height)
+            throw delio::Error("a .3Dscene has points and colours only: take the map's .ply");
         auto scene = picture::loadScene(path);
         if (colormapGiven) picture::recolour(*scene, options.colormap);
         return scene;
     }
-    mrpt::maps::CPointsMapXYZI points;
-    picture::MapWays ways;
-    if (kind == ".simplemap") {
-        const auto simplemap = map::loadSimplemap(path);
-        points = map::pointsOf(simplemap);
-        ways.trajectory = ways.keyframes = map::posesOf(simplemap);
-    } else if (kind == ".delio") {
-        const delio::StoredMap stored(path);
-        constexpr double kSpacing_m = 0.3;
-        const auto cloud = stored.cloud(kSpacing_m);
-        for (Eigen::Index i = 0; i < cloud.cols(); ++i)
-            points.insertPoint(cloud(0, i), cloud(1, i), cloud(2, i));
-        for (const auto& drive : stored.drives()) {
-            auto& way = ways.trajectory.empty() ? ways.trajectory : ways.others.emplace_back();
-            way = stored.trajectory(drive).poses;
-        }
-    } else if (kind == ".ply") {
-        points = map::loadPly(path);
-    } else {
-        throw delio::Error("cannot read '" + path +
-                           "': its name has to end in .3Dscene, .simplemap, .delio or .ply");
-    }
-    if (points.empty()) throw delio::Error("'" + path + "' is an empty map: nothing to show");
-    return picture::mapScene(points, ways, options);
+    constexpr double kStoredSpacing_m = 0.3;
+    const auto map = delio::readMap(path, kStoredSpacing_m);
+    return picture::mapScene(map.points, map.drawnWays(), options);
 }
 
 /** OUT_000.png, OUT_001.png ... for OUT.png. */
@@ -137,7 +113,7 @@ struct Arguments {
     RangeConstraint degrees{"DEG", -360, 360}, elevations{"DEG", -90, 90};
     RangeConstraint metres{"M", 1e-3, 1e6}, pixels{"P", 0.1, 100};
     std::vector<std::string> colormapNames = map::colormapNames();
-    std::vector<std::string> valueNames{"height", "intensity"};
+    std::vector<std::string> valueNames = map::colourByNames();
     Words colormaps{colormapNames}, values{valueNames};
 
     Text input, output, size;
@@ -152,7 +128,7 @@ struct Arguments {
 Arguments::Arguments()
     : cmd("Renders a picture of a map or scene; no display is needed.", ' ', delio::kVersion),
       input("i", "input", "Map or scene to show", true, "",
-            "FILE.3Dscene|FILE.simplemap|FILE.delio|FILE.ply", cmd),
+            "FILE.3Dscene|FILE.simplemap|FILE.delio|FILE.ply|FILE.pcd", cmd),
       output("o", "output", "Picture to write", true, "", "OUT.png", cmd),
       size("", "size", "Pixels (default 1920x1080)", false, "1920x1080", &sizes, cmd),
       azimuth("", "azimuth",
@@ -195,7 +171,7 @@ picture::SnapshotOptions Arguments::view() {
 picture::SceneOptions Arguments::scene() {
     picture::SceneOptions options;
     if (const auto colour = colourIn(background.getValue())) options.background = *colour;
-    if (colourBy.getValue() == "intensity") options.colourBy = picture::ColourBy::Intensity;
+    options.colourBy = map::colourByNamed(colourBy.getValue());
     options.colormap = map::colormapNamed(colormap.getValue());
     return options;
 }

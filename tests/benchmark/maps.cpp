@@ -40,8 +40,8 @@ std::vector<char> labelsOf(const std::string& rawlog, std::size_t scan) {
 
 /** What is known of a voxel, of the points within the map's ranges. */
 struct Truth {
-    bool isStatic = false;   //!< a point that stands is in it
-    bool isLabelled = false; //!< all its points were told to move while the drive went on
+    bool isStatic = false;    //!< a point that stands is in it
+    bool isLabelled = false;  //!< all its points were told to move while the drive went on
 };
 using Voxels = std::unordered_map<std::uint64_t, Truth>;
 
@@ -72,8 +72,9 @@ class Labels : public SlamListener {
         Voxels voxels;
         for (std::size_t i = 0; i < scans_.size(); ++i)
             for (const auto& point : scans_[i]) {
-                auto& truth = voxels.try_emplace(voxelOf(poses[i] * point.position.cast<double>()),
-                                                 Truth{false, true})
+                auto& truth = voxels
+                                  .try_emplace(voxelOf(poses[i] * point.position.cast<double>()),
+                                               Truth{false, true})
                                   .first->second;
                 truth.isStatic = truth.isStatic || !point.moves;
                 truth.isLabelled = truth.isLabelled && point.told;
@@ -106,7 +107,8 @@ Shares sharesOf(const Voxels& voxels, const Kept& isKept) {
         removed += !truth.isStatic && !kept;
     }
     const auto percent = [](std::size_t part, std::size_t all) {
-        return 100.0 * static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(all, 1));
+        return 100.0 * static_cast<double>(part) /
+               static_cast<double>(std::max<std::size_t>(all, 1));
     };
     return {percent(preserved, still), percent(removed, moving)};
 }
@@ -131,10 +133,10 @@ void measure(const std::string& rawlog, const std::vector<std::string>& settings
     std::unordered_map<std::uint64_t, bool> kept;
     for (const auto& point : map.points) kept[voxelOf(point.position.cast<double>())] = true;
     const auto voxels = labels->voxels(poses);
-    const auto before = sharesOf(
-        voxels, [](std::uint64_t, const Truth& truth) { return !truth.isLabelled; });
-    const auto after = sharesOf(
-        voxels, [&](std::uint64_t key, const Truth&) { return kept.count(key) > 0; });
+    const auto before =
+        sharesOf(voxels, [](std::uint64_t, const Truth& truth) { return !truth.isLabelled; });
+    const auto after =
+        sharesOf(voxels, [&](std::uint64_t key, const Truth&) { return kept.count(key) > 0; });
     const auto scans = static_cast<double>(poses.size());
     std::printf("%-28s  %7.2f / %6.2f  %7.2f / %6.2f  %8.1f  %8.1f\n",
                 fs::path(rawlog).filename().string().c_str(), before.preserved, before.removed,

@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "delio/map/map_builder.h"
+#include "delio/map/pcd.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
 #include "delio/picture/scene.h"
@@ -38,7 +39,8 @@ class SnapshotTool : public testing::Test {
         map::saveSimplemap(builder.build(poses).simplemap, at("map.simplemap"));
         const auto points = map::cloudOf(builder.build(poses).points);
         count_ = points.size();
-        map::savePly(points, at("map.ply"));
+        map::savePly(map::pointsOf(points), at("map.ply"));
+        map::savePcd(map::pointsOf(points), at("map.pcd"));
         picture::saveScene(*picture::mapScene(points, {poses, {}, {}, {}}), at("map.3Dscene"));
     }
     std::string at(const std::string& name) const { return folder_ / name; }
@@ -71,7 +73,7 @@ class SnapshotTool : public testing::Test {
 };
 
 TEST_F(SnapshotTool, ShowsEveryKindOfMap) {
-    for (const char* name : {"map.simplemap", "map.ply", "map.3Dscene"}) {
+    for (const char* name : {"map.simplemap", "map.ply", "map.pcd", "map.3Dscene"}) {
         const std::string picture = std::string(name) + ".png";
         const auto result =
             runTool("delio-snapshot", {"-i", at(name), "-o", at(picture), "--size", "321x200"});
@@ -167,11 +169,12 @@ TEST_F(SnapshotTool, RefusesBadInput) {
     expectRefusal({"-i", at("other.3Dscene"), "-o", out}, 1);
     map::saveSimplemap({}, at("empty.simplemap"));
     expectRefusal({"-i", at("empty.simplemap"), "-o", out}, 1);
-    map::savePly(mrpt::maps::CPointsMapXYZI(), at("empty.ply"));
+    map::savePly({}, at("empty.ply"));
     expectRefusal({"-i", at("empty.ply"), "-o", out}, 1);
     picture::saveScene(mrpt::opengl::COpenGLScene(), at("empty.3Dscene"));
     expectRefusal({"-i", at("empty.3Dscene"), "-o", out}, 1);
     expectRefusal({"-i", at("map.3Dscene"), "-o", out, "--color-by", "intensity"}, 1);
+    expectRefusal({"-i", at("map.ply"), "-o", out, "--color-by", "time"}, 1);  // it has none
 }
 
 TEST_F(SnapshotTool, RefusesBadOutput) {

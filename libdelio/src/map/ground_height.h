@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -8,12 +9,14 @@ namespace delio::map {
  *  straight lines between the cells: so that a street on a hill looks like one in the valley. */
 class GroundHeight {
  public:
-    /** Coordinates of the points, as many of each. */
-    template <typename Floats>
-    GroundHeight(const Floats& x, const Floats& y, const Floats& z) {
+    /** Of `count` points; pointAt(i) is an Eigen::Vector3f. */
+    template <typename PointAt>
+    GroundHeight(std::size_t count, const PointAt& pointAt) {
         std::unordered_map<std::uint64_t, std::vector<float>> heights;
-        for (std::size_t i = 0; i < x.size(); ++i)
-            heights[cellOf(static_cast<double>(x[i]), static_cast<double>(y[i]))].push_back(z[i]);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Eigen::Vector3f p = pointAt(i);
+            heights[cellOf(double{p.x()}, double{p.y()})].push_back(p.z());
+        }
         for (auto& [key, values] : heights) cells_[key] = lowOf(values);
     }
 
@@ -26,4 +29,16 @@ class GroundHeight {
 
     std::unordered_map<std::uint64_t, double> cells_;
 };
+
+/** Of each point above the ground around it. */
+template <typename PointAt>
+std::vector<float> heightsAboveGround(std::size_t count, const PointAt& pointAt) {
+    const GroundHeight ground(count, pointAt);
+    std::vector<float> heights(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Vector3f p = pointAt(i);
+        heights[i] = static_cast<float>(double{p.z()} - ground.at(double{p.x()}, double{p.y()}));
+    }
+    return heights;
+}
 }  // namespace delio::map

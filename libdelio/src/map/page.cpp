@@ -197,13 +197,7 @@ void writeNumbers(const std::vector<Number>& numbers, std::ostream& out) {
 }
 
 GroundHeight groundOf(const MapPoints& points) {
-    std::vector<float> x, y, z;
-    for (const auto& point : points) {
-        x.push_back(point.position.x());
-        y.push_back(point.position.y());
-        z.push_back(point.position.z());
-    }
-    return GroundHeight(x, y, z);
+    return GroundHeight(points.size(), [&](std::size_t i) { return points[i].position; });
 }
 }  // namespace
 

@@ -28,8 +28,8 @@ void illustrate(const run::RunRecord& record, const map::BuiltMap& map,
                 const run::RunFolder& folder) {
     using run::RunFolder;
     if (!map.points.empty()) {
-        const auto scene = mapScene(map::cloudOf(map.points), {record.final.poses, record.truth,
-                                                               map.keyPoses, record.closedLoops()});
+        const auto scene = mapScene(
+            map.points, {record.final.poses, record.truth, map.keyPoses, record.closedLoops()});
         saveScene(*scene, folder.path(RunFolder::kScene));
         savePicture(*scene, SnapshotOptions(), folder.path(RunFolder::kMapPicture));
     }

@@ -1,6 +1,5 @@
 #include "delio/picture/scene.h"
 
-#include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/opengl/CGridPlaneXY.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CSetOfLines.h>
@@ -21,7 +20,6 @@ namespace delio::picture {
 using Eigen::Isometry3d;
 using map::Colormap;
 using map::colourAt;
-using map::GroundHeight;
 using map::robustRange;
 using map::ValueRange;
 using mrpt::img::TColor;
@@ -48,13 +46,15 @@ Extent extentOf(const std::vector<Isometry3d>& poses) {
     return {low.x(), high.x(), low.y(), high.y(), low.z()};
 }
 
-Extent extentOf(const mrpt::maps::CPointsMap& points) {
-    const auto range = [](const auto& values) {
-        return robustRange({values.begin(), values.end()});
+Extent extentOf(const map::MapPoints& points) {
+    const auto range = [&](int axis) {
+        std::vector<float> values;
+        values.reserve(points.size());
+        for (const auto& point : points) values.push_back(point.position[axis]);
+        return robustRange(std::move(values));
     };
-    const auto x = range(points.getPointsBufferRef_x());
-    const auto y = range(points.getPointsBufferRef_y());
-    return {x.low, x.high, y.low, y.high, range(points.getPointsBufferRef_z()).low};
+    const auto x = range(0), y = range(1);
+    return {x.low, x.high, y.low, y.high, range(2).low};
 }
 
 void addGrid(COpenGLScene& scene, const Extent& extent, double beyond_m, const TColor& textColour) {
@@ -124,41 +124,23 @@ void addKeyframes(COpenGLScene& scene, const std::vector<Isometry3d>& poses, dou
         scene.insert(lines);
     }
 }
-
-/** Heights of points above the ground around them. */
-template <typename Floats>
-std::vector<float> heightsOf(const Floats& x, const Floats& y, const Floats& z) {
-    const GroundHeight ground(x, y, z);
-    std::vector<float> heights(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i)
-        heights[i] = static_cast<float>(
-            z[i] - ground.at(static_cast<double>(x[i]), static_cast<double>(y[i])));
-    return heights;
-}
-
-std::vector<float> intensitiesOf(const mrpt::maps::CPointsMap& points) {
-    const auto* cloud = dynamic_cast<const mrpt::maps::CPointsMapXYZI*>(&points);
-    if (!cloud) throw Error("the map's points have no intensity to be coloured by");
-    const auto& values = cloud->getPointsBufferRef_intensity();
-    return {values.begin(), values.end()};
-}
 }  // namespace
 
 COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
                            const SceneOptions& options) {
-    if (points.empty()) throw Error("the map has no points, so there is nothing to show");
-    const bool byHeight = options.colourBy == ColourBy::Height;
-    const auto& x = points.getPointsBufferRef_x();
-    const auto& y = points.getPointsBufferRef_y();
-    const auto& z = points.getPointsBufferRef_z();
-    const auto values = byHeight ? heightsOf(x, y, z) : intensitiesOf(points);
-    const ValueRange range = robustRange(values);
+    return mapScene(map::pointsOf(points), ways, options);
+}
 
+COpenGLScene::Ptr mapScene(const map::MapPoints& points, const MapWays& ways,
+                           const SceneOptions& options) {
+    if (points.empty()) throw Error("the map has no points, so there is nothing to show");
+    const auto colours = map::coloursOf(points, {options.colourBy, options.colormap});
     auto cloud = mrpt::opengl::CPointCloudColoured::Create();
-    cloud->reserve(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const TColor c = colourAt(options.colormap, range.fractionAt(double{values[i]}));
-        cloud->insertPoint({x[i], y[i], z[i], c.R, c.G, c.B});
+    cloud->reserve(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Eigen::Vector3f& p = points[i].position;
+        const TColor& c = colours.ofPoints[i];
+        cloud->insertPoint({p.x(), p.y(), p.z(), c.R, c.G, c.B});
     }
     cloud->setPointSize(options.pointSize_px);
     cloud->enableVariablePointSize(false);
@@ -192,8 +174,11 @@ COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& 
         addLegendText(*scene, ++row, "trajectory, from green to yellow", ink);
         if (!ways.loops.empty()) addLoops(*scene, ways, extent.longer(), ++row);
     }
-    addColourBar(*scene, row + 1, options.colormap, range, byHeight ? " m" : "",
-                 byHeight ? "height above ground" : "intensity", ink);
+    if (colours.range)
+        addColourBar(*scene, row + 1, options.colormap, *colours.range, colours.unit, colours.name,
+                     ink);
+    else
+        addLegendText(*scene, row + 1, "x, y, z of the normal: red, green, blue", ink);
     return scene;
 }
 
@@ -205,14 +190,10 @@ void recolour(COpenGLScene& scene, Colormap colormap) {
     });
     if (clouds.empty()) throw Error("the scene has no coloured cloud that could be recoloured");
     for (const auto& cloud : clouds) {
-        std::vector<float> x, y, z;
-        for (std::size_t i = 0; i < cloud->size(); ++i) {
+        const auto heights = map::heightsAboveGround(cloud->size(), [&](std::size_t i) {
             const auto& p = cloud->getPoint3Df(i);
-            x.push_back(p.x);
-            y.push_back(p.y);
-            z.push_back(p.z);
-        }
-        const auto heights = heightsOf(x, y, z);
+            return Eigen::Vector3f(p.x, p.y, p.z);
+        });
         const ValueRange range = robustRange(heights);
         for (std::size_t i = 0; i < cloud->size(); ++i) {
             const TColor c = colourAt(colormap, range.fractionAt(double{heights[i]}));

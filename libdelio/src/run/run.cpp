@@ -30,6 +30,7 @@ Run::Run(const Options& options, const RunSettings& settings)
     options.check();
     record_.profile = settings.profile;
     record_.command = settings.command;
+    record_.drive = settings.drive;
     record_.options = options;
     attach(graph_);
     if (!settings.storedMap.empty()) {

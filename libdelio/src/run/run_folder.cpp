@@ -11,6 +11,7 @@
 #include "delio/core/stopwatch.h"
 #include "delio/io/g2o.h"
 #include "delio/io/output_file.h"
+#include "delio/map/page.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
 
@@ -62,6 +63,18 @@ void writeScans(const std::vector<RunRow>& rows, const std::string& path) {
     table.reserve(rows.size());
     for (const auto& row : rows) table.push_back(rowOf(row));
     io::writeScanTable(table, path);
+}
+
+map::PageContent pageOf(const RunRecord& record, const map::BuiltMap& map) {
+    map::PageContent page;
+    page.title = record.drive;
+    page.points = map.points;
+    page.dynamic = map.dynamic;
+    page.trajectory = record.final.poses;
+    page.loops = record.closedLoops();
+    page.truth = record.truth;
+    if (record.optimised()) page.odometry = record.odometry.poses;
+    return page;
 }
 }  // namespace
 
@@ -117,8 +130,9 @@ void RunFolder::writeMaps(const RunRecord& record, const RunMaps& maps,
     if (maps.points) {
         map = maps.points->build(record.final.poses);
         map::saveSimplemap(map.simplemap, path(kSimplemap));
-        map::savePly(map::cloudOf(map.points), path(kPly));
-        if (maps.keepDynamic) map::savePly(map::cloudOf(map.dynamic), path(kDynamicPly));
+        map::savePly(map.points, path(kPly));
+        if (maps.keepDynamic) map::savePly(map.dynamic, path(kDynamicPly));
+        map::savePage(pageOf(record, map), path(kMapPage));
     }
     if (illustrate) illustrate(record, map, *this);
 }
@@ -143,8 +157,8 @@ std::string RunFolder::write(RunRecord record, const RunMaps& maps,
         writeLocalisationTable(record.rows, record.fixes, path(kLocalisation));
     io::replaceTextFile(path(kConfig), [&](std::ostream& out) { record.options.write(out); });
     Stopwatch watch;
-    for (const char* name :
-         {kStoredMap, kSimplemap, kPly, kDynamicPly, kScene, kMapPicture, kTrajectoryPicture})
+    for (const char* name : {kStoredMap, kSimplemap, kPly, kDynamicPly, kMapPage, kScene,
+                             kMapPicture, kTrajectoryPicture})
         remove(name);
     try {
         writeMaps(record, maps, illustrate);

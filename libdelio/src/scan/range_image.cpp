@@ -98,8 +98,8 @@ void RangeImage::fillGaps() {
             if (below >= 0 && r - below <= widest) {
                 ++gaps[static_cast<std::size_t>(r - below)];
                 for (int k = below + 1; k < r; ++k)
-                    nearest_[static_cast<std::size_t>(k) * columns + c] = std::min(
-                        range, nearest_[static_cast<std::size_t>(below) * columns + c]);
+                    nearest_[static_cast<std::size_t>(k) * columns + c] =
+                        std::min(range, nearest_[static_cast<std::size_t>(below) * columns + c]);
             }
             below = r;
         }

@@ -52,7 +52,8 @@ TEST(MapBuilder, UndoTakesAScanBackAsIfItHadNeverCome) {
     for (const double voxel_m : {0.0, 0.5, 2.0}) {
         const auto builder = builderOfDrive(voxel_m, true);
         const auto other = builderOfDrive(voxel_m, false);
-        expectSamePoints(map::cloudOf(builder.build(kDrive).points), map::cloudOf(other.build(kDrive).points));
+        expectSamePoints(map::cloudOf(builder.build(kDrive).points),
+                         map::cloudOf(other.build(kDrive).points));
         EXPECT_EQ(builder.keyframes(), other.keyframes());
         expectSamePoints(map::pointsOf(builder.build(kDrive).simplemap),
                          map::pointsOf(other.build(kDrive).simplemap));
@@ -105,6 +106,7 @@ TEST(MapBuilder, AnAddThatThrowsLeavesTheMapAsItWas) {
     MapBuilder other(options);
     other.add(0, kHere, randomCloud(500, 15), kHere, kStamp);
     other.add(1, kDrive[1], randomCloud(500, 17), kHere, kStamp);
-    expectSamePoints(map::cloudOf(builder.build(kDrive).points), map::cloudOf(other.build(kDrive).points));
+    expectSamePoints(map::cloudOf(builder.build(kDrive).points),
+                     map::cloudOf(other.build(kDrive).points));
 }
 }  // namespace

@@ -153,8 +153,7 @@ TEST_F(Page, TheFirstPointsOfATileAreAnEvenChoice) {
     MapPoints points(6000);
     for (std::size_t i = 0; i < points.size(); ++i)
         points[i].position.x() = 0.01F * static_cast<float>(i);  // within one tile
-    const map::GroundHeight ground(std::vector<float>{}, std::vector<float>{},
-                                   std::vector<float>{});
+    const map::GroundHeight ground(0, [](std::size_t) { return Eigen::Vector3f(0, 0, 0); });
     const auto cloud = map::pageCloudOf(points, map::pageScalesOf(points), ground);
     ASSERT_EQ(cloud.tiles.size(), 1U);
     std::vector<int> counts(10);

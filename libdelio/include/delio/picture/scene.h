@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "delio/map/colormap.h"
+#include "delio/map/colouring.h"
+#include "delio/map/map_point.h"
 
 namespace delio::picture {
-/** What the colours of a map's points say. Intensity: as the sensor gives it. */
-enum class ColourBy { Height, Intensity };
+using map::ColourBy;
 
 struct SceneOptions {
     map::Colormap colormap = map::Colormap::Turbo;
@@ -32,11 +32,14 @@ struct MapWays {
 };
 
 /** A map and the ways through it, in the world's frame (metres, z up): points coloured by their
- *  height above the ground around them or by intensity; the trajectory in white (on a light
- *  background: black) with a green mark at its start and a yellow one at its end; the ground truth
- *  in red, drawn wider and 0.2 to 1.2 m lower so that neither hides the other; axes at the
- *  keyframes (x red, y green, z blue); closed loops in orange; a grid; and a legend in the lower
- * left corner. Throws Error if there are no points. */
+ *  height above the ground around them or by what else is known of them; the trajectory in white
+ * (on a light background: black) with a green mark at its start and a yellow one at its end; the
+ * ground truth in red, drawn wider and 0.2 to 1.2 m lower so that neither hides the other; axes at
+ * the keyframes (x red, y green, z blue); closed loops in orange; a grid; and a legend in the lower
+ * left corner. Throws Error if there are no points, or they do not have what they are to be
+ *  coloured by. */
+mrpt::opengl::COpenGLScene::Ptr mapScene(const map::MapPoints& points, const MapWays& ways,
+                                         const SceneOptions& options = {});
 mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
                                          const SceneOptions& options = {});
 

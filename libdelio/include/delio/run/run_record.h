@@ -30,6 +30,7 @@ struct RunRow {
 struct RunRecord {
     std::string profile;
     std::vector<std::string> command;  //!< words of the command line, where there was one
+    std::string drive = "drive";       //!< its name
     Options options;
 
     std::vector<RunRow> rows;

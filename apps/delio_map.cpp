@@ -1,0 +1,245 @@
+// delio-map: a map as another kind of file, a part of it, in another frame.
+#include <mrpt/3rdparty/tclap/CmdLine.h>
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "cli.h"
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
+#include "delio/map/edit.h"
+#include "delio/map/frames.h"
+#include "delio/version.h"
+#include "map_input.h"
+#include "map_outputs.h"
+
+namespace {
+using namespace delio;
+namespace fs = std::filesystem;
+using Text = TCLAP::ValueArg<std::string>;
+using Number = TCLAP::ValueArg<double>;
+using Words = TCLAP::ValuesConstraint<std::string>;
+
+/** `count` finite numbers with commas between. */
+std::optional<std::vector<double>> numbersIn(std::string text, std::size_t count) {
+    std::vector<double> numbers;
+    text += ',';
+    for (std::size_t from = 0, to; (to = text.find(',', from)) != text.npos; from = to + 1) {
+        const auto number = numberIn<double>(std::string_view(text).substr(from, to - from));
+        if (!number || !std::isfinite(*number)) return {};
+        numbers.push_back(*number);
+    }
+    if (numbers.size() != count) return {};
+    return numbers;
+}
+
+std::optional<Eigen::AlignedBox3d> boxIn(const std::string& text) {
+    const auto n = numbersIn(text, 6);
+    if (!n) return {};
+    const Eigen::AlignedBox3d box(Eigen::Vector3d(n->data()), Eigen::Vector3d(n->data() + 3));
+    if (box.isEmpty()) return {};
+    return box;
+}
+
+std::optional<map::GeoReference> placeIn(const std::string& text) {
+    const auto n = numbersIn(text, 4);
+    if (!n) return {};
+    const map::GeoReference place{(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
+    if (std::abs(place.latitude_deg) > 90 || std::abs(place.longitude_deg) > 180 ||
+        std::abs(place.altitude_m) > 1e6 || std::abs(place.heading_deg) > 360)
+        return {};
+    return place;
+}
+
+/** What TCLAP is told of an option whose value is checked by a function. */
+class Checked : public TCLAP::Constraint<std::string> {
+ public:
+    Checked(std::string shape, bool (*isGood)(const std::string&))
+        : shape_(std::move(shape)), isGood_(isGood) {}
+    std::string description() const override { return shape_; }
+    std::string shortID() const override { return shape_; }
+    bool check(const std::string& text) const override { return isGood_(text); }
+
+ private:
+    std::string shape_;
+    bool (*isGood_)(const std::string&);
+};
+
+class Metres : public TCLAP::Constraint<double> {
+ public:
+    explicit Metres(double least) : least_(least) {}
+    std::string description() const override { return shortID(); }
+    std::string shortID() const override { return "M, " + digitsOf(least_) + " to 1000"; }
+    bool check(const double& value) const override { return value >= least_ && value <= 1000; }
+
+ private:
+    double least_;
+};
+
+/** What the command line asks for. */
+struct Arguments {
+    Arguments();
+    /** An option that would have no effect; empty: none. */
+    std::string fault();
+    MapOutputOptions options();
+
+    TCLAP::CmdLine cmd;
+    Checked boxes{"X0,Y0,Z0,X1,Y1,Z1", [](const std::string& text) { return bool(boxIn(text)); }};
+    Checked places{"LAT,LON,ALT,HEADING",
+                   [](const std::string& text) { return bool(placeIn(text)); }};
+    Metres spacings{0}, lengths{1e-3};
+    std::vector<std::string> valueNames = map::colourByNames();
+    std::vector<std::string> colormapNames = map::colormapNames();
+    std::vector<std::string> frameNames{"map", "ground"};
+    Words values{valueNames}, colormaps{colormapNames}, frames{frameNames};
+
+    Text input, output, crop;
+    Number spacing;
+    Text colourBy, colormap;
+    Number resolution, height;
+    Text frame, georeference;
+    TCLAP::SwitchArg force, verbose;
+};
+
+Arguments::Arguments()
+    : cmd("Writes a map as another kind of file, all of it or a part, in its own frame or another "
+          "one.",
+          ' ', kVersion),
+      input("i", "input", "Map to read: the folder of a delio-slam run, or a file", true, "",
+            "FOLDER|FILE.delio|FILE.ply|FILE.pcd|FILE.simplemap", cmd),
+      output("o", "output",
+             "File to write; a .yaml, for ROS's map_server, has its image, a .pgm, beside it", true,
+             "", "OUT.ply|.pcd|.3Dscene|.html|.gridmap|.yaml", cmd),
+      crop("", "crop", "Keep what lies in this box, metres in the frame of OUT", false, "", &boxes,
+           cmd),
+      spacing("", "spacing", "Keep one point in so many metres (default 0: all)", false, 0,
+              &spacings, cmd),
+      colourBy("", "color-by", "What the colours say (default height)", false, "height", &values,
+               cmd),
+      colormap("", "colormap", "Colours of the points (default turbo)", false, "turbo", &colormaps,
+               cmd),
+      resolution("", "resolution", "Cells of a grid (default 0.1)", false, 0.1, &lengths, cmd),
+      height("", "height",
+             "Of what a grid is for: what is higher above the ground, or below 0.3 m, is not in "
+             "the way (default 2)",
+             false, 2, &lengths, cmd),
+      frame("", "frame",
+            "map: as it is (default); ground: level, z = 0 on the ground under the first pose",
+            false, "map", &frames, cmd),
+      georeference("", "georeference",
+                   "East, north, up in metres from the first pose, which is at this latitude and "
+                   "longitude (deg), altitude (m above the WGS84 ellipsoid) and heading (of the "
+                   "vehicle's x axis, deg clockwise from north)",
+                   false, "", &places, cmd),
+      force("", "force", "Overwrite what exists", cmd),
+      verbose("", "verbose", "Say more about what is done and what went wrong", cmd) {}
+
+std::string Arguments::fault() {
+    if (frame.isSet() && georeference.isSet())
+        return "--georeference is a frame of its own: leave out --frame";
+    const MapOutput& kind = mapOutputFor(output.getValue());
+    if (kind.isGrid && (colourBy.isSet() || colormap.isSet()))
+        return "--color-by and --colormap have no effect on a grid";
+    if (!kind.isGrid && (resolution.isSet() || height.isSet()))
+        return "--resolution and --height are for a grid: .gridmap or .yaml";
+    if (kind.isGrid && !(height.getValue() > map::OccupancyOptions().low_m))
+        return "--height has to be more than " + digitsOf(map::OccupancyOptions().low_m) + " m";
+    return "";
+}
+
+MapOutputOptions Arguments::options() {
+    MapOutputOptions options;
+    options.colouring.by = map::colourByNamed(colourBy.getValue());
+    options.colouring.colormap = map::colormapNamed(colormap.getValue());
+    options.grid.resolution_m = resolution.getValue();
+    options.grid.height_m = height.getValue();
+    return options;
+}
+
+std::string frameFileOf(const std::string& output) { return output + ".frame.yaml"; }
+
+/** Everything about the files that can be told before the map is read. */
+void checkFiles(const std::string& input, const std::string& output, bool force) {
+    const std::string source = mapFileIn(input);
+    auto files = filesOf(output);
+    files.push_back(frameFileOf(output));
+    for (const auto& file : files) {
+        std::error_code ignored;
+        if (fs::equivalent(source, file, ignored))
+            throw Error("'" + file + "' is what is read; choose another name to write");
+        cli::refuseExisting(file, force);
+    }
+    const fs::path folder = fs::absolute(output).parent_path();
+    if (!fs::is_directory(folder))
+        throw Error("cannot write '" + output + "': there is no folder '" + folder.string() + "'");
+}
+
+/** From the map's frame to OUT's; none: it stays as it is. */
+std::optional<Eigen::Isometry3d> frameFor(const MapInput& map, const std::string& frame,
+                                          const std::optional<map::GeoReference>& place) {
+    if (place) return map::enuFrame(map.points, map.firstPose(), place->heading_deg);
+    if (frame == "ground") return map::groundFrame(map.points, map.firstPose());
+    return {};
+}
+
+void move(MapInput& map, const Eigen::Isometry3d& outFromMap) {
+    map::move(map.points, outFromMap);
+    map::move(map.dynamic, outFromMap);
+    for (auto& way : map.ways)
+        for (auto& pose : way) pose = outFromMap * pose;
+    for (auto& pose : map.keyframes) pose = outFromMap * pose;
+}
+
+/** The frame's file first, which is small: where OUT cannot be written, it is taken away. */
+void write(const MapInput& map, const std::string& path, const MapOutputOptions& options,
+           const std::optional<Eigen::Isometry3d>& outFromMap,
+           const std::optional<map::GeoReference>& place) {
+    const std::string frameFile = frameFileOf(path);
+    std::error_code ignored;
+    fs::remove(frameFile, ignored);  // of an OUT that was in another frame
+    if (outFromMap) map::saveFrame(*outFromMap, place, frameFile);
+    try {
+        mapOutputFor(path).write(map, path, options);
+    } catch (...) {
+        fs::remove(frameFile, ignored);
+        throw;
+    }
+}
+
+void convert(Arguments& asked) {
+    const auto say = [&](const std::string& text) {
+        if (asked.verbose.getValue()) cli::inform(text);
+    };
+    const std::string input = asked.input.getValue(), output = asked.output.getValue();
+    checkFiles(input, output, asked.force.getValue());
+    MapInput map = readMap(input, 0);
+    say("read " + std::to_string(map.points.size()) + " points of '" + mapFileIn(input) + "'");
+
+    const auto place = placeIn(asked.georeference.getValue());
+    const auto outFromMap = frameFor(map, asked.frame.getValue(), place);
+    if (outFromMap) move(map, *outFromMap);
+    if (const auto box = boxIn(asked.crop.getValue())) {
+        map::crop(map.points, *box);
+        map::crop(map.dynamic, *box);
+    }
+    if (map.points.empty()) throw Error("there is nothing of the map within --crop");
+    map::thinOut(map.points, asked.spacing.getValue());
+    map::thinOut(map.dynamic, asked.spacing.getValue());
+    write(map, output, asked.options(), outFromMap, place);
+    say("wrote " + std::to_string(map.points.size()) + " points as '" + output + "'");
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+    Arguments asked;
+    return cli::run(asked.cmd, argc, argv, asked.verbose, [&] {
+        const std::string fault = asked.fault();
+        if (!fault.empty()) {
+            cli::inform(fault + "; see --help");
+            return cli::kExitBadCommandLine;
+        }
+        convert(asked);
+        return cli::kExitSuccess;
+    });
+}

@@ -1,0 +1,100 @@
+#include "map_input.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "delio/core/error.h"
+#include "delio/localisation/stored_map.h"
+#include "delio/map/pcd.h"
+#include "delio/map/ply.h"
+#include "delio/map/simplemap.h"
+#include "delio/run/run_folder.h"
+
+namespace delio {
+namespace fs = std::filesystem;
+using run::RunFolder;
+
+namespace {
+MapInput readStored(const std::string& path, double spacing_m) {
+    constexpr double kLeast_m = 0.005;  // as its coordinates are rounded
+    const StoredMap stored(path);
+    const auto cloud = stored.cloud(std::max(spacing_m, kLeast_m));
+    MapInput input;
+    input.points.resize(static_cast<std::size_t>(cloud.cols()));
+    for (std::size_t i = 0; i < input.points.size(); ++i)
+        input.points[i].position = cloud.col(static_cast<Eigen::Index>(i));
+    for (const auto& drive : stored.drives()) input.ways.push_back(stored.trajectory(drive).poses);
+    return input;
+}
+
+MapInput ofPoints(map::MapPoints points) {
+    MapInput input;
+    input.points = std::move(points);
+    return input;
+}
+
+MapInput readSimplemap(const std::string& path) {
+    const auto simplemap = map::loadSimplemap(path);
+    MapInput input = ofPoints(map::pointsOf(map::pointsOf(simplemap)));
+    input.keyframes = map::posesOf(simplemap);
+    input.ways.push_back(input.keyframes);
+    return input;
+}
+
+MapInput readFolder(const std::string& path) {
+    const RunFolder folder(path);
+    MapInput input = ofPoints(map::loadPly(mapFileIn(path)));
+    if (folder.has(RunFolder::kDynamicPly))
+        input.dynamic = map::loadPly(folder.path(RunFolder::kDynamicPly));
+    if (!folder.has(RunFolder::kTrajectory)) return input;
+    input.ways.push_back(folder.trajectory().poses);
+    if (folder.has(RunFolder::kLoops))
+        for (const auto& loop : folder.loops())
+            if (loop.accepted) input.loops.emplace_back(loop.fromNode, loop.toNode);
+    return input;
+}
+
+MapInput readAny(const std::string& path, double storedSpacing_m) {
+    const std::string kind = fs::path(path).extension().string();
+    if (fs::is_directory(path)) return readFolder(path);
+    if (kind == ".simplemap") return readSimplemap(path);
+    if (kind == ".delio") return readStored(path, storedSpacing_m);
+    if (kind == ".ply") return ofPoints(map::loadPly(path));
+    if (kind == ".pcd") return ofPoints(map::loadPcd(path));
+    throw Error("cannot read '" + path +
+                "': a map is the folder of a delio-slam run, or a file whose name ends in .ply, "
+                ".pcd, .simplemap or .delio");
+}
+}  // namespace
+
+Eigen::Isometry3d MapInput::firstPose() const {
+    for (const auto& way : ways)
+        if (!way.empty()) return way.front();
+    return Eigen::Isometry3d::Identity();
+}
+
+picture::MapWays MapInput::drawnWays() const {
+    picture::MapWays drawn;
+    drawn.loops = loops;
+    drawn.keyframes = keyframes;
+    for (const auto& way : ways)
+        (drawn.trajectory.empty() ? drawn.trajectory : drawn.others.emplace_back()) = way;
+    return drawn;
+}
+
+std::string mapFileIn(const std::string& path) {
+    if (!fs::is_directory(path)) return path;
+    const RunFolder folder(path);
+    if (folder.has(RunFolder::kPly)) return folder.path(RunFolder::kPly);
+    throw Error("'" + path + "' holds no " + RunFolder::kPly +
+                ": is it the folder of a delio-slam run (without --no-map) that has ended?");
+}
+
+MapInput readMap(const std::string& path, double storedSpacing_m) {
+    MapInput input = readAny(path, storedSpacing_m);
+    const fs::path name = fs::absolute(path).lexically_normal();
+    input.name = (name.has_filename() ? name : name.parent_path()).stem().string();
+    if (input.points.empty()) throw Error("'" + path + "' is an empty map: nothing is in it");
+    return input;
+}
+}  // namespace delio

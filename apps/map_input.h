@@ -1,0 +1,35 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "delio/map/map_point.h"
+#include "delio/picture/scene.h"
+
+namespace delio {
+/** A map that a tool was given, with the ways through it as far as its file has them. */
+struct MapInput {
+    map::MapPoints points;
+    std::vector<std::vector<Eigen::Isometry3d>> ways;  //!< a list of poses a drive
+    std::vector<Eigen::Isometry3d> keyframes;
+    std::string name;        //!< of the drive, or of the file
+    map::MapPoints dynamic;  //!< what was taken out of it, where that was kept
+    /** Poses of the first way between which a loop was closed. */
+    std::vector<std::pair<std::size_t, std::size_t>> loops;
+
+    /** The vehicle's; where there is no way, the origin: a map begins there. */
+    Eigen::Isometry3d firstPose() const;
+
+    /** As they are drawn. */
+    picture::MapWays drawnWays() const;
+};
+
+/** What is read of `path`: map.ply of the folder of a run, else `path` itself. Error where the
+ *  folder has no map. */
+std::string mapFileIn(const std::string& path);
+
+/** Reads the folder of a run, a .ply, .pcd, .simplemap or .delio.
+ *  @param storedSpacing_m of a .delio one point in so many metres is taken; 0: all
+ *  Throws Error for another kind of file, where it cannot be read, and for a map without points. */
+MapInput readMap(const std::string& path, double storedSpacing_m);
+}  // namespace delio

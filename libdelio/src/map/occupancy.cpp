@@ -1,0 +1,176 @@
+#include "delio/map/occupancy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
+#include "ground_surface.h"
+
+namespace delio::map {
+using mrpt::maps::COccupancyGridMap2D;
+
+namespace {
+constexpr double kGroundCell_m = 1;
+constexpr double kDeepest_m = -0.5;    // below the ground are reflections
+constexpr double kLongestStep_m = 10;  // between poses: over more than that nobody knows the way
+// What cells hold while the grid is made.
+enum Mark : COccupancyGridMap2D::cellType { kUnknown, kGround, kNearGround, kOccupied, kDriven };
+
+/** A grid in the making: cells by number from that of the lowest corner. */
+class Marks {
+ public:
+    Marks(const Eigen::AlignedBox2d& extent, double resolution);
+
+    void mark(double x, double y, Mark mark);
+    /** The cells whose middle is no farther than that. */
+    void markDisc(const Eigen::Vector2d& middle, double radius, Mark mark);
+    /** Marks what is no more than `reach` cells, along x and along y, from the ground. */
+    void widenGround(int reach);
+    COccupancyGridMap2D grid();
+
+ private:
+    std::int64_t numberOf(double v) const {
+        return static_cast<std::int64_t>(std::floor(v / resolution_));
+    }
+    void widenAlongY(int reach);
+    void widenAlongX(int reach);
+
+    double resolution_;
+    std::int64_t firstX_ = 0, firstY_ = 0;
+    int width_ = 0, height_ = 0;
+    COccupancyGridMap2D grid_;
+};
+
+Marks::Marks(const Eigen::AlignedBox2d& extent, double resolution) : resolution_(resolution) {
+    const double width = extent.sizes().x() / resolution + 1;
+    const double height = extent.sizes().y() / resolution + 1;
+    if (width * height > kMostCells)
+        throw Error("the grid would have " + digitsOf(std::round(width)) + " x " +
+                    digitsOf(std::round(height)) + " cells, more than " +
+                    digitsOf(std::round(kMostCells / 1e6)) +
+                    " million; take a coarser resolution or a part of the map");
+    firstX_ = numberOf(extent.min().x());
+    firstY_ = numberOf(extent.min().y());
+    const auto corner = [&](std::int64_t number) {
+        return static_cast<float>(static_cast<double>(number) * resolution);
+    };
+    grid_.setSize(corner(firstX_), corner(numberOf(extent.max().x()) + 1), corner(firstY_),
+                  corner(numberOf(extent.max().y()) + 1), static_cast<float>(resolution));
+    width_ = static_cast<int>(grid_.getSizeX());
+    height_ = static_cast<int>(grid_.getSizeY());
+    for (int row = 0; row < height_; ++row) std::fill_n(grid_.getRow(row), width_, kUnknown);
+}
+
+void Marks::mark(double x, double y, Mark mark) {
+    const std::int64_t column = numberOf(x) - firstX_, row = numberOf(y) - firstY_;
+    if (column < 0 || row < 0 || column >= width_ || row >= height_) return;
+    auto& cell = grid_.getRow(static_cast<int>(row))[column];
+    if (mark > cell) cell = mark;
+}
+
+void Marks::markDisc(const Eigen::Vector2d& middle, double radius, Mark mark) {
+    const auto middleOf = [&](double v) {
+        return (static_cast<double>(numberOf(v)) + 0.5) * resolution_;
+    };
+    const double fromY = middleOf(middle.y() - radius), fromX = middleOf(middle.x() - radius);
+    for (double y = fromY; y <= middle.y() + radius; y += resolution_)
+        for (double x = fromX; x <= middle.x() + radius; x += resolution_)
+            if ((Eigen::Vector2d(x, y) - middle).norm() <= radius) this->mark(x, y, mark);
+}
+
+void Marks::widenAlongY(int reach) {
+    // Forth and back, with the latest row of each column that has ground.
+    for (const int step : {1, -1}) {
+        std::vector<int> sinceGround(static_cast<std::size_t>(width_), reach + 1);
+        for (int i = 0; i < height_; ++i) {
+            auto* row = grid_.getRow(step > 0 ? i : height_ - 1 - i);
+            for (int x = 0; x < width_; ++x) {
+                int& since = sinceGround[static_cast<std::size_t>(x)];
+                since = row[x] == kGround ? 0 : std::min(since + 1, reach + 1);
+                if (row[x] == kUnknown && since <= reach) row[x] = kNearGround;
+            }
+        }
+    }
+}
+
+void Marks::widenAlongX(int reach) {
+    std::vector<std::uint8_t> ground(static_cast<std::size_t>(width_));
+    for (int y = 0; y < height_; ++y) {
+        auto* row = grid_.getRow(y);
+        for (int x = 0; x < width_; ++x)
+            ground[static_cast<std::size_t>(x)] = row[x] == kGround || row[x] == kNearGround;
+        for (const int step : {1, -1}) {
+            int since = reach + 1;
+            for (int i = 0; i < width_; ++i) {
+                const int x = step > 0 ? i : width_ - 1 - i;
+                since = ground[static_cast<std::size_t>(x)] ? 0 : std::min(since + 1, reach + 1);
+                if (row[x] == kUnknown && since <= reach) row[x] = kNearGround;
+            }
+        }
+    }
+}
+
+void Marks::widenGround(int reach) {
+    widenAlongY(reach);
+    widenAlongX(reach);
+}
+
+COccupancyGridMap2D Marks::grid() {
+    const auto unknown = COccupancyGridMap2D::p2l(0.5F), free = COccupancyGridMap2D::p2l(0.98F),
+               occupied = COccupancyGridMap2D::p2l(0.02F);
+    for (int y = 0; y < height_; ++y) {
+        auto* row = grid_.getRow(y);
+        for (int x = 0; x < width_; ++x)
+            row[x] = row[x] == kUnknown ? unknown : row[x] == kOccupied ? occupied : free;
+    }
+    return std::move(grid_);
+}
+
+Eigen::AlignedBox2d extentOf(const MapPoints& points,
+                             const std::vector<std::vector<Eigen::Isometry3d>>& ways,
+                             double margin) {
+    Eigen::AlignedBox2d box;
+    for (const auto& point : points) box.extend(point.position.head<2>().cast<double>());
+    for (const auto& way : ways)
+        for (const auto& pose : way) {
+            const Eigen::Vector2d at = pose.translation().head<2>();
+            box.extend(Eigen::Vector2d(at.array() - margin));
+            box.extend(Eigen::Vector2d(at.array() + margin));
+        }
+    return box;
+}
+
+void markWay(const std::vector<Eigen::Isometry3d>& way, const OccupancyOptions& options,
+             Marks& marks) {
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        const Eigen::Vector2d to = way[i].translation().head<2>();
+        Eigen::Vector2d from = way[i > 0 ? i - 1 : 0].translation().head<2>();
+        if ((to - from).norm() > kLongestStep_m) from = to;
+        const int steps = 1 + static_cast<int>((to - from).norm() / (options.resolution_m / 2));
+        for (int k = 1; k <= steps; ++k)
+            marks.markDisc(from + (to - from) * k / steps, options.halfWidth_m, kDriven);
+    }
+}
+}  // namespace
+
+COccupancyGridMap2D occupancyGrid(const MapPoints& points,
+                                  const std::vector<std::vector<Eigen::Isometry3d>>& ways,
+                                  const OccupancyOptions& options) {
+    if (points.empty()) throw Error("the map has no points to make a grid of");
+    Marks marks(extentOf(points, ways, options.halfWidth_m), options.resolution_m);
+    // Not finer than two cells of the grid: memory stays within a few times that of the grid.
+    const GroundSurface ground(points, std::max(kGroundCell_m, 2 * options.resolution_m));
+    for (const auto& point : points) {
+        const double x = double{point.position.x()}, y = double{point.position.y()};
+        const double height = double{point.position.z()} - ground.at(x, y);
+        if (height >= options.low_m && height <= options.height_m)
+            marks.mark(x, y, kOccupied);
+        else if (height >= kDeepest_m && height < options.low_m && ground.isGround(x, y))
+            marks.mark(x, y, kGround);
+    }
+    marks.widenGround(static_cast<int>(std::lround(options.groundReach_m / options.resolution_m)));
+    for (const auto& way : ways) markWay(way, options, marks);
+    return marks.grid();
+}
+}  // namespace delio::map
