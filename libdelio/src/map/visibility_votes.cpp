@@ -100,9 +100,9 @@ Eigen::Vector3f VisibilityVotes::pointOf(const Voxel& voxel, const Cell& cell) c
 
 void VisibilityVotes::look(const scan::RangeImage& view, const Eigen::Isometry3d& sensorInWorld) {
     // Farther away small things stand between two rings.
-    const float kGap_m = getenv("GAP") ? strtof(getenv("GAP"), nullptr) : 0.7F;
+    constexpr float kGap_m = 0.7F, kAll_m = 60;
     constexpr float kNearest_m = 2;
-    const float kFarthest_m = std::min(60.0F, kGap_m / view.ringSpacing());
+    const float kFarthest_m = std::min(kAll_m, kGap_m / view.ringSpacing());
     const Eigen::Isometry3f toSensor = sensorInWorld.inverse().cast<float>();
     const auto reach = static_cast<float>(kFarthest_m + 8 * options_.voxelSize_m);
     const auto margin = static_cast<float>(options_.margin_m);
