@@ -66,12 +66,15 @@ DynamicObjects::Range DynamicObjects::View::objectsAbout(float x, float reach) c
                                  [&](const Object& o) { return o.place.x() <= x + reach; })};
 }
 
-/** Its speed over the ground, where it left places behind; m/s, the map's frame. */
-std::optional<Eigen::Vector3f> DynamicObjects::velocityOf(const Object& object) const {
+/** Its speed over the ground, where it left places behind. */
+std::optional<DynamicObjects::Track> DynamicObjects::trackOf(const Object& object) const {
     constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTolerance = 0.15F, kTurn = 0.3F;
     constexpr double kLeastKnown = 0.05;  // near the vehicle places are left below all beams
     const auto gone = [&](const Object& earlier, const View& view) {
         return isFree(earlier, view, latest_, kLeastKnown);
+    };
+    const auto numberOf = [](const View& view, const Object& one) {
+        return static_cast<std::size_t>(&one - view.objects.data());
     };
     for (std::size_t i = 0; i < views_.size(); ++i) {
         const View& second = views_[i];
@@ -87,7 +90,7 @@ std::optional<Eigen::Vector3f> DynamicObjects::velocityOf(const Object& object) 
             if (there.velocity &&
                 (step - later_s * *there.velocity).norm() < kTolerance_m + kTurn * length &&
                 gone(there, second))
-                return step / later_s;
+                return Track{step / later_s, {{i, numberOf(second, there)}}};
             // Or it comes from a place before that one.
             for (std::size_t j = i + 1; j < views_.size(); ++j) {
                 const View& first = views_[j];
@@ -98,11 +101,25 @@ std::optional<Eigen::Vector3f> DynamicObjects::velocityOf(const Object& object) 
                 for (const Object& start : first.objectsAbout(expected.x(), tolerance))
                     if ((start.place - expected).norm() < tolerance &&
                         alike(start.size, object.size) && gone(start, first) && gone(there, second))
-                        return step / later_s;
+                        return Track{step / later_s,
+                                     {{i, numberOf(second, there)}, {j, numberOf(first, start)}}};
             }
         }
     }
     return {};
+}
+
+void DynamicObjects::unmask(const Track& track) {
+    for (const auto& [view, number] : track.left) {
+        Object& object = views_[view].objects[number];
+        if (object.isTold) continue;
+        object.isTold = true;
+        const Eigen::Index before = unmasked_.cols();
+        unmasked_.conservativeResize(3, before + object.points.cols());
+        unmasked_.rightCols(object.points.cols()) =
+            (views_[view].toMap.linear() * object.points).colwise() +
+            views_[view].toMap.translation();
+    }
 }
 
 std::vector<std::uint8_t> DynamicObjects::detect(const Eigen::Matrix3Xf& points,
@@ -117,17 +134,23 @@ std::vector<std::uint8_t> DynamicObjects::detect(const Eigen::Matrix3Xf& points,
                       segment.box.center(),
                       segment.box.sizes(),
                       latest_.toMap * segment.box.center(),
-                      {}};
+                      {},
+                      false};
         for (std::size_t i = 0; i < segment.points.size(); ++i)
             object.points.col(static_cast<Eigen::Index>(i)) = points.col(segment.points[i]);
         latest_.objects.push_back(std::move(object));
     }
+    std::vector<std::optional<Track>> tracks(segments.size());
     std::vector<std::uint8_t> moving(segments.size());
     tbb::parallel_for(std::size_t{0}, segments.size(), [&](std::size_t i) {
         Object& object = latest_.objects[i];
-        object.velocity = velocityOf(object);
-        moving[i] = object.velocity || came(object);
+        tracks[i] = trackOf(object);
+        if (tracks[i]) object.velocity = tracks[i]->velocity;
+        object.isTold = moving[i] = tracks[i] || came(object);
     });
+    unmasked_.resize(3, 0);
+    for (const auto& track : tracks)
+        if (track) unmask(*track);
     std::vector<std::uint8_t> result(static_cast<std::size_t>(points.cols()));
     for (std::size_t i = 0; i < segments.size(); ++i)
         for (const Eigen::Index point : segments[i].points)

@@ -84,6 +84,7 @@ void PlaneOdometry::leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
                                            const Eigen::Isometry3d& pose, ScanView& view) {
     const auto dynamic = dynamics_.detect(upright_ * view.fine, upright_ * view.points,
                                           pose * turnedBack(upright_), timeline_.sinceStart_s());
+    map_.erase(dynamics_.unmasked());
     for (std::size_t i = 0; i < view.dynamic.size(); ++i)
         view.dynamic[i] = dynamic[static_cast<std::size_t>(voxels.ofPoint[i])];
     view.fine = unmarked(view.fine, dynamic);

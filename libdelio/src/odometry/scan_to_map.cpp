@@ -44,6 +44,11 @@ void ScanToMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pos
     points_.forgetFarFrom(swept_m_);
 }
 
+void ScanToMap::erase(const Eigen::Matrix3Xf& points) {
+    const Eigen::Matrix3Xd wanted = points.cast<double>();
+    tbb::parallel_invoke([&] { planes_.erase(wanted); }, [&] { points_.erase(wanted); });
+}
+
 void ScanToMap::clear(const Eigen::Vector3d& up) {
     planes_.clear(up);
     points_.clear();

@@ -87,6 +87,17 @@ void PlaneMap::add(const Eigen::Matrix3Xd& points) {
                       [&](std::size_t i) { add(points, levels_[i]); });
 }
 
+void PlaneMap::erase(const Eigen::Matrix3Xd& points) {
+    for (std::size_t i = 0; i < options_.levels; ++i)
+        for (Eigen::Index k = 0; k < points.cols(); ++k) {
+            Cell* cell = levels_[i].cells.find(scan::voxelKey(points.col(k), levels_[i].edge));
+            if (!cell || cell->count == 0) continue;
+            const Eigen::Vector3d origin = cell->origin;
+            *cell = {};
+            cell->origin = origin;  // what is far is forgotten by it
+        }
+}
+
 void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
     for (auto& level : levels_)
         level.cells.eraseIf(

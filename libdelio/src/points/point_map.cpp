@@ -31,6 +31,26 @@ void PointMap::add(const Eigen::Matrix3Xd& points) {
     }
 }
 
+void PointMap::erase(const Eigen::Matrix3Xd& points) {
+    const auto squaredSpacing = static_cast<float>(options_.spacing * options_.spacing);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector3d point = points.col(i);
+        Cell* cell = cells_.find(scan::voxelKey(point, options_.voxel_size));
+        if (!cell) continue;
+        const auto local = (point - cell->origin).cast<float>().transpose().array().eval();
+        Eigen::Index kept = 0;
+        for (Eigen::Index row = 0; row < cell->count; ++row) {
+            if ((cell->points.row(row) - local).square().sum() < squaredSpacing) continue;
+            const Eigen::Array<float, 1, 3> stays = cell->points.row(row);
+            cell->points.row(kept++) = stays;
+        }
+        cell->points.middleRows(kept, cell->count - kept)
+            .setConstant(std::numeric_limits<float>::infinity());
+        size_ -= static_cast<std::size_t>(cell->count - kept);
+        cell->count = kept;
+    }
+}
+
 void PointMap::forgetFarFrom(const Eigen::Vector3d& centre) {
     cells_.eraseIf(
         [&](const Cell& cell) { return (cell.origin - centre).norm() > options_.radius; });

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "delio/core/stage_options.h"
@@ -39,6 +40,10 @@ class DynamicObjects {
     std::vector<std::uint8_t> detect(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xf& all,
                                      const Eigen::Isometry3d& pose, double stamp_s);
 
+    /** Where the objects that detect() told last to move were in earlier scans in which they were
+     *  not told to: metres, the map's frame. */
+    const Eigen::Matrix3Xf& unmasked() const { return unmasked_; }
+
     /** Keeps the scan that detect() was asked of last, at its final pose, to judge later ones by.
      */
     void remember(const Eigen::Isometry3d& pose);
@@ -53,9 +58,16 @@ class DynamicObjects {
         Eigen::Vector3f centre, size;
         Eigen::Vector3f place;                    //!< the centre, in the map's frame
         std::optional<Eigen::Vector3f> velocity;  //!< m/s, in the map's frame
+        bool isTold = false;                      //!< that it moves
+    };
+    using Objects = std::vector<Object>;
+    /** That an object moves, as the places show that it left behind. */
+    struct Track {
+        Eigen::Vector3f velocity;
+        std::vector<std::pair<std::size_t, std::size_t>> left;  //!< view, object of it
     };
     struct Range {
-        std::vector<Object>::const_iterator first, last;
+        Objects::const_iterator first, last;
         auto begin() const { return first; }
         auto end() const { return last; }
     };
@@ -63,12 +75,13 @@ class DynamicObjects {
         double stamp_s = 0;
         Eigen::Isometry3f toMap = Eigen::Isometry3f::Identity();
         scan::RangeImage image;
-        std::vector<Object> objects;  //!< of an earlier scan: by their places' x
+        Objects objects;  //!< of an earlier scan: by their places' x
 
         Range objectsAbout(float x, float reach) const;
     };
     bool came(const Object& object) const;
-    std::optional<Eigen::Vector3f> velocityOf(const Object& object) const;
+    std::optional<Track> trackOf(const Object& object) const;
+    void unmask(const Track& track);
     /** True where scan `by` saw through the place that `object` took in scan `seen`. `minKnown`:
      *  the share of its points whose places it has to know of. */
     bool isFree(const Object& object, const View& seen, const View& by, double minKnown) const;
@@ -77,5 +90,6 @@ class DynamicObjects {
     SegmentOptions segmentOptions_;
     View latest_;
     std::deque<View> views_;  //!< earlier scans, latest first
+    Eigen::Matrix3Xf unmasked_;
 };
 }  // namespace delio::movers

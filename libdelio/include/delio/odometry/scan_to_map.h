@@ -36,6 +36,8 @@ class ScanToMap {
           points_(pointMap) {}
 
     void add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
+    /** `points`: in the map's frame; they turned out to move, and what is there goes. */
+    void erase(const Eigen::Matrix3Xf& points);
     /** `up`: the unit vector that does, in the map's frame. */
     void clear(const Eigen::Vector3d& up);
     const planes::PlaneMap& planes() const { return planes_; }

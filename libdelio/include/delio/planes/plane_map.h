@@ -51,6 +51,10 @@ class PlaneMap {
      *  is what drift is held against. */
     void add(const Eigen::Matrix3Xd& points);
 
+    /** Drops the planes where `points` (likewise) are, but for those of the largest levels, which
+     *  are the ground's: what was taken for a part of the world is none. */
+    void erase(const Eigen::Matrix3Xd& points);
+
     /** Drops what lies farther than `radius` from `centre`. */
     void forgetFarFrom(const Eigen::Vector3d& centre);
 

@@ -23,6 +23,10 @@ class PointMap {
 
     void add(const Eigen::Matrix3Xd& points);
 
+    /** Drops what lies within `spacing` of one of `points` in its voxel: what was taken for a part
+     *  of the world is none. */
+    void erase(const Eigen::Matrix3Xd& points);
+
     /** Drops what lies farther than `radius` from `centre`. */
     void forgetFarFrom(const Eigen::Vector3d& centre);
 

@@ -56,6 +56,11 @@ class VoxelTable {
         return number == VoxelIndex::kNone ? nullptr : &values_[number];
     }
 
+    Value* find(std::uint64_t key) {
+        const std::uint32_t number = index_.find(key);
+        return number == VoxelIndex::kNone ? nullptr : &values_[number];
+    }
+
     /** The number of the key's value, which is made if there is none. */
     std::uint32_t insert(std::uint64_t key) {
         const std::uint32_t number = index_.insert(key);

@@ -1,0 +1,181 @@
+// What moves is taken out of a map by what the whole drive saw; what stands stays.
+#include <gtest/gtest.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+
+#include "delio/map/map_builder.h"
+#include "delio/map/simplemap.h"
+#include "map_support.h"
+#include "poses.h"
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using map::BuiltMap;
+using map::MapBuilder;
+using map::MapOptions;
+using map::MapPoints;
+using test::Block;
+using test::poseAt;
+
+const test::Sensor kSensor{48, 900, -24, 4, 0.02};
+
+/** A street along x with houses, kerbs and thin posts; the ground is at -1.8. */
+test::Scene street() {
+    test::Scene scene = {{{-200, -50, -3}, {500, 50, -1.8}},
+                         {{-100, 5.5, -1.8}, {200, 7, -1.65}},
+                         {{-100, -8, -1.8}, {200, -6.5, -1.65}}};
+    for (int i = -6; i < 14; ++i) {
+        scene.push_back({{12.0 * i, 9, -1.8}, {12.0 * i + 8, 20, 4.0 + i % 4}});
+        scene.push_back({{12.0 * i + 4, -22, -1.8}, {12.0 * i + 11, -10, 5}});
+        scene.push_back({{12.0 * i + 2, 6, -1.8}, {12.0 * i + 2.1, 6.1, 2}});
+    }
+    return scene;
+}
+
+Block van(double x, double y) { return {{x, y - 1, -1.6}, {x + 5, y + 1, 0.2}}; }
+
+std::size_t countIn(const MapPoints& points, const Block& block, double grown_m = 0.15) {
+    return static_cast<std::size_t>(
+        std::count_if(points.begin(), points.end(), [&](const map::MapPoint& point) {
+            const Eigen::Array3d p = point.position.cast<double>().array();
+            return (p > block.low.array() - grown_m).all() &&
+                   (p < block.high.array() + grown_m).all();
+        }));
+}
+
+class Removal : public testing::Test {
+ protected:
+    explicit Removal(const MapOptions& options = {}) : builder_(options), kept_(without(options)) {}
+
+    static MapOptions without(MapOptions options) {
+        options.removal.enabled = false;
+        return options;
+    }
+
+    /** One scan more, half a second after the one before, into a map with removal and one without.
+     *  `told`: whether the odometry told that what is in it moves. */
+    void look(const Eigen::Isometry3d& pose, const test::Scene& things, bool told = false) {
+        test::Scene scene = street();
+        scene.insert(scene.end(), things.begin(), things.end());
+        const auto seen = ringScan(scene, pose, kSensor, noise_).points;
+        mrpt::maps::CSimplePointsMap cloud;
+        std::vector<std::uint8_t> moving;
+        for (Eigen::Index i = 0; i < seen.cols(); ++i) {
+            cloud.insertPoint(seen(0, i), seen(1, i), seen(2, i));
+            map::MapPoint point;
+            point.position = (pose * seen.col(i).cast<double>()).cast<float>();
+            moving.push_back(told && std::any_of(things.begin(), things.end(), [&](const auto& b) {
+                                 return countIn({point}, b) > 0;
+                             }));
+        }
+        const auto stamp = test::kStamp + std::chrono::milliseconds(500 * poses_.size());
+        for (auto* builder : {&builder_, &kept_})
+            builder->add(poses_.size(), pose, cloud, test::kHere, stamp, moving);
+        poses_.push_back(pose);
+    }
+
+    MapBuilder builder_, kept_;
+    std::vector<Eigen::Isometry3d> poses_;
+    test::Noise noise_;
+};
+
+TEST_F(Removal, WhatDroveThroughIsGoneAndWhatStandsStays) {
+    for (int i = 0; i < 30; ++i)
+        look(poseAt(0.8 * i, 0, 0), {van(0.8 * i + 7, 0), van(40 - 1.5 * i, 3)});
+    const BuiltMap clean = builder_.build(poses_), all = kept_.build(poses_);
+    // Where they were, above the ground.
+    for (const Block& way :
+         {Block{{7, -1, -1.5}, {20, 1, 0.2}}, Block{{5, 2, -1.5}, {30, 4, 0.2}}}) {
+        ASSERT_GT(countIn(all.points, way), 500U);
+        EXPECT_LT(countIn(clean.points, way), 0.02 * double(countIn(all.points, way)));
+        EXPECT_GT(countIn(clean.dynamic, way), 0.98 * double(countIn(all.points, way)));
+    }
+    std::size_t posts = 0, before = 0;
+    for (int i = -1; i < 4; ++i) {
+        const Block post{{12.0 * i + 2, 6, -1.6}, {12.0 * i + 2.1, 6.1, 2}};
+        posts += countIn(clean.points, post);
+        before += countIn(all.points, post);
+    }
+    ASSERT_GT(before, 40U);
+    EXPECT_GE(double(posts), 0.9 * double(before));
+    const Block kerb{{-20, 5.5, -1.8}, {40, 7, -1.65}}, house{{0, 9, -1.7}, {8, 9.2, 4}};
+    EXPECT_GE(double(countIn(clean.points, kerb)), 0.99 * double(countIn(all.points, kerb)));
+    EXPECT_GE(double(countIn(clean.points, house)), 0.99 * double(countIn(all.points, house)));
+    // The keyframes' clouds are as clean.
+    const auto frames = map::pointsOf(map::pointsOf(clean.simplemap));
+    const auto framesBefore = map::pointsOf(map::pointsOf(all.simplemap));
+    const Block way{{7, -1, -1.5}, {20, 1, 0.2}};
+    EXPECT_LT(countIn(frames, way), 0.02 * double(countIn(framesBefore, way)));
+}
+
+TEST_F(Removal, ACarThatLeavesItsParkingPlaceGoesWithoutAnybodyMoving) {
+    const Block place = van(8, -4), stays = van(16, -4);
+    for (int i = 0; i < 12; ++i) look(test::kHere, {place, stays});
+    const auto parked = builder_.build(poses_).points;
+    for (int i = 0; i < 25; ++i) look(test::kHere, {stays});
+    const auto left = builder_.build(poses_).points;
+    const Block above{{8, -5, -1.5}, {13, -3, 0.2}};
+    ASSERT_GT(countIn(parked, above), 100U);
+    EXPECT_LT(countIn(left, above), 0.02 * double(countIn(parked, above)));
+    EXPECT_GE(double(countIn(left, stays)), 0.98 * double(countIn(parked, stays)));
+}
+
+TEST_F(Removal, OneScanAloneIsKept) {
+    look(test::kHere, {van(8, 0)});
+    const BuiltMap clean = builder_.build(poses_), all = kept_.build(poses_);
+    EXPECT_EQ(clean.points.size(), all.points.size());
+    EXPECT_TRUE(clean.dynamic.empty());
+}
+
+TEST_F(Removal, WhatTheOdometryToldIsOneVoice) {
+    // Once told to move, and seen to stand ten times.
+    for (int i = 0; i < 10; ++i) look(test::kHere, {van(8, 0)}, i == 3);
+    const Block side = van(8, 0);
+    const auto count = countIn(builder_.build(poses_).points, side);
+    EXPECT_GT(count, 100U);
+    EXPECT_EQ(countIn(builder_.build(poses_).dynamic, side), 0U);
+    // Told every time, and never looked through: that it moves is all that is known.
+    MapBuilder other((MapOptions()));
+    std::swap(builder_, other);
+    poses_.clear();
+    for (int i = 0; i < 3; ++i) look(test::kHere, {van(8, 0)}, true);
+    EXPECT_LT(double(countIn(builder_.build(poses_).points, {{8, -1, -1.4}, {13, 1, 0.2}})),
+              0.02 * double(count));
+}
+
+TEST_F(Removal, TheSameForAnyNumberOfThreads) {
+    for (int i = 0; i < 8; ++i) look(poseAt(0.8 * i, 0, 0), {van(0.8 * i + 7, 0)});
+    const auto build = [&](std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        return builder_.build(poses_);
+    };
+    const BuiltMap one = build(1), two = build(2);
+    ASSERT_EQ(one.points.size(), two.points.size());
+    EXPECT_EQ(one.dynamic.size(), two.dynamic.size());
+    for (std::size_t i = 0; i < one.points.size(); ++i) {
+        EXPECT_EQ(one.points[i].position, two.points[i].position);
+        EXPECT_EQ(one.points[i].normal, two.points[i].normal);
+        EXPECT_EQ(one.points[i].observations, two.points[i].observations);
+    }
+}
+
+TEST_F(Removal, PointsKnowTheirTimeTheirSurfaceAndHowOftenTheyWereSeen) {
+    for (int i = 0; i < 8; ++i) look(test::kHere, {});
+    const auto points = builder_.build(poses_).points;
+    std::size_t ground = 0;
+    for (const auto& point : points) {
+        if (point.position.head<2>().norm() > 6 || point.position.z() > -1.7F) continue;
+        ++ground;
+        if (point.normal.norm() == 0) continue;
+        EXPECT_GT(point.normal.z(), 0.9F);  // on the sensor's side
+        EXPECT_LT(point.residual_m, 0.06F);
+        EXPECT_GE(point.observations, 1);
+        EXPECT_LE(point.observations, 8);
+        EXPECT_LE(point.time_s, 3.5F);
+    }
+    EXPECT_GT(ground, 500U);
+}
+}  // namespace
