@@ -53,12 +53,12 @@ TEST_F(DelioSlam, LeavesTheFilesOfTheContract) {
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(test::errorOf(run), "");
     EXPECT_NE(run.out.find("scans"), std::string::npos);
-    EXPECT_EQ(
-        test::namesIn(out_),
-        Words({"config.ini", "loops.csv", "map.3Dscene", "map.delio", "map.ply", "map.png",
-               "map.simplemap", "posegraph.g2o", "posegraph.graph", "scans.csv", "summary.yaml",
-               "trajectory.png", "trajectory_kitti.txt", "trajectory_kitti_cam0.txt",
-               "trajectory_odometry_kitti.txt", "trajectory_tum.txt"}));
+    EXPECT_EQ(test::namesIn(out_),
+              Words({"config.ini", "loops.csv", "map.3Dscene", "map.delio", "map.html", "map.ply",
+                     "map.png", "map.simplemap", "posegraph.g2o", "posegraph.graph", "scans.csv",
+                     "summary.yaml", "trajectory.png", "trajectory_kitti.txt",
+                     "trajectory_kitti_cam0.txt", "trajectory_odometry_kitti.txt",
+                     "trajectory_tum.txt"}));
 
     for (const char* name : {"trajectory_kitti.txt", "trajectory_odometry_kitti.txt",
                              "trajectory_kitti_cam0.txt", "trajectory_tum.txt"})
@@ -158,12 +158,14 @@ TEST_F(DelioSlam, StartCountAndEveryPickScans) {
 TEST_F(DelioSlam, LeavesOutWhatIsNotWanted) {
     writeDrive(3);
     fs::create_directory(out_);
-    for (const char* stale : {"map.delio", "map.ply", "map.png", "map.3Dscene", "map.simplemap"})
+    for (const char* stale : {"map.delio", "map.ply", "map_dynamic.ply", "map.html", "map.png",
+                              "map_removal.png", "map.3Dscene", "map.simplemap"})
         writeText(out_ / stale, "of an earlier run");
     writeText(out_ / "mine.txt", "mine");
     const auto run = slam({"--no-graph", "--force"});
     ASSERT_EQ(run.exitCode, 0) << run.err;
-    for (const char* name : {"map.delio", "map.ply", "map.png", "map.3Dscene", "map.simplemap"})
+    for (const char* name : {"map.delio", "map.ply", "map_dynamic.ply", "map.html", "map.png",
+                             "map_removal.png", "map.3Dscene", "map.simplemap"})
         EXPECT_FALSE(fs::exists(out_ / name)) << name;
     EXPECT_TRUE(fs::exists(out_ / "trajectory.png"));
     EXPECT_TRUE(fs::exists(out_ / "mine.txt"));

@@ -5,10 +5,13 @@
 
 #include <fstream>
 
+#include "command.h"
 #include "delio/io/trajectory.h"
 #include "delio/map/map_builder.h"
+#include "delio/map/ply.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
+#include "delio/run/run_folder.h"
 #include "test_data.h"
 
 namespace {
@@ -98,5 +101,54 @@ TEST(RealMap, First16OfKitti00) {
 TEST(RealMap, First60OfDrive0005) {
     DELIO_NEED_DATA("kitti/drive0005_first60");
     expectAPictureOfStreets("drive0005_first60", 10);
+}
+/** Points in the corridor that was driven through, from 0.3 to 2 m above the road. */
+std::size_t inTheWay(const map::MapPoints& points, const std::vector<Isometry3d>& poses) {
+    constexpr double kSensor_m = 1.73, kHalfWidth_m = 1.2;
+    return static_cast<std::size_t>(
+        std::count_if(points.begin(), points.end(), [&](const map::MapPoint& point) {
+            return std::any_of(poses.begin(), poses.end(), [&](const Isometry3d& pose) {
+                const Eigen::Vector3d p = pose.inverse() * point.position.cast<double>();
+                const double height = p.z() + kSensor_m;
+                return std::abs(p.x()) < 0.5 && std::abs(p.y()) < kHalfWidth_m && height > 0.3 &&
+                       height < 2;
+            });
+        }));
+}
+
+double medianResidual(const map::MapPoints& points) {
+    std::vector<float> residuals;
+    for (const auto& point : points)
+        if (point.normal.norm() > 0) residuals.push_back(point.residual_m);
+    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+    std::nth_element(residuals.begin(), middle, residuals.end());
+    return double{*middle};
+}
+
+// A van drives ahead, a cyclist beside it.
+TEST(RealMap, WhatDroveAheadLeavesNoTrail) {
+    DELIO_NEED_DATA("kitti/drive0005_first60");
+    const delio::test::TemporaryFolder folder;
+    const std::string rawlog = folder / "d.rawlog";
+    const auto sequence = delio::test::dataFolder() / "kitti/drive0005_first60";
+    ASSERT_EQ(delio::test::runTool("kitti2rawlog", {"-i", sequence, "-o", rawlog}).exitCode, 0);
+    const auto slam = [&](const std::string& out, const std::string& setting) {
+        const auto run = delio::test::runTool("delio-slam",
+                                              {"-i", rawlog, "-o", folder / out, "--set", setting});
+        EXPECT_EQ(run.exitCode, 0) << run.err;
+        return delio::run::RunFolder(folder / out);
+    };
+    const auto clean = slam("clean", "removal.enabled=true");
+    const auto all = slam("all", "removal.enabled=false");
+    const auto cleanPoints = map::loadPly(clean.path(delio::run::RunFolder::kPly));
+    const auto allPoints = map::loadPly(all.path(delio::run::RunFolder::kPly));
+    const auto poses = clean.trajectory().poses;
+    const auto left = inTheWay(cleanPoints, poses), before = inTheWay(allPoints, poses);
+    std::printf("in the way: %zu of %zu points; residual %.4f of %.4f m\n", left, before,
+                medianResidual(cleanPoints), medianResidual(allPoints));
+    ASSERT_GT(before, 1000U);
+    EXPECT_LT(double(left), 0.02 * double(before));
+    EXPECT_LE(medianResidual(cleanPoints), medianResidual(allPoints));
+    EXPECT_GT(cleanPoints.size(), 0.85 * double(allPoints.size()));
 }
 }  // namespace

@@ -146,7 +146,8 @@ std::vector<std::uint8_t> DynamicObjects::detect(const Eigen::Matrix3Xf& points,
         Object& object = latest_.objects[i];
         tracks[i] = trackOf(object);
         if (tracks[i]) object.velocity = tracks[i]->velocity;
-        object.isTold = moving[i] = tracks[i] || came(object);
+        object.isTold = tracks[i] || came(object);
+        moving[i] = object.isTold;
     });
     unmasked_.resize(3, 0);
     for (const auto& track : tracks)

@@ -90,11 +90,13 @@ void PlaneMap::add(const Eigen::Matrix3Xd& points) {
 void PlaneMap::erase(const Eigen::Matrix3Xd& points) {
     for (std::size_t i = 0; i < options_.levels; ++i)
         for (Eigen::Index k = 0; k < points.cols(); ++k) {
-            Cell* cell = levels_[i].cells.find(scan::voxelKey(points.col(k), levels_[i].edge));
-            if (!cell || cell->count == 0) continue;
-            const Eigen::Vector3d origin = cell->origin;
-            *cell = {};
-            cell->origin = origin;  // what is far is forgotten by it
+            Cell* cell = levels_[i].cells.find(
+                scan::voxelKey(Eigen::Vector3d(points.col(k)), levels_[i].edge));
+            if (!cell) continue;
+            cell->sum.setZero();
+            cell->squares.setZero();
+            cell->count = 0;  // its origin stays: what is far is forgotten by it
+            cell->isPlane = false;
         }
 }
 

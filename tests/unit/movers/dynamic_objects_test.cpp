@@ -148,4 +148,22 @@ TEST_F(MovingObjectsInAStreet, NothingIsToldByTheFirstScanOrAfterAPause) {
     look(Eigen::Isometry3d::Identity(), {van(12, 3)}, 30);
     EXPECT_EQ(found_ + wrong_, 0);
 }
+
+// It hides its way, so that it is told only by the places that it left: these were taken for a part
+// of the street.
+TEST_F(MovingObjectsInAStreet, PlacesThatWereTakenForThoseOfSomethingStandingAreUnmaskedOnce) {
+    Eigen::Index unmasked = 0;
+    int outside = 0;
+    for (int i = 0; i < 8; ++i) {
+        look(poseAt(0.9 * i, 0, 0), {van(0.9 * i + 5, 0)});
+        const auto& places = objects_.unmasked();
+        unmasked += places.cols();
+        if (i > 5) EXPECT_EQ(places.cols(), 0) << i;
+        const test::Block way{{5, -1, -1.6}, {5 + 0.9 * i + 5, 1, 0.2}};
+        for (Eigen::Index k = 0; k < places.cols(); ++k)
+            outside += !isIn(way, places.col(k).cast<double>());
+    }
+    EXPECT_GT(unmasked, 100);
+    EXPECT_EQ(outside, 0);
+}
 }  // namespace

@@ -159,4 +159,23 @@ TEST(PlaneMap, AFullVoxelStaysAndAFarOneGoes) {
     map.forgetFarFrom({1000, 0, 0});
     EXPECT_EQ(map.voxels(), 0U);
 }
+
+TEST(PlaneMap, WhatTurnedOutToMoveIsErasedAndTheGroundStays) {
+    test::Noise noise;
+    PlaneMap map(PlaneMapOptions{});
+    const Eigen::Vector3d side(0.25, 0.25, 1.75), beside(3.25, 0.25, 1.75);
+    const Eigen::Matrix3Xd seen = patch(side, {1, 0, 0}, 0.001, 60, noise);
+    map.add(seen);
+    map.add(patch(beside, {1, 0, 0}, 0.001, 60, noise));
+    ASSERT_TRUE(map.at(side));
+    map.erase(seen);
+    EXPECT_FALSE(map.at(side));
+    EXPECT_TRUE(map.at(beside));
+    map.erase(Eigen::Vector3d(100, 0, 0));  // nothing was there
+    map.add(patch(side, {0, 1, 0}, 0.001, 60, noise));
+    ASSERT_TRUE(map.at(side));  // what stands there now
+    EXPECT_GT(std::abs(map.at(side)->normal().y()), 0.99);
+    map.forgetFarFrom({1000, 0, 0});
+    EXPECT_EQ(map.voxels(), 0U);
+}
 }  // namespace

@@ -62,4 +62,19 @@ TEST(PointMap, ForgetsWhatIsFarAway) {
     EXPECT_EQ(map.size(), 0U);
     EXPECT_FALSE(map.nearest({0.1, 0, 0}, 0.5, nearest));
 }
+
+TEST(PointMap, WhatTurnedOutToMoveIsErased) {
+    PointMap map(PointMapOptions{});
+    const Eigen::Vector3d stays(0.1, 0.1, 0.1), moves(0.8, 0.8, 0.8);
+    map.add(moves);
+    map.add(stays);
+    map.erase(moves + Eigen::Vector3d(0.05, 0, 0));
+    map.erase(Eigen::Vector3d(50, 0, 0));
+    EXPECT_EQ(map.size(), 1U);
+    Eigen::Vector3d nearest;
+    EXPECT_TRUE(map.nearest(stays, 0.05, nearest));
+    EXPECT_FALSE(map.nearest(moves, 0.3, nearest));
+    map.add(moves);
+    EXPECT_TRUE(map.nearest(moves, 0.05, nearest));
+}
 }  // namespace
