@@ -8,6 +8,7 @@
 namespace {
 using namespace delio;
 using test::DelioSlam;
+namespace fs = std::filesystem;
 using test::readText;
 using test::runTool;
 using test::Words;

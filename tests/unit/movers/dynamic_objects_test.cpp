@@ -158,7 +158,9 @@ TEST_F(MovingObjectsInAStreet, PlacesThatWereTakenForThoseOfSomethingStandingAre
         look(poseAt(0.9 * i, 0, 0), {van(0.9 * i + 5, 0)});
         const auto& places = objects_.unmasked();
         unmasked += places.cols();
-        if (i > 5) EXPECT_EQ(places.cols(), 0) << i;
+        if (i > 5) {
+            EXPECT_EQ(places.cols(), 0) << i;
+        }
         const test::Block way{{5, -1, -1.6}, {5 + 0.9 * i + 5, 1, 0.2}};
         for (Eigen::Index k = 0; k < places.cols(); ++k)
             outside += !isIn(way, places.col(k).cast<double>());
