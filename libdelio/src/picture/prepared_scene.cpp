@@ -91,8 +91,7 @@ void PreparedScene::enlargeOtherViewports() {
 }
 
 void PreparedScene::lookFrom(const View& view) {
-    const double nearClip = std::max(view.nearest, 1e-3 * view.farthest);
-    viewport_->setViewportClipDistances(static_cast<float>(nearClip),
+    viewport_->setViewportClipDistances(static_cast<float>(nearClipOf(view)),
                                         static_cast<float>(view.farthest));
 }
 

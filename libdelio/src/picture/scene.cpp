@@ -13,6 +13,7 @@
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "legend.h"
+#include "marks.h"
 #include "round_length.h"
 #include "wide_line.h"
 
@@ -144,7 +145,7 @@ COpenGLScene::Ptr mapScene(const map::MapPoints& points, const MapWays& ways,
     }
     cloud->setPointSize(options.pointSize_px);
     cloud->enableVariablePointSize(false);
-    cloud->setName("map");
+    cloud->setName(kMapName);
 
     auto scene = COpenGLScene::Create();
     scene->getViewport()->setCustomBackgroundColor(TColorf(options.background));

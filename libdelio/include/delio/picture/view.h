@@ -22,6 +22,9 @@ struct SnapshotOptions {
      *  show everything, and larger in larger pictures and from nearer. */
     std::optional<float> pointSize_px;
     std::optional<mrpt::img::TColor> background;  //!< unset: the scene's
+    /** Of the points of a map where others in front of them are near: shows what stands out from
+     *  what. 0: none; 1: as usual. Scenes without a map are never shaded. */
+    double shading = 1;
 };
 
 constexpr unsigned kMaxPictureSize_px = 16384;
