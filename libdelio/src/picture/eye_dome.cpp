@@ -26,17 +26,52 @@ struct Offset {
     int column, row;
 };
 
-/** Eight directions, at one and at two radii. */
-std::array<Offset, 16> neighbours(double radius_px) {
-    std::array<Offset, 16> offsets{};
+/** Four of eight directions, the others are opposite, at one and then at two radii. */
+std::array<Offset, 8> halfOfNeighbours(double radius_px) {
+    std::array<Offset, 8> offsets{};
     for (std::size_t i = 0; i < offsets.size(); ++i) {
-        const double radius = std::max(radius_px, 1.0) * (i < 8 ? 1 : 2);
-        const double angle = M_PI / 4 * static_cast<double>(i % 8);
+        const double radius = std::max(radius_px, 1.0) * (i < 4 ? 1 : 2);
+        const double angle = M_PI / 4 * static_cast<double>(i % 4);
         offsets[i] = {static_cast<int>(std::lround(radius * std::cos(angle))),
                       static_cast<int>(std::lround(radius * std::sin(angle)))};
     }
     return offsets;
 }
+
+/** How much nearer two opposite neighbours are, beyond what a slope explains. */
+float nearness(float own, float one, float other, float slope) {
+    const float nearer = own - std::min(one, other), farther = std::max(one, other) - own;
+    if (nearer <= 0) return 0;
+    if (farther == kBehindAll) return nearer;
+    return std::max(0.0F, nearer - std::min(farther, slope));
+}
+
+/** The depths around a pixel; what is outside the picture is behind everything. */
+struct Surroundings {
+    Surroundings(const CMatrixFloat& logDepth, const EyeDome& shading)
+        : depth(logDepth),
+          offsets(halfOfNeighbours(shading.radius_px)),
+          slope(static_cast<float>(shading.slope)) {}
+
+    float at(int column, int row) const {
+        const bool inside = column >= 0 && column < depth.cols() && row >= 0 && row < depth.rows();
+        return inside ? depth(row, column) : kBehindAll;
+    }
+    float meanNearness(int column, int row) const {
+        const float own = depth(row, column);
+        float sum = 0;
+        for (std::size_t i = 0; i < offsets.size(); ++i) {
+            const auto [x, y] = offsets[i];
+            sum += nearness(own, at(column + x, row + y), at(column - x, row - y),
+                            i < offsets.size() / 2 ? slope : 2 * slope);
+        }
+        return sum / static_cast<float>(2 * offsets.size());
+    }
+
+    const CMatrixFloat& depth;
+    std::array<Offset, 8> offsets;
+    float slope;
+};
 }  // namespace
 
 void toLogDepth(CMatrixFloat& depth, const View& view, const SnapshotOptions& options) {
@@ -62,6 +97,9 @@ EyeDome eyeDomeOf(const SnapshotOptions& options, unsigned enlarged) {
     EyeDome shading;
     shading.radius_px = marks * enlarged;
     // In small pictures a radius is a wider angle, across which slopes make larger differences.
+    constexpr double kSteepest = 5;  // tangent of the angle to the picture's plane
+    const double pixel = 2 * std::tan(kVerticalView_deg * M_PI / 360) / options.height_px;
+    shading.slope = kSteepest * marks * pixel * M_LOG2E;
     shading.gain *= options.shading * std::min(1.0, options.height_px / (1080 * marks));
     return shading;
 }
@@ -72,24 +110,19 @@ void shadeEyeDome(CImage& image, const CMatrixFloat& logDepth, const EyeDome& sh
     if (logDepth.cols() != width || logDepth.rows() != height)
         throw Error("a picture cannot be shaded by a depth of another size");
     if (shading.gain <= 0) return;
-    const auto offsets = neighbours(shading.radius_px);
-    const auto scale = static_cast<float>(shading.gain / static_cast<double>(offsets.size()));
+    const Surroundings around(logDepth, shading);
+    const auto gain = static_cast<float>(shading.gain);
     forEachRow(height, [&](int row) {
         for (int column = 0; column < width; ++column) {
-            const float own = logDepth(row, column);
-            if (own == kBehindAll) continue;
-            float nearer = 0;
-            for (const auto& offset : offsets) {
-                const int x = column + offset.column, y = row + offset.row;
-                if (x >= 0 && x < width && y >= 0 && y < height)
-                    nearer += std::max(0.0F, own - logDepth(y, x));
-            }
-            if (nearer == 0) continue;
-            const float light = std::exp(-scale * nearer);
+            if (logDepth(row, column) == kBehindAll) continue;
+            const float nearness = around.meanNearness(column, row);
+            if (nearness == 0) continue;
+            const float light = std::exp(-gain * nearness);
             auto* bgr =
                 image.ptr<std::uint8_t>(static_cast<unsigned>(column), static_cast<unsigned>(row));
             for (int i = 0; i < 3; ++i)
-                bgr[i] = static_cast<std::uint8_t>(std::lround(light * static_cast<float>(bgr[i])));
+                bgr[i] =
+                    static_cast<std::uint8_t>(std::lround(light * static_cast<float>(bgr[i])));
         }
     });
 }
