@@ -143,7 +143,7 @@ Arguments::Arguments()
       ortho("", "ortho", "Parallel projection with a scale bar, from above", cmd),
       pointSize("", "point-size",
                 "Size of the points, pixels (default: 2 for 1080 lines, larger in "
-                "larger pictures)",
+                "larger pictures, and from near until surfaces look closed)",
                 false, 0, &pixels, cmd),
       shading("", "shading",
               "How much points are darkened beside nearer ones, so that edges and "

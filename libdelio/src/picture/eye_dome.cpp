@@ -46,23 +46,24 @@ float nearness(float own, float one, float other, float slope) {
     return std::max(0.0F, nearer - std::min(farther, slope));
 }
 
-/** The depths around a pixel; what is outside the picture is behind everything. */
+/** The depths around a pixel. Of two neighbours of which one is outside the picture, none counts.
+ */
 struct Surroundings {
     Surroundings(const CMatrixFloat& logDepth, const EyeDome& shading)
         : depth(logDepth),
           offsets(halfOfNeighbours(shading.radius_px)),
           slope(static_cast<float>(shading.slope)) {}
 
-    float at(int column, int row) const {
-        const bool inside = column >= 0 && column < depth.cols() && row >= 0 && row < depth.rows();
-        return inside ? depth(row, column) : kBehindAll;
+    bool inside(int column, int row) const {
+        return column >= 0 && column < depth.cols() && row >= 0 && row < depth.rows();
     }
     float meanNearness(int column, int row) const {
         const float own = depth(row, column);
         float sum = 0;
         for (std::size_t i = 0; i < offsets.size(); ++i) {
             const auto [x, y] = offsets[i];
-            sum += nearness(own, at(column + x, row + y), at(column - x, row - y),
+            if (!inside(column + x, row + y) || !inside(column - x, row - y)) continue;
+            sum += nearness(own, depth(row + y, column + x), depth(row - y, column - x),
                             i < offsets.size() / 2 ? slope : 2 * slope);
         }
         return sum / static_cast<float>(2 * offsets.size());
@@ -121,8 +122,7 @@ void shadeEyeDome(CImage& image, const CMatrixFloat& logDepth, const EyeDome& sh
             auto* bgr =
                 image.ptr<std::uint8_t>(static_cast<unsigned>(column), static_cast<unsigned>(row));
             for (int i = 0; i < 3; ++i)
-                bgr[i] =
-                    static_cast<std::uint8_t>(std::lround(light * static_cast<float>(bgr[i])));
+                bgr[i] = static_cast<std::uint8_t>(std::lround(light * static_cast<float>(bgr[i])));
         }
     });
 }

@@ -80,7 +80,7 @@ void PreparedScene::enlargePoints(const View& view) {
                              object->getName() != "start" && object->getName() != "end";
         if (isCloud && options_.pointSize_px)
             points->setPointSize(*options_.pointSize_px * enlarged_);
-        else if (object->getName() == kMapName)
+        else if (object->getName() == kMapName || object->getName() == kRemovedName)
             points->setPointSize(mapPointSize(points->getPointSize(), view));
         else
             points->setPointSize(points->getPointSize() * (isCloud ? wider * nearer : marks_));

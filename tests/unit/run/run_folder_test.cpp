@@ -126,7 +126,8 @@ TEST_F(ToyRun, FilesOfAnEarlierRunDoNotStay) {
     first.finish(true);
     const RunFolder folder(out_);
     folder.write(first.record(), first.maps());
-    for (const char* name : {"map.3Dscene", "map.png", "trajectory.png", "mine.txt"})
+    for (const char* name :
+         {"map.3Dscene", "map.png", "map_removal.png", "trajectory.png", "mine.txt"})
         test::writeText(fs::path(out_) / name, "of an earlier run");
 
     // One without map, calibration and times.
@@ -173,11 +174,11 @@ TEST_F(ToyRun, WithoutItsPicturesAFolderIsWholeButForThem) {
     process(run);
     run.finish(true);
     const RunFolder folder(out_);
-    const auto draw = [&](const run::RunRecord& record, const auto& points, const auto& keyframes,
+    const auto draw = [&](const run::RunRecord& record, const map::BuiltMap& map,
                           const RunFolder& into) {
         EXPECT_EQ(record.final.poses.size(), kScans);
-        EXPECT_GT(points.size(), 1000U);
-        EXPECT_FALSE(keyframes.empty());
+        EXPECT_GT(map.points.size(), 1000U);
+        EXPECT_FALSE(map.keyPoses.empty());
         EXPECT_TRUE(into.has(RunFolder::kPly));
         throw Error("no renderer");
     };
