@@ -104,7 +104,7 @@ TEST(PointSpacing, FromNearPointsGrowUntilSurfacesAreClosed) {
     options.scaleBar = false;
     options.shading = 0;
     options.background = mrpt::img::TColor(255, 0, 255);
-    for (const double zoom : {60.0, 30.0, 15.0}) {
+    for (const double zoom : {60.0, 30.0, 20.0}) {
         options.zoom_m = zoom;
         const auto image = picture::picture(*picture::mapScene(points, {}), options);
         std::size_t gaps = 0;

@@ -16,6 +16,7 @@ using Words = std::vector<std::string>;
 const Words kNames = {"config.ini",
                       "loops.csv",
                       "map.delio",
+                      "map.html",
                       "map.ply",
                       "map.simplemap",
                       "posegraph.g2o",
