@@ -60,7 +60,7 @@ class MapTool : public testing::Test {
         map::MapBuilder builder(everything, "velodyne");
         builder.add(0, ways_[0], map::cloudOf(points_), test::poseAt(0, 0, 0),
                     mrpt::Clock::fromDouble(1316995200.0));
-        map::saveSimplemap(builder.simplemap(ways_), at("map.simplemap"));
+        map::saveSimplemap(builder.build(ways_).simplemap, at("map.simplemap"));
         before_ = names();
     }
     std::string at(const std::string& name) const { return folder_ / name; }
