@@ -29,7 +29,8 @@ EyeDome eyeDomeOf(const SnapshotOptions& options, unsigned enlarged);
 
 /** Eye-dome lighting (C. Boucheny, 2009): a pixel gets darker by how much nearer those around it
  *  are than it and the opposite ones are farther: steps in depth become dark edges on their far
- *  side, and so do creases; even surfaces stay as they are, and so does what has no depth. The same bytes for any number of threads.
+ *  side, and so do creases; even surfaces stay as they are, and so does what has no depth. The same
+ * bytes for any number of threads.
  *  @param logDepth as of toLogDepth(), of the picture's size */
 void shadeEyeDome(mrpt::img::CImage& image, const mrpt::math::CMatrixFloat& logDepth,
                   const EyeDome& shading);

@@ -102,8 +102,7 @@ void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned picture
     const Raster raster(options);
     const auto renderer = openRenderer(raster);
     const auto views = viewsOf(content, options, pictures);
-    PreparedScene prepared(scene, options, static_cast<float>(raster.scale),
-                           views[0]);
+    PreparedScene prepared(scene, options, static_cast<float>(raster.scale), views[0]);
     const bool shaded = options.shading > 0 && scene.getByName(kMapName) != nullptr;
     for (unsigned i = 0; i < pictures; ++i) {
         const View& view = views[i];

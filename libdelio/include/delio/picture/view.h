@@ -18,8 +18,8 @@ struct SnapshotOptions {
     std::optional<double> zoom_m;  //!< metres across the picture, through the content's middle
     bool ortho = false;            //!< parallel projection instead of perspective
     bool scaleBar = false;         //!< in the lower right corner; with `ortho` only
-    /** Of all point clouds; unset: the scene's, which are meant for pictures of 1080 lines, larger in
-     *  larger pictures and from nearer (a map's: such that its surfaces look closed). */
+    /** Of all point clouds; unset: the scene's, which are meant for pictures of 1080 lines, larger
+     * in larger pictures and from nearer (a map's: such that its surfaces look closed). */
     std::optional<float> pointSize_px;
     std::optional<mrpt::img::TColor> background;  //!< unset: the scene's
     /** Of the points of a map where others in front of them are near: shows what stands out from
