@@ -111,7 +111,7 @@ struct Arguments {
     SizeConstraint sizes;
     ColourConstraint colours;
     RangeConstraint degrees{"DEG", -360, 360}, elevations{"DEG", -90, 90};
-    RangeConstraint metres{"M", 1e-3, 1e6}, pixels{"P", 0.1, 100};
+    RangeConstraint metres{"M", 1e-3, 1e6}, pixels{"P", 0.1, 100}, strengths{"S", 0, 4};
     std::vector<std::string> colormapNames = map::colormapNames();
     std::vector<std::string> valueNames = map::colourByNames();
     Words colormaps{colormapNames}, values{valueNames};
@@ -119,7 +119,7 @@ struct Arguments {
     Text input, output, size;
     Number azimuth, elevation, zoom;
     TCLAP::SwitchArg ortho;
-    Number pointSize;
+    Number pointSize, shading;
     Text colormap, colourBy, background;
     TCLAP::ValueArg<delio::cli::Count> frames;
     TCLAP::SwitchArg force, verbose;
@@ -143,8 +143,12 @@ Arguments::Arguments()
       ortho("", "ortho", "Parallel projection with a scale bar, from above", cmd),
       pointSize("", "point-size",
                 "Size of the points, pixels (default: 2 for 1080 lines, larger in "
-                "larger pictures)",
+                "larger pictures, and from near until surfaces look closed)",
                 false, 0, &pixels, cmd),
+      shading("", "shading",
+              "How much points are darkened beside nearer ones, so that edges and "
+              "shapes show (default 1; 0: not at all)",
+              false, 1, &strengths, cmd),
       colormap("", "colormap", "Colours of the points (default turbo)", false, "turbo", &colormaps,
                cmd),
       colourBy("", "color-by", "What the colours say (default height)", false, "height", &values,
@@ -164,6 +168,7 @@ picture::SnapshotOptions Arguments::view() {
     options.elevation_deg = options.ortho && !elevation.isSet() ? 90 : elevation.getValue();
     if (zoom.isSet()) options.zoom_m = zoom.getValue();
     if (pointSize.isSet()) options.pointSize_px = static_cast<float>(pointSize.getValue());
+    options.shading = shading.getValue();
     options.background = colourIn(background.getValue());
     return options;
 }

@@ -100,6 +100,8 @@ TEST_F(SnapshotTool, EveryOptionChangesThePicture) {
                                                    {"--zoom", "8"},
                                                    {"--ortho"},
                                                    {"--point-size", "5"},
+                                                   {"--shading", "0"},
+                                                   {"--shading", "4"},
                                                    {"--background", "#ff8000"},
                                                    {"--background", "white"},
                                                    {"--colormap", "viridis"},
@@ -207,6 +209,8 @@ TEST_F(SnapshotTool, RefusesABadCommandLine) {
     expectRefusal({"-i", in, "-o", out, "--zoom", "0"}, 2);
     expectRefusal({"-i", in, "-o", out, "--zoom", "-5"}, 2);
     expectRefusal({"-i", in, "-o", out, "--point-size", "0"}, 2);
+    for (const char* strength : {"-0.1", "4.1", "strong"})
+        expectRefusal({"-i", in, "-o", out, "--shading", strength}, 2);
     expectRefusal({"-i", in, "-o", out, "--colormap", "jet"}, 2);
     for (const char* count : {"0", "-3", "1001", "many"})
         expectRefusal({"-i", in, "-o", out, "--orbit", count}, 2);

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "delio/core/geometry.h"
+#include "marks.h"
 
 namespace delio::picture {
 using Eigen::Isometry3d;
@@ -53,7 +54,7 @@ void addBox(const CRenderizable& object, const Isometry3d& pose, std::vector<Vec
 
 void collect(const CRenderizable::Ptr& object, const Isometry3d& parent, Content& content) {
     const Isometry3d pose = parent * fromMrpt(mrpt::poses::CPose3D(object->getPose()));
-    if (!object->isVisible()) return;
+    if (!object->isVisible() || object->getName() == kRemovedName) return;
     if (const auto set = std::dynamic_pointer_cast<mrpt::opengl::CSetOfObjects>(object)) {
         for (const auto& child : *set) collect(child, pose, content);
     } else if (const auto coloured =

@@ -15,6 +15,7 @@ struct Content {
     bool empty() const { return points.empty() && lines.empty(); }
 };
 
-/** Of what is visible in the scene's main viewport; of large objects a sample. */
+/** Of what is visible in the scene's main viewport; of large objects a sample. What was removed
+ * from a map does not count, so that the map looks the same with and without it. */
 Content contentOf(const mrpt::opengl::COpenGLScene& scene);
 }  // namespace delio::picture

@@ -145,7 +145,7 @@ void setDepths(View& view, const Content& content, const SnapshotOptions& option
         view.magnification = view.metresAcross / *options.zoom_m;
         view.metresAcross = *options.zoom_m;
     }
-    view.distance = view.metresAcross / (2 * Lens(options).tanX);
+    view.distance = distanceOf(view, options);
     // Strays do not count here either: MRPT keeps the camera's place in floats, so a camera that
     // stands far off looks past its content.
     const auto height = [&](const Vector3d& p) { return view.back.dot(p - view.middle); };
@@ -161,6 +161,12 @@ void setDepths(View& view, const Content& content, const SnapshotOptions& option
     view.farthest = view.distance - deepest + slack;
 }
 }  // namespace
+
+double nearClipOf(const View& view) { return std::max(view.nearest, 1e-3 * view.farthest); }
+
+double distanceOf(const View& view, const SnapshotOptions& options) {
+    return view.metresAcross / (2 * Lens(options).tanX);
+}
 
 std::vector<View> viewsOf(const Content& content, const SnapshotOptions& options,
                           unsigned pictures) {

@@ -19,6 +19,12 @@ struct View {
     double nearest = 0, farthest = 0;  //!< depth of the whole content, from the camera
 };
 
+/** Where the view is cut off in front: in perspective that cannot be at or behind the camera. */
+double nearClipOf(const View& view);
+
+/** From where a perspective view shows at its middle what this one shows. */
+double distanceOf(const View& view, const SnapshotOptions& options);
+
 /** `pictures` views around the content, which is not empty; one fills the picture as well as it
  *  can, several are all about one middle and of one size. */
 std::vector<View> viewsOf(const Content& content, const SnapshotOptions& options,

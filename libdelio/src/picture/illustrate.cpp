@@ -6,21 +6,41 @@
 
 namespace delio::picture {
 namespace {
+using mrpt::img::CImage;
+
+CImage sideBySide(const CImage& left, const CImage& right) {
+    CImage sheet;
+    sheet.resize(left.getWidth() + right.getWidth(), left.getHeight(), mrpt::img::CH_RGB);
+    sheet.drawImage(0, 0, left);
+    sheet.drawImage(static_cast<int>(left.getWidth()), 0, right);
+    return sheet;
+}
+
+void drawRemoval(const run::RunRecord& record, const map::BuiltMap& map, const std::string& path) {
+    const auto pictureOf = [&](const std::string& caption, bool before) {
+        SceneOptions options;
+        options.colormap = map::Colormap::Gray;  // has no red
+        options.caption = caption;
+        const auto scene = mapScene(map.points, {record.final.poses, {}, {}, {}}, options);
+        if (before) addRemoved(*scene, map.dynamic);
+        return picture(*scene, {});
+    };
+    const std::string removed = std::to_string(map.dynamic.size()) + " points of what moved";
+    savePng(sideBySide(pictureOf("before: in red " + removed, true),
+                       pictureOf("after: without " + removed, false)),
+            path);
+}
+
 void drawTrajectory(const run::RunRecord& record, const std::string& path) {
     const auto view = topView();
     const auto loops = record.closedLoops();
     const auto pictureOf = [&](const io::Trajectory& trajectory, const char* name) {
         return picture(*trajectoryScene({trajectory.poses, record.truth, {}, loops}, name), view);
     };
-    mrpt::img::CImage sheet;
-    if (record.optimised()) {
-        const auto width = static_cast<int>(view.width_px);
-        sheet.resize(std::size_t{2} * view.width_px, view.height_px, mrpt::img::CH_RGB);
-        sheet.drawImage(0, 0, pictureOf(record.odometry, "unoptimised"));
-        sheet.drawImage(width, 0, pictureOf(record.final, "optimised"));
-    } else
-        sheet = pictureOf(record.final, "estimate");
-    savePng(sheet, path);
+    savePng(record.optimised() ? sideBySide(pictureOf(record.odometry, "unoptimised"),
+                                            pictureOf(record.final, "optimised"))
+                               : pictureOf(record.final, "estimate"),
+            path);
 }
 }  // namespace
 
@@ -32,6 +52,7 @@ void illustrate(const run::RunRecord& record, const map::BuiltMap& map,
             map.points, {record.final.poses, record.truth, map.keyPoses, record.closedLoops()});
         saveScene(*scene, folder.path(RunFolder::kScene));
         savePicture(*scene, SnapshotOptions(), folder.path(RunFolder::kMapPicture));
+        if (!map.dynamic.empty()) drawRemoval(record, map, folder.path(RunFolder::kRemovalPicture));
     }
     drawTrajectory(record, folder.path(RunFolder::kTrajectoryPicture));
 }

@@ -4,6 +4,12 @@
 #include "delio/picture/view.h"
 
 namespace delio::picture {
+/** The name of a scene's object that holds the points of a map. */
+constexpr const char* kMapName = "map";
+
+/** Of the one that holds what was taken out of it. */
+constexpr const char* kRemovedName = "removed";
+
 /** How much larger than in a picture of 1080 lines marks, texts and points are. */
 inline double sizeOfMarks(const SnapshotOptions& options) {
     const double lines = std::min(options.width_px / 16.0 * 9, double(options.height_px));

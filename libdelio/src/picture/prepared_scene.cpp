@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "marks.h"
+#include "point_spacing.h"
 
 namespace delio::picture {
 using mrpt::img::TColor;
@@ -19,7 +20,7 @@ double lightness(const TColorf& c) { return 0.3 * c.R + 0.6 * c.G + 0.1 * c.B; }
 }  // namespace
 
 PreparedScene::PreparedScene(mrpt::opengl::COpenGLScene& scene, const SnapshotOptions& options,
-                             float enlarged, double magnification)
+                             float enlarged, const View& view)
     : scene_(scene),
       viewport_(scene.getViewport()),
       options_(options),
@@ -29,7 +30,7 @@ PreparedScene::PreparedScene(mrpt::opengl::COpenGLScene& scene, const SnapshotOp
     background_ = viewport_->getCustomBackgroundColor();
     texts_ = viewport_->getTextMessages().messages;
     if (options.background) viewport_->setCustomBackgroundColor(TColorf(*options.background));
-    enlargePoints(magnification);
+    enlargePoints(view);
     enlargeOtherViewports();
 }
 
@@ -55,10 +56,19 @@ PreparedScene::~PreparedScene() {
     scene_.visitAllObjects([](const CRenderizable::Ptr& object) { object->notifyChange(); });
 }
 
-void PreparedScene::enlargePoints(double magnification) {
+float PreparedScene::mapPointSize(float stored_px, const View& view) const {
+    // Neighbours touch, and overlap a little as they lie at random; larger ones would hide poles.
+    constexpr double kOverlap = 1.2, kLargest = 8;
+    const double least_px = double{stored_px} * sizeOfMarks(options_);
+    const double spacing_px = mapSpacing_m(scene_) / view.metresAcross * options_.width_px;
+    return static_cast<float>(std::clamp(kOverlap * spacing_px, least_px, kLargest * least_px)) *
+           enlarged_;
+}
+
+void PreparedScene::enlargePoints(const View& view) {
     const float wider = std::max(marks_, enlarged_);
     // From near, the gaps between points grow: let the points grow as well.
-    const float nearer = static_cast<float>(std::clamp(std::sqrt(magnification), 1.0, 3.0));
+    const float nearer = static_cast<float>(std::clamp(std::sqrt(view.magnification), 1.0, 3.0));
     scene_.visitAllObjects([&](const CRenderizable::Ptr& object) {
         const auto points =
             std::dynamic_pointer_cast<mrpt::opengl::CRenderizableShaderPoints>(object);
@@ -70,6 +80,8 @@ void PreparedScene::enlargePoints(double magnification) {
                              object->getName() != "start" && object->getName() != "end";
         if (isCloud && options_.pointSize_px)
             points->setPointSize(*options_.pointSize_px * enlarged_);
+        else if (object->getName() == kMapName || object->getName() == kRemovedName)
+            points->setPointSize(mapPointSize(points->getPointSize(), view));
         else
             points->setPointSize(points->getPointSize() * (isCloud ? wider * nearer : marks_));
     });
@@ -91,8 +103,7 @@ void PreparedScene::enlargeOtherViewports() {
 }
 
 void PreparedScene::lookFrom(const View& view) {
-    const double nearClip = std::max(view.nearest, 1e-3 * view.farthest);
-    viewport_->setViewportClipDistances(static_cast<float>(nearClip),
+    viewport_->setViewportClipDistances(static_cast<float>(nearClipOf(view)),
                                         static_cast<float>(view.farthest));
 }
 

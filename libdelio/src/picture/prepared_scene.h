@@ -19,9 +19,9 @@ namespace delio::picture {
 class PreparedScene {
  public:
     /** @param enlarged how many times as large as wanted the picture is rendered
-     *  @param magnification by zooming in, see View */
+     *  @param view decides on the size of points */
     PreparedScene(mrpt::opengl::COpenGLScene& scene, const SnapshotOptions& options, float enlarged,
-                  double magnification);
+                  const View& view);
     ~PreparedScene();
     PreparedScene(const PreparedScene&) = delete;
     PreparedScene& operator=(const PreparedScene&) = delete;
@@ -42,7 +42,9 @@ class PreparedScene {
     };
     using Viewport = mrpt::opengl::COpenGLViewport::Ptr;
 
-    void enlargePoints(double magnification);
+    void enlargePoints(const View& view);
+    /** Of the map's points, as they are rendered: such that surfaces look closed. */
+    float mapPointSize(float stored_px, const View& view) const;
     void enlargeOtherViewports();
     void showBarText(const ScaleBar& bar);
     /** From 1 on it is pixels, below a share of the picture. */

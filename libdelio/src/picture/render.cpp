@@ -11,6 +11,7 @@
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/picture/png.h"
+#include "eye_dome.h"
 #include "framing.h"
 #include "marks.h"
 #include "prepared_scene.h"
@@ -101,8 +102,8 @@ void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned picture
     const Raster raster(options);
     const auto renderer = openRenderer(raster);
     const auto views = viewsOf(content, options, pictures);
-    PreparedScene prepared(scene, options, static_cast<float>(raster.scale),
-                           views[0].magnification);
+    PreparedScene prepared(scene, options, static_cast<float>(raster.scale), views[0]);
+    const bool shaded = options.shading > 0 && scene.getByName(kMapName) != nullptr;
     for (unsigned i = 0; i < pictures; ++i) {
         const View& view = views[i];
         std::optional<ScaleBar> bar;
@@ -112,7 +113,13 @@ void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned picture
             prepared.lookFrom(view);
             prepared.showTexts(bar);
             renderer->setCamera(scene, cameraOf(view, raster, options.ortho));
-            renderer->render_RGB(scene, rendered);
+            if (shaded) {
+                mrpt::math::CMatrixFloat depth;
+                renderer->render_RGBD(scene, rendered, depth);
+                toLogDepth(depth, view, options);
+                shadeEyeDome(rendered, depth, eyeDomeOf(options, raster.scale));
+            } else
+                renderer->render_RGB(scene, rendered);
         } catch (const std::exception& e) {
             throw Error("cannot render the scene: " + plainMessage(e));
         }

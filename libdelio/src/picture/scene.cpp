@@ -1,6 +1,7 @@
 #include "delio/picture/scene.h"
 
 #include <mrpt/opengl/CGridPlaneXY.h>
+#include <mrpt/opengl/CPointCloud.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/stock_objects.h>
@@ -13,6 +14,7 @@
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "legend.h"
+#include "marks.h"
 #include "round_length.h"
 #include "wide_line.h"
 
@@ -126,6 +128,18 @@ void addKeyframes(COpenGLScene& scene, const std::vector<Isometry3d>& poses, dou
 }
 }  // namespace
 
+void addRemoved(COpenGLScene& scene, const map::MapPoints& removed) {
+    auto cloud = mrpt::opengl::CPointCloud::Create();
+    cloud->reserve(removed.size());
+    for (const auto& point : removed)
+        cloud->insertPoint(point.position.x(), point.position.y(), point.position.z());
+    cloud->setColor_u8(TColor(255, 50, 50));
+    cloud->setPointSize(SceneOptions().pointSize_px);
+    cloud->enableVariablePointSize(false);
+    cloud->setName(kRemovedName);
+    scene.insert(cloud);
+}
+
 COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
                            const SceneOptions& options) {
     return mapScene(map::pointsOf(points), ways, options);
@@ -144,7 +158,7 @@ COpenGLScene::Ptr mapScene(const map::MapPoints& points, const MapWays& ways,
     }
     cloud->setPointSize(options.pointSize_px);
     cloud->enableVariablePointSize(false);
-    cloud->setName("map");
+    cloud->setName(kMapName);
 
     auto scene = COpenGLScene::Create();
     scene->getViewport()->setCustomBackgroundColor(TColorf(options.background));
@@ -153,6 +167,7 @@ COpenGLScene::Ptr mapScene(const map::MapPoints& points, const MapWays& ways,
     const TColor ink = b.R + b.G + b.B > 3 * 128 ? TColor(0, 0, 0) : kWhite;
     unsigned row = 0;
     addGrid(*scene, extent, extent.longer() / 20, ink);
+    if (!options.caption.empty()) addLegendText(*scene, ++row, options.caption, ink);
     scene->insert(cloud);
     if (!ways.keyframes.empty()) {
         addKeyframes(*scene, ways.keyframes, std::clamp(extent.longer() / 100, 0.5, 3.0));

@@ -158,7 +158,7 @@ std::string RunFolder::write(RunRecord record, const RunMaps& maps,
     io::replaceTextFile(path(kConfig), [&](std::ostream& out) { record.options.write(out); });
     Stopwatch watch;
     for (const char* name : {kStoredMap, kSimplemap, kPly, kDynamicPly, kMapPage, kScene,
-                             kMapPicture, kTrajectoryPicture})
+                             kMapPicture, kRemovalPicture, kTrajectoryPicture})
         remove(name);
     try {
         writeMaps(record, maps, illustrate);

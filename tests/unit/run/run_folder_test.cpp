@@ -16,6 +16,7 @@ using Words = std::vector<std::string>;
 const Words kNames = {"config.ini",
                       "loops.csv",
                       "map.delio",
+                      "map.html",
                       "map.ply",
                       "map.simplemap",
                       "posegraph.g2o",
@@ -126,7 +127,8 @@ TEST_F(ToyRun, FilesOfAnEarlierRunDoNotStay) {
     first.finish(true);
     const RunFolder folder(out_);
     folder.write(first.record(), first.maps());
-    for (const char* name : {"map.3Dscene", "map.png", "trajectory.png", "mine.txt"})
+    for (const char* name :
+         {"map.3Dscene", "map.png", "map_removal.png", "trajectory.png", "mine.txt"})
         test::writeText(fs::path(out_) / name, "of an earlier run");
 
     // One without map, calibration and times.

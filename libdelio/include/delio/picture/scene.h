@@ -19,6 +19,7 @@ struct SceneOptions {
     ColourBy colourBy = ColourBy::Height;
     float pointSize_px = 2;
     mrpt::img::TColor background{16, 18, 22};
+    std::string caption = {};  //!< a line of the legend
 };
 
 /** The ways through a map, as poses in the frame of its points; each may be empty. */
@@ -42,6 +43,10 @@ mrpt::opengl::COpenGLScene::Ptr mapScene(const map::MapPoints& points, const Map
                                          const SceneOptions& options = {});
 mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
                                          const SceneOptions& options = {});
+
+/** Adds to a mapScene() what was taken out of its map, in red. Views that fill the picture stay the
+ *  same. */
+void addRemoved(mrpt::opengl::COpenGLScene& scene, const map::MapPoints& removed);
 
 /** Gives a scene's coloured clouds, each by height above its ground, and the legend of mapScene()
  *  the colours of another colour map. Throws Error if the scene has no such cloud. */

@@ -18,10 +18,13 @@ struct SnapshotOptions {
     std::optional<double> zoom_m;  //!< metres across the picture, through the content's middle
     bool ortho = false;            //!< parallel projection instead of perspective
     bool scaleBar = false;         //!< in the lower right corner; with `ortho` only
-    /** Of all point clouds; unset: the scene's, which are meant for pictures of 1080 lines that
-     *  show everything, and larger in larger pictures and from nearer. */
+    /** Of all point clouds; unset: the scene's, which are meant for pictures of 1080 lines, larger
+     * in larger pictures and from nearer (a map's: such that its surfaces look closed). */
     std::optional<float> pointSize_px;
     std::optional<mrpt::img::TColor> background;  //!< unset: the scene's
+    /** Of the points of a map where others in front of them are near: shows what stands out from
+     *  what. 0: none; 1: as usual. Scenes without a map are never shaded. */
+    double shading = 1;
 };
 
 constexpr unsigned kMaxPictureSize_px = 16384;

@@ -16,8 +16,9 @@ class RunFolder;
  *  none. */
 std::string storedMapIn(const std::string& path);
 
-/** Draws what a run found into its folder: RunFolder::kScene, kMapPicture (where there are points)
- *  and kTrajectoryPicture. delio::picture has one; without, there are no pictures. */
+/** Draws what a run found into its folder: RunFolder::kScene, kMapPicture (where there are points),
+ *  kRemovalPicture (where something was taken out of them) and kTrajectoryPicture. delio::picture
+ * has one; without, there are no pictures. */
 using Illustrate =
     std::function<void(const RunRecord& record, const map::BuiltMap& map, const RunFolder& folder)>;
 
@@ -44,6 +45,7 @@ class RunFolder {
     static constexpr const char* kStoredMap = "map.delio";
     static constexpr const char* kScene = "map.3Dscene";
     static constexpr const char* kMapPicture = "map.png";
+    static constexpr const char* kRemovalPicture = "map_removal.png";  //!< before and after it
     static constexpr const char* kTrajectoryPicture = "trajectory.png";
     static constexpr const char* kSummary = "summary.yaml";
 
