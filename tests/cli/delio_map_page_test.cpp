@@ -12,14 +12,21 @@ namespace fs = std::filesystem;
 using test::readText;
 using test::runTool;
 using test::Words;
+using test::operator+;  // NOLINT(misc-unused-using-decls): clang-tidy does not see its uses
 
 bool isPage(const std::string& text) {
     return text.rfind("<!DOCTYPE html>", 0) == 0 && text.find("THREE") != text.npos;
 }
 
+/** With its map. */
+test::CommandResult slamWithMap(const std::string& rawlog, const fs::path& out,
+                                const Words& more = {}) {
+    return runTool("delio-slam", Words{"-i", rawlog, "-o", out} + more);
+}
+
 TEST_F(DelioSlam, APageOfTheMapIsWrittenAndWrittenAgain) {
     writeDrive();
-    const auto run = slam({"--keep-dynamic"});
+    const auto run = slamWithMap(rawlog_, out_, {"--keep-dynamic"});
     ASSERT_EQ(run.exitCode, 0) << run.err;
     const run::RunFolder folder(out_);
     EXPECT_TRUE(folder.has(run::RunFolder::kDynamicPly));
@@ -40,17 +47,18 @@ TEST_F(DelioSlam, APageOfTheMapIsWrittenAndWrittenAgain) {
 
 TEST_F(DelioSlam, WhatIsTakenOutIsKeptOnlyWhereItIsAskedFor) {
     writeDrive(3);
-    ASSERT_EQ(slam({"--keep-dynamic"}).exitCode, 0);
+    ASSERT_EQ(slamWithMap(rawlog_, out_, {"--keep-dynamic"}).exitCode, 0);
     ASSERT_TRUE(fs::exists(out_ / "map_dynamic.ply"));
-    ASSERT_EQ(slam({"--force"}).exitCode, 0);
+    ASSERT_EQ(slamWithMap(rawlog_, out_, {"--force"}).exitCode, 0);
     EXPECT_FALSE(fs::exists(out_ / "map_dynamic.ply"));
     fs::remove_all(out_);
-    expectRefused(slam({"--keep-dynamic", "--no-map"}), 2, {"--keep-dynamic", "--no-map"});
+    expectRefused(slamWithMap(rawlog_, out_, {"--keep-dynamic", "--no-map"}), 2,
+                  {"--keep-dynamic", "--no-map"});
 }
 
 TEST_F(DelioSlam, TheMapsPointsKnowWhatTheyAreColouredBy) {
     writeDrive();
-    ASSERT_EQ(slam({}).exitCode, 0);
+    ASSERT_EQ(slamWithMap(rawlog_, out_).exitCode, 0);
     const auto points = map::loadPly(out_ / "map.ply");
     std::size_t withNormal = 0, seenTwice = 0, later = 0;
     for (const auto& point : points) {

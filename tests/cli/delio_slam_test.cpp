@@ -55,10 +55,10 @@ TEST_F(DelioSlam, LeavesTheFilesOfTheContract) {
     EXPECT_NE(run.out.find("scans"), std::string::npos);
     EXPECT_EQ(test::namesIn(out_),
               Words({"config.ini", "loops.csv", "map.3Dscene", "map.delio", "map.html", "map.ply",
-                     "map.png", "map.simplemap", "posegraph.g2o", "posegraph.graph", "scans.csv",
-                     "summary.yaml", "trajectory.png", "trajectory_kitti.txt",
-                     "trajectory_kitti_cam0.txt", "trajectory_odometry_kitti.txt",
-                     "trajectory_tum.txt"}));
+                     "map.png", "map.simplemap", "map_removal.png", "posegraph.g2o",
+                     "posegraph.graph", "scans.csv", "summary.yaml", "trajectory.png",
+                     "trajectory_kitti.txt", "trajectory_kitti_cam0.txt",
+                     "trajectory_odometry_kitti.txt", "trajectory_tum.txt"}));
 
     for (const char* name : {"trajectory_kitti.txt", "trajectory_odometry_kitti.txt",
                              "trajectory_kitti_cam0.txt", "trajectory_tum.txt"})

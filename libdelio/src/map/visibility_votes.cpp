@@ -83,12 +83,12 @@ void VisibilityVotes::hit(const Eigen::Vector3d& point, bool moving, std::uint32
 template <typename Visit>
 void VisibilityVotes::forCells(Block& block, const Visit& visit) {
     std::size_t rank = 0;
-    for (unsigned number = 0; rank < block.cells.size(); ++number) {
-        if (!block.has(number)) continue;
-        const Voxel inside(static_cast<int>(number & 7), static_cast<int>(number >> 3 & 7),
-                           static_cast<int>(number >> 6));
-        visit(Voxel(block.first + inside), block.cells[rank++]);
-    }
+    for (int z = 0; z < 8; ++z)
+        for (std::uint64_t left = block.taken[static_cast<std::size_t>(z)]; left;
+             left &= left - 1) {
+            const int number = __builtin_ctzll(left);
+            visit(Voxel(block.first + Voxel(number & 7, number >> 3, z)), block.cells[rank++]);
+        }
 }
 
 Eigen::Vector3f VisibilityVotes::pointOf(const Voxel& voxel, const Cell& cell) const {

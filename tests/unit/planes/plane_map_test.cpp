@@ -162,8 +162,8 @@ TEST(PlaneMap, AFullVoxelStaysAndAFarOneGoes) {
 
 TEST(PlaneMap, WhatTurnedOutToMoveIsErasedAndTheGroundStays) {
     test::Noise noise;
-    PlaneMap map(PlaneMapOptions{});
-    const Eigen::Vector3d side(0.25, 0.25, 1.75), beside(3.25, 0.25, 1.75);
+    PlaneMap map(oneMetre());
+    const Eigen::Vector3d side(0.5, 0.5, 1.5), beside(3.5, 0.5, 1.5);
     const Eigen::Matrix3Xd seen = patch(side, {1, 0, 0}, 0.001, 60, noise);
     map.add(seen);
     map.add(patch(beside, {1, 0, 0}, 0.001, 60, noise));

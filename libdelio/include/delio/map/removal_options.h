@@ -11,7 +11,7 @@ struct RemovalOptions : StageOptions {
     double spacing_m = 0.5;
     unsigned witnesses = 2;
     double freePerTaken = 1.5;
-    double grownShare = 0.6;
+    double grownShare = 0.5;
 
  protected:
     std::vector<OptionField> fields() const override;
