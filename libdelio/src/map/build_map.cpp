@@ -41,10 +41,15 @@ std::shared_ptr<const VisibilityVotes> votesOf(const MapParts& parts,
                        static_cast<std::uint32_t>(i));
     }
     if (!parts.options.removal.enabled) return votes;
-    for (const StoredScan& scan : parts.scans)
-        if (scan.view.floats > 0)
-            votes->look({readView(scan, *parts.spool), parts.options.removal.cell_deg},
-                        poseOf(scan, poses) * scan.sensorPose);
+    // What is far away stays in view for long: every other scan will do.
+    constexpr float kFar_m = 60, kNear_m = 35;
+    bool farToo = false;
+    for (const StoredScan& scan : parts.scans) {
+        if (scan.view.floats == 0) continue;
+        farToo = !farToo;
+        votes->look({readView(scan, *parts.spool), parts.options.removal.cell_deg},
+                    poseOf(scan, poses) * scan.sensorPose, farToo ? kFar_m : kNear_m);
+    }
     votes->decide();
     return votes;
 }

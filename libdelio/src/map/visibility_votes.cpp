@@ -98,23 +98,23 @@ Eigen::Vector3f VisibilityVotes::pointOf(const Voxel& voxel, const Cell& cell) c
         .cast<float>();
 }
 
-void VisibilityVotes::look(const scan::RangeImage& view, const Eigen::Isometry3d& sensorInWorld) {
+void VisibilityVotes::look(const scan::RangeImage& view, const Eigen::Isometry3d& sensorInWorld,
+                           float reach_m) {
     // Farther away small things stand between two rings.
-    constexpr float kGap_m = 0.7F, kAll_m = 60;
-    constexpr float kNearest_m = 2;
-    const float kFarthest_m = std::min(kAll_m, kGap_m / view.ringSpacing());
+    constexpr float kGap_m = 0.7F, kNearest_m = 2;
+    const float farthest_m = std::min(reach_m, kGap_m / view.ringSpacing());
     const Eigen::Isometry3f toSensor = sensorInWorld.inverse().cast<float>();
-    const auto reach = static_cast<float>(kFarthest_m + 8 * options_.voxelSize_m);
+    const auto block_m = static_cast<float>(8 * std::sqrt(3.0) * options_.voxelSize_m);
     const auto margin = static_cast<float>(options_.margin_m);
     tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t i) {
         Block& block = blocks_[static_cast<std::uint32_t>(i)];
         const Eigen::Vector3f corner =
             (block.first.cast<double>() * options_.voxelSize_m).matrix().cast<float>();
-        if ((toSensor * corner).squaredNorm() > reach * reach) return;
+        if ((toSensor * corner).norm() > farthest_m + block_m) return;
         forCells(block, [&](const Voxel& voxel, Cell& cell) {
             const Eigen::Vector3f point = toSensor * pointOf(voxel, cell);
-            const float range = point.squaredNorm();
-            if (range < kNearest_m * kNearest_m || range > kFarthest_m * kFarthest_m) return;
+            const float range_m = point.norm();
+            if (range_m < kNearest_m || range_m > farthest_m) return;
             const auto place = view.at(point, margin);
             if (place == scan::Place::kFree) count(cell.free);
             if (place == scan::Place::kTaken) count(cell.taken);

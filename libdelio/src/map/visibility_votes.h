@@ -21,8 +21,8 @@ class VisibilityVotes {
     /** Scan number `scan`, rising, saw something at `point`; `moving`: as a part of what moves. */
     void hit(const Eigen::Vector3d& point, bool moving, std::uint32_t scan);
 
-    /** Asks a scan of every voxel about it. */
-    void look(const scan::RangeImage& view, const Eigen::Isometry3d& sensorInWorld);
+    /** Asks a scan of every voxel within `reach_m`. */
+    void look(const scan::RangeImage& view, const Eigen::Isometry3d& sensorInWorld, float reach_m);
 
     /** Tells what is dynamic: voxels that were looked through, or hit as a part of what moves; and
      *  those of which little is known and above or beside which most is dynamic. */
