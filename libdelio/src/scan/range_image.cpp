@@ -33,10 +33,9 @@ RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
     const auto [lowest, highest] = std::minmax_element(
         beams.begin(), beams.end(), [](const Beam& a, const Beam& b) { return a.row < b.row; });
     firstRow_ = lowest->row;
-    nearest_.resize(static_cast<std::size_t>((highest->row - firstRow_ + 1) * columns_));
+    nearest_.resize(cellOf(highest->row + 1, 0));
     for (const Beam& beam : beams) {
-        float& nearest =
-            nearest_[static_cast<std::size_t>((beam.row - firstRow_) * columns_ + beam.column)];
+        float& nearest = nearest_[cellOf(beam.row, beam.column)];
         if (nearest == 0 || beam.range < nearest) nearest = beam.range;
     }
 }
@@ -79,8 +78,7 @@ void RangeImage::forNeighbours(int row, int column, const Visit& visit) const {
     const int last = firstRow_ + static_cast<int>(rows()) - 1;
     for (int r = std::max(row - 1, firstRow_); r <= std::min(row + 1, last); ++r)
         for (const int c : columns) {
-            const float nearest =
-                nearest_[static_cast<std::size_t>((r - firstRow_) * columns_ + c)];
+            const float nearest = nearest_[cellOf(r, c)];
             if (nearest > 0) visit(nearest);
         }
 }
@@ -145,7 +143,7 @@ Place RangeImage::at(const Eigen::Vector3f& point, float margin) const {
     if (leastAbout_.empty() || r < 0 || r >= static_cast<int>(rows()))
         return lookAbout(row, column, range, margin);
     // Mostly the least of the neighbourhood tells all.
-    const float about = leastAbout_[static_cast<std::size_t>(r * columns_ + column)];
+    const float about = leastAbout_[cellOf(row, column)];
     const float least = std::abs(about);
     if (least > range + margin) return about > 0 ? Place::kFree : Place::kUnknown;
     if (least == 0) return Place::kUnknown;

@@ -43,6 +43,11 @@ class RangeImage {
     /** In the whole sphere. */
     int rowOf(const Eigen::Vector3f& point) const;
     int columnOf(const Eigen::Vector3f& point) const;
+    /** Of one of the rows that are kept: its place in nearest_. */
+    std::size_t cellOf(int row, int column) const {
+        return static_cast<std::size_t>(row - firstRow_) * static_cast<std::size_t>(columns_) +
+               static_cast<std::size_t>(column);
+    }
     std::size_t rows() const { return nearest_.size() / static_cast<std::size_t>(columns_); }
     /** Of the cells about one and it: calls visit(range) for each where something was seen. */
     template <typename Visit>
