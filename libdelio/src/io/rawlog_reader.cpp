@@ -14,9 +14,11 @@
 
 #include "delio/core/error.h"
 #include "delio/io/decode_observation.h"
+#include "drive_clock.h"
 #include "gz_input.h"
 #include "point_extras.h"
 #include "rawlog_archive.h"
+#include "side_file.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -61,13 +63,6 @@ mrpt::maps::CPointsMap::Ptr readKittiPoints(const std::string& file) {
     points->mark_as_modified();
     return points;
 }
-
-double secondsSince(double epoch_s, const mrpt::Clock::time_point& stamp) {
-    // In MRPT's ticks of 100 ns, so that the digits of times.txt come back.
-    const double wholeEpoch = std::floor(epoch_s);
-    const auto ticks = (stamp - mrpt::Clock::fromDouble(wholeEpoch)).count();
-    return static_cast<double>(ticks) / 1e7 - (epoch_s - wholeEpoch);
-}
 }  // namespace
 
 RawlogReader::RawlogReader(const std::string& path, std::string label, std::string imagesFolder)
@@ -85,6 +80,20 @@ std::optional<double> RawlogReader::fraction() const {
     if (in_->compressed()) return {};
     return static_cast<double>(in_->getPosition()) / static_cast<double>(in_->getTotalBytesCount());
 }
+
+Recording RawlogReader::recording() const {
+    Recording recording;
+    recording.kind = "rawlog";
+    if (meta_) {
+        if (meta_->sensorModel != "unknown") recording.sensor = meta_->sensorModel;
+        recording.motionCompensated = meta_->motionCompensated;
+    }
+    return recording;
+}
+
+SideFile RawlogReader::calibration() const { return sideFile(sidecarPath(path_, ".calib.txt")); }
+
+SideFile RawlogReader::truth() const { return sideFile(sidecarPath(path_, ".poses.txt")); }
 
 std::optional<Scan> RawlogReader::next() {
     const auto observation = nextObservation();

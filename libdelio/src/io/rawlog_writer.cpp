@@ -1,16 +1,15 @@
 #include "delio/io/rawlog_writer.h"
 
-#include <mrpt/core/Clock.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/serialization/CArchive.h>
 
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "delio/core/error.h"
 #include "delio/io/output_file.h"
+#include "drive_clock.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -35,13 +34,6 @@ mrpt::maps::CPointsMapXYZI::Ptr cloudOf(const std::vector<float>& xyzi) {
         cloud->setPointIntensity(i, p[3]);
     }
     return cloud;
-}
-
-/** MRPT counts time in 100 ns; rounding the sum of two doubles keeps times.txt's digits. */
-mrpt::Clock::time_point timeOf(double stamp_s, double epoch_s) {
-    const double wholeEpoch = std::floor(epoch_s);
-    const auto fraction = std::llround((stamp_s + (epoch_s - wholeEpoch)) * 1e7);
-    return mrpt::Clock::fromDouble(wholeEpoch) + mrpt::Clock::duration(fraction);
 }
 }  // namespace
 

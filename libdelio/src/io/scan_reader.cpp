@@ -3,8 +3,12 @@
 #include "delio/io/rawlog_reader.h"
 
 namespace delio::io {
+std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
+    return std::make_unique<RawlogReader>(source.path, source.label, source.imagesFolder);
+}
+
 std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label,
                                       const std::string& imagesFolder) {
-    return std::make_unique<RawlogReader>(path, label, imagesFolder);
+    return openScans({path, label, imagesFolder, ""});
 }
 }  // namespace delio::io

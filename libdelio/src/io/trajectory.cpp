@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <ostream>
+#include <sstream>
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
@@ -39,9 +40,7 @@ std::vector<double> numbersOf(const std::string& text, const std::string& where)
 
 /** Calls `use(numbers, where)` for every line that holds any; throws if there is none. */
 template <typename Use>
-void forEachLine(const std::string& path, const Use& use) {
-    std::ifstream in(path);
-    if (!in) throw Error("cannot read '" + path + "': no such file, or not readable");
+void forEachLine(std::istream& in, const std::string& path, const Use& use) {
     std::string text;
     bool any = false;
     for (std::size_t line = 1; std::getline(in, text); ++line) {
@@ -54,6 +53,12 @@ void forEachLine(const std::string& path, const Use& use) {
     }
     if (in.bad()) throw Error("cannot read '" + path + "': reading failed (is it a folder?)");
     if (!any) throw Error("'" + path + "' is empty: no line with numbers in it");
+}
+
+std::ifstream opened(const std::string& path) {
+    std::ifstream in(path);
+    if (!in) throw Error("cannot read '" + path + "': no such file, or not readable");
+    return in;
 }
 
 Eigen::Isometry3d poseOf3x4(const std::vector<double>& numbers, std::size_t first,
@@ -87,12 +92,10 @@ std::string rowOf(const std::vector<double>& numbers) {
     row.back() = '\n';
     return row;
 }
-}  // namespace
-
-Trajectory readTrajectory(const std::string& path) {
+Trajectory trajectoryOf(std::istream& in, const std::string& path) {
     Trajectory trajectory;
     std::size_t columns = 0;
-    forEachLine(path, [&](const std::vector<double>& numbers, const std::string& where) {
+    forEachLine(in, path, [&](const std::vector<double>& numbers, const std::string& where) {
         if (columns == 0) columns = numbers.size();
         if (numbers.size() != columns || (columns != 12 && columns != 8))
             throw Error(where + ": " + std::to_string(numbers.size()) +
@@ -103,6 +106,34 @@ Trajectory readTrajectory(const std::string& path) {
             appendTum(trajectory, numbers, where);
     });
     return trajectory;
+}
+
+Calibration calibrationOf(std::istream& in, const std::string& path) {
+    Calibration calibration;
+    std::string text;
+    for (std::size_t line = 1; std::getline(in, text); ++line) {
+        const std::string where = at(path, line);
+        // KITTI odometry writes `Tr:`, its development kit `Tr_velo_to_cam:`.
+        const auto colon = text.find(':');
+        const std::string key = text.substr(0, colon);
+        if (colon == std::string::npos || (key != "Tr" && key != "Tr_velo_to_cam")) continue;
+        const auto numbers = numbersOf(text.substr(colon + 1), where);
+        if (numbers.size() != 12) throw Error(where + ": Tr needs 12 numbers");
+        calibration.Tr = poseOf3x4(numbers, 0, where);
+        calibration.hasTr = true;
+    }
+    return calibration;
+}
+}  // namespace
+
+Trajectory readTrajectory(const std::string& path) {
+    auto in = opened(path);
+    return trajectoryOf(in, path);
+}
+
+Trajectory trajectoryIn(const std::string& text, const std::string& name) {
+    std::istringstream in(text);
+    return trajectoryOf(in, name);
 }
 
 std::string kittiRow(const Eigen::Isometry3d& pose) {
@@ -134,7 +165,8 @@ void writeTum(const Trajectory& trajectory, const std::string& path) {
 
 std::vector<double> readTimes(const std::string& path) {
     std::vector<double> times;
-    forEachLine(path, [&](const std::vector<double>& numbers, const std::string& where) {
+    auto in = opened(path);
+    forEachLine(in, path, [&](const std::vector<double>& numbers, const std::string& where) {
         if (numbers.size() != 1) throw Error(where + ": one time in seconds is wanted");
         if (!times.empty() && numbers[0] < times.back())
             throw Error(where + ": the times fall; they must be in order");
@@ -144,22 +176,13 @@ std::vector<double> readTimes(const std::string& path) {
 }
 
 Calibration readCalibration(const std::string& path) {
-    std::ifstream in(path);
-    if (!in) throw Error("cannot read '" + path + "': no such file, or not readable");
-    Calibration calibration;
-    std::string text;
-    for (std::size_t line = 1; std::getline(in, text); ++line) {
-        const std::string where = at(path, line);
-        // KITTI odometry writes `Tr:`, its development kit `Tr_velo_to_cam:`.
-        const auto colon = text.find(':');
-        const std::string key = text.substr(0, colon);
-        if (colon == std::string::npos || (key != "Tr" && key != "Tr_velo_to_cam")) continue;
-        const auto numbers = numbersOf(text.substr(colon + 1), where);
-        if (numbers.size() != 12) throw Error(where + ": Tr needs 12 numbers");
-        calibration.Tr = poseOf3x4(numbers, 0, where);
-        calibration.hasTr = true;
-    }
-    return calibration;
+    auto in = opened(path);
+    return calibrationOf(in, path);
+}
+
+Calibration calibrationIn(const std::string& text, const std::string& name) {
+    std::istringstream in(text);
+    return calibrationOf(in, name);
 }
 
 Trajectory lidarToCam0(const Trajectory& lidar, const Eigen::Isometry3d& Tr) {

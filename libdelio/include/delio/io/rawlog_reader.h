@@ -42,6 +42,9 @@ class RawlogReader : public ScanReader {
     /** Nothing where the file is compressed. */
     std::optional<double> fraction() const override;
     const std::optional<DriveMeta>& meta() const override { return meta_; }
+    Recording recording() const override;
+    SideFile calibration() const override;
+    SideFile truth() const override;
 
  private:
     mrpt::obs::CObservation::Ptr nextObservation();

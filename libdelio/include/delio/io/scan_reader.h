@@ -1,13 +1,21 @@
 #pragma once
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 
 #include "delio/io/drive_meta.h"
+#include "delio/io/recording.h"
 #include "delio/scan/scan.h"
 
 namespace delio::io {
+/** What lies beside a drive's scans: a text in one of KITTI's formats. */
+struct SideFile {
+    std::string name;  //!< of the file, for messages; also where there is none
+    std::string text;  //!< empty: there is none
+};
+
 /** Gives the scans of one LiDAR of a drive, one at a time and in order, whatever they are stored
  *  in. Memory does not grow with the length of the drive. */
 class ScanReader {
@@ -26,7 +34,8 @@ class ScanReader {
     /** Passes over the next scan without reading its points; false at the end. Throws as next(). */
     virtual bool skip() = 0;
 
-    /** Name of the sensor that is read; empty until its first scan was met. */
+    /** Name of the sensor that is read (of a ROS bag: the topic); empty until its first scan was
+     *  met. */
     virtual const std::string& label() const = 0;
     /** Other LiDARs met so far; a caller may want to say that they were not used. */
     virtual const std::set<std::string>& otherLabels() const = 0;
@@ -36,12 +45,37 @@ class ScanReader {
 
     /** What is known of the drive; nothing where the source does not say. */
     virtual const std::optional<DriveMeta>& meta() const = 0;
+
+    /** What was recognised so far; all of it once the first scan was read. */
+    virtual Recording recording() const = 0;
+
+    /** KITTI's calib.txt: `Tr`. */
+    virtual SideFile calibration() const { return {}; }
+    /** KITTI's poses.txt: a row a scan, skipped ones included, of cam0. */
+    virtual SideFile truth() const { return {}; }
 };
 
-/** The scans at `path`: a rawlog (see RawlogReader). `label`: the sensor to read; empty: that of
- *  the first scan. `imagesFolder`: where the files lie that a rawlog keeps outside of itself;
- *  empty: beside it. Throws Error if there is nothing to read, or if what is said about the drive
- *  (its meta.yaml) cannot be understood. */
+/** Where scans are, and what a source may need to be told. */
+struct ScanSource {
+    /** A rawlog (see RawlogReader), KITTI odometry or raw folder, folder of .pcd, .ply, .bin, .txt
+     *  or .csv, ROS 1 .bag, ROS 2 .db3, .mcap or the folder of either, pcap of a Velodyne or
+     *  Ouster; what it is is told by its content. "-": a rawlog or pcap from standard input. */
+    std::string path;
+    /** The sensor to read: a rawlog's sensorLabel, a bag's topic. Empty: that of the first scan of
+     *  a rawlog; of a bag its only one. */
+    std::string label;
+    /** Where the files lie that a rawlog keeps outside of itself; empty: beside it. */
+    std::string imagesFolder;
+    /** The sensor's description: an Ouster's json, a Velodyne's calibration (.xml, .yaml). Empty:
+     *  the .json beside the recording, what the recording holds, or the model's usual one. */
+    std::string sensorFile;
+};
+
+/** Opens `source` and reads its first two scans, so that all of recording() is known, and meta()
+ *  also where the points had to be looked at for it. Throws Error if there is nothing to read, what
+ *  it is is not known, or what is said about the drive cannot be understood; a fault in these scans
+ *  is thrown by next(). */
+std::unique_ptr<ScanReader> openScans(const ScanSource& source);
 std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label = "",
                                       const std::string& imagesFolder = "");
 }  // namespace delio::io

@@ -19,6 +19,8 @@ struct Trajectory {
  *  numbers, text, NaN, a 3x3 part that is no rotation (off by more than 1e-2), stamps that do not
  *  rise. */
 Trajectory readTrajectory(const std::string& path);
+/** The same of a text; `name` is what errors call it. */
+Trajectory trajectoryIn(const std::string& text, const std::string& name);
 
 /** A pose as KITTI writes it: 12 numbers, row-major 3x4, with the digits that give the same doubles
  *  back, and a line feed. */
@@ -41,6 +43,8 @@ struct Calibration {
 
 /** Throws Error for a missing file or a malformed Tr; a file without Tr gives hasTr = false. */
 Calibration readCalibration(const std::string& path);
+/** The same of a text; `name` is what errors call it. */
+Calibration calibrationIn(const std::string& text, const std::string& name);
 
 /** Tr * T * Tr^-1 for each pose: a trajectory of the LiDAR as one of cam0. */
 Trajectory lidarToCam0(const Trajectory& lidar, const Eigen::Isometry3d& Tr);

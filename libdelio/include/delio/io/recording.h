@@ -1,0 +1,21 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace delio::io {
+/** What a source of scans says of itself. */
+struct Recording {
+    std::string kind;                       //!< e.g. "ROS 1 bag, topic /points"
+    std::string sensor;                     //!< e.g. "Velodyne VLP-16"; empty: not known
+    std::optional<double> rate_hz;          //!< scans a second, where two were seen
+    bool pointTimes = false;                //!< points come with the times they were measured at
+    std::optional<bool> motionCompensated;  //!< by the recorder; nothing: it does not say
+    bool compensationMeasured = false;      //!< that was told from the points, not by the source
+    std::optional<std::size_t> scans;       //!< where they are counted without reading them
+};
+
+/** In one line: "Velodyne VLP-16, 10 Hz, points with times, not de-skewed by the recorder, 3213
+ *  scans (pcap)". */
+std::string describe(const Recording& recording);
+}  // namespace delio::io

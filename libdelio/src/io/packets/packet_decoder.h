@@ -1,0 +1,44 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "delio/scan/scan.h"
+
+namespace delio::io {
+/** Makes scans, a turn of the sensor each, of the UDP payloads that a LiDAR sends. */
+class PacketDecoder {
+ public:
+    PacketDecoder() = default;
+    virtual ~PacketDecoder() = default;
+    PacketDecoder(const PacketDecoder&) = delete;
+    PacketDecoder& operator=(const PacketDecoder&) = delete;
+
+    /** True where a payload of this size is one of the sensor's data packets. */
+    virtual bool takes(std::size_t bytes) const = 0;
+
+    /** One data packet; `received_s`: Unix seconds at which it was recorded. Throws Error where it
+     *  is of another sensor or layout. */
+    virtual void add(const std::uint8_t* payload, std::size_t bytes, double received_s) = 0;
+
+    /** There are no more packets: what there is of the last turn is a scan, too, if it is at least
+     *  half of one. */
+    virtual void finish() = 0;
+
+    /** The next complete scan, if there is one: points, rings, times, stamp_s and time (Unix
+     *  seconds); the index is the caller's. */
+    virtual std::optional<Scan> take() = 0;
+
+    /** e.g. "Velodyne VLP-16"; empty until it is known. */
+    virtual std::string sensor() const = 0;
+};
+
+/** `calibrationFile`: an .xml or .yaml as MRPT reads it; empty: the model's usual one. */
+std::unique_ptr<PacketDecoder> velodyneDecoder(const std::string& calibrationFile);
+
+/** `json`: the sensor's description as Ouster's tools write it; `name`: of its source, for errors.
+ *  Throws Error where it cannot be understood. */
+std::unique_ptr<PacketDecoder> ousterDecoder(const std::string& json, const std::string& name);
+}  // namespace delio::io

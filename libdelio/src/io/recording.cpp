@@ -1,0 +1,22 @@
+#include "delio/io/recording.h"
+
+#include <cstdio>
+
+namespace delio::io {
+std::string describe(const Recording& recording) {
+    std::string text = recording.sensor.empty() ? "a LiDAR of unknown model" : recording.sensor;
+    if (recording.rate_hz) {
+        char rate[32];
+        std::snprintf(rate, sizeof(rate), ", %.3g Hz", *recording.rate_hz);
+        text += rate;
+    }
+    text += recording.pointTimes ? ", points with times" : ", points without times";
+    const std::string how = recording.compensationMeasured ? " (measured)" : "";
+    if (recording.motionCompensated)
+        text += (*recording.motionCompensated ? ", de-skewed by the recorder"
+                                              : ", not de-skewed by the recorder") +
+                how;
+    if (recording.scans) text += ", " + std::to_string(*recording.scans) + " scans";
+    return text + " (" + recording.kind + ")";
+}
+}  // namespace delio::io
