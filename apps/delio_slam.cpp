@@ -1,4 +1,4 @@
-// delio-slam: a rawlog in; trajectory, pose graph, map, scene and pictures out.
+// delio-slam: a recording in; trajectory, pose graph, map, scene and pictures out.
 #include <malloc.h>
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 #include <tbb/global_control.h>
@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <future>
 #include <iostream>
-#include <sstream>
 #include <thread>
 
 #include "cli.h"
@@ -20,130 +18,16 @@
 #include "delio/io/scan_reader.h"
 #include "delio/picture/illustrate.h"
 #include "delio/run/run.h"
-#include "delio/version.h"
 #include "initial_pose.h"
 #include "live_view.h"
 #include "output_folder.h"
 #include "run_table.h"
 #include "several_drives.h"
+#include "slam_command_line.h"
 
 namespace {
 using namespace delio;
 namespace fs = std::filesystem;
-
-using Text = TCLAP::ValueArg<std::string>;
-using Number = TCLAP::ValueArg<cli::Count>;
-using Switch = TCLAP::SwitchArg;
-
-struct CommandLine {
-    /** `runs`: input and output are needed. */
-    explicit CommandLine(bool runs)
-        : input("i", "input",
-                "Rawlog to read, or a posegraph.g2o to optimise again; several drives are joined "
-                "where they meet",
-                runs, "IN.rawlog", cmd),
-          output("o", "output", "Folder for the results", runs, "", "OUTDIR", cmd) {}
-
-    TCLAP::CmdLine cmd{"delio-slam: LiDAR odometry, pose graph and map of a rawlog", ' ', kVersion};
-    TCLAP::MultiArg<std::string> input;
-    Text output;
-    Text profile{"", "profile", "accurate, paper or paper-literal", false, "accurate", "NAME", cmd};
-    Text config{"c",          "config", "Options that differ from the profile's", false, "",
-                "CONFIG.ini", cmd};
-    TCLAP::MultiArg<std::string> set{
-        "", "set", "One option; may be repeated", false, "section.key=value", cmd};
-    Switch printConfig{"", "print-config", "Print all options with their meanings, and end", cmd};
-    Number start{"", "start", "First scan, from 0", false, {}, "N", cmd};
-    Number count{"", "count", "How many scans to use at most; 0: all", false, {}, "N", cmd};
-    Number every{"", "every", "Use every N-th scan only", false, {1}, "N", cmd};
-    Text label{"", "sensor-label", "Sensor to use; default: that of the first scan", false, "", "L",
-               cmd};
-    Text images{"", "images", "Folder of the rawlog's external files", false, "", "DIR", cmd};
-    Number threads{"", "threads", "Threads to use; 0: all", false, {}, "N", cmd};
-    Text truth{"",
-               "ground-truth",
-               "True poses; default: IN.poses.txt if it is there",
-               false,
-               "",
-               "POSES.txt",
-               cmd};
-    std::vector<std::string> frames{"cam0", "vehicle"};
-    TCLAP::ValuesConstraint<std::string> frameNames{frames};
-    Text truthFrame{"", "ground-truth-frame", "Frame of the true poses", false, "cam0", &frameNames,
-                    cmd};
-    Text map{"",
-             "map",
-             "Localise the drive in a stored map: map.delio, or the folder of the run that made it",
-             false,
-             "",
-             "OLD",
-             cmd};
-    Text initialPose{"",
-                     "initial-pose",
-                     "Where the vehicle is at the first scan in that map, to some metres and "
-                     "degrees: looked for there only",
-                     false,
-                     "",
-                     "X,Y,Z,YAW_DEG",
-                     cmd};
-    Switch extend{"", "extend", "Add what is new to that map: OUTDIR/map.delio is both", cmd};
-    Switch keepDynamic{"", "keep-dynamic",
-                       "Write what was taken out of the map as moving, too: map_dynamic.ply", cmd};
-    Switch noMap{"", "no-map", "Leave out map, scene and map.png", cmd};
-    Switch noLoops{"", "no-loops", "Do not search for places that the drive comes back to", cmd};
-    Switch noGraph{"", "no-graph", "Leave out the pose graph's optimisation, and loops", cmd};
-    Switch gui{"", "gui", "Show the drive in a window while it is processed", cmd};
-    Switch force{"", "force", "Overwrite what exists", cmd};
-    Switch verbose{"", "verbose", "A line for each scan, and all the text of errors", cmd};
-};
-
-std::string textOf(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    in.peek();  // fails for a folder
-    if (!in) throw Error("cannot read '" + path + "': no such file, or not readable");
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
-/** From the weakest to the strongest: the profile, what the drive says of itself, -c, --set. */
-Options optionsFor(CommandLine& line, const std::optional<io::DriveMeta>& meta) {
-    Options options = Options::forDrive(line.profile.getValue(), meta);
-    if (line.config.isSet()) options.load(textOf(line.config.getValue()));
-    for (const auto& assignment : line.set.getValue()) options.set(assignment);
-    options.check();
-    return options;
-}
-
-/** Every option with its meaning. What follows from the drive unless it is set is a comment: a file
- *  made of this leaves it to the drive. */
-void printConfig(CommandLine& line) {
-    io::DriveMeta other;  // than a drive that says nothing, in all that options follow
-    other.verticalCorrectionDeg = 1;
-    other.motionCompensated = true;
-    other.source = "kitti-raw";
-    std::stringstream own, ofOther;
-    optionsFor(line, {}).write(own);
-    optionsFor(line, other).write(ofOther);
-    for (std::string text, otherText; std::getline(own, text) && std::getline(ofOther, otherText);)
-        std::cout << (text == otherText ? "" : "# ") << text << "\n";
-}
-
-run::RunSettings settingsFor(CommandLine& line, int argc, char** argv) {
-    run::RunSettings settings;
-    settings.profile = line.profile.getValue();
-    settings.command.assign(argv, argv + argc);
-    settings.folder = line.output.getValue();
-    settings.graph = !line.noGraph.getValue();
-    settings.map = !line.noMap.getValue();
-    settings.keepDynamic = line.keepDynamic.getValue();
-    settings.loops = !line.noLoops.getValue();
-    settings.storedMap = line.map.getValue();
-    settings.extend = line.extend.getValue();
-    if (line.initialPose.isSet()) settings.initialPose = initialPoseIn(line.initialPose.getValue());
-    settings.onWarning = cli::warn;
-    return settings;
-}
 
 struct Reading {
     std::optional<Scan> scan;  //!< nothing at the end
@@ -167,7 +51,7 @@ void warnOfOthers(const io::ScanReader& reader,
 /** Scans into the run until the end, the wanted count, an interrupt or a fault in the rawlog. With
  *  more than one thread each is read while the one before is registered: `read_ms` is what is
  *  waited for. */
-void process(CommandLine& line, Reading now, io::ScanReader& reader, double read_ms,
+void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double read_ms,
              run::Run& run) {
     const unsigned count = line.count.getValue(), passedOver = line.every.getValue() - 1;
     const auto policy = line.threads.getValue() == 1 ? std::launch::deferred : std::launch::async;
@@ -189,9 +73,14 @@ void process(CommandLine& line, Reading now, io::ScanReader& reader, double read
         run.fail(plainMessage(e));
     }
     warnOfOthers(reader, [&](const std::string& text) { run.warn(text); });
+    if (const auto scan = reader.recording().compensatedAfterAll)
+        run.warn("from scan " + std::to_string(*scan) +
+                 " on points look de-skewed by the recorder, at first they did not: run again with "
+                 "--set scan.deskew=false");
 }
 
-std::shared_ptr<LiveView> liveViewFor(CommandLine& line, const Options& options, run::Run& run) {
+std::shared_ptr<LiveView> liveViewFor(SlamCommandLine& line, const Options& options,
+                                      run::Run& run) {
     if (!line.gui.getValue()) return nullptr;
     auto view = std::make_shared<LiveView>(options.paper);
     run.attach(view);
@@ -199,10 +88,10 @@ std::shared_ptr<LiveView> liveViewFor(CommandLine& line, const Options& options,
 }
 
 /** One drive, from `input` to the folder `settings.folder`. */
-DriveResult slamDrive(CommandLine& line, const std::string& input, run::RunSettings settings) {
-    const auto reader = io::openScans(input, line.label.getValue(), line.images.getValue());
-    const Options options = optionsFor(line, reader->meta());
+DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunSettings settings) {
     Stopwatch watch;
+    const auto reader = io::openScans(sourceFor(line, input));
+    const Options options = optionsFor(line, reader->meta());
     auto first = read(*reader, line.start.getValue());
     const double read_ms = watch.lap_ms();
     if (!first.scan) {
@@ -215,12 +104,16 @@ DriveResult slamDrive(CommandLine& line, const std::string& input, run::RunSetti
     }
     if (cli::interrupted()) return {cli::kExitInterrupted};
     settings.sensorLabel = reader->label();
-    settings.drive = fs::path(input).stem().string();
+    settings.drive = io::nameOfDrive(input);
+    cli::inform(describe(reader->recording()));
     run::Run run(options, settings);
     if (!reader->meta())
-        run.warn("no '" + io::sidecarPath(input, ".meta.yaml") +
-                 "': no vertical correction, times are Unix seconds");
-    run.readSideFiles(input, line.truth.getValue(), line.truthFrame.getValue() == "cam0");
+        run.warn(
+            "nothing says what sensor this is (a meta.yaml would): no vertical correction, times "
+            "are "
+            "taken as they are");
+    run.readSideFiles(reader->calibration(), reader->truth(), line.truth.getValue(),
+                      line.truthFrame.getValue() == "cam0");
     const auto view = liveViewFor(line, options, run);
     process(line, std::move(first), *reader, read_ms, run);
 
@@ -243,7 +136,8 @@ DriveResult slamDrive(CommandLine& line, const std::string& input, run::RunSetti
 }
 
 /** IN may be a pose graph: it is optimised again. */
-int optimiseGraph(CommandLine& line, const std::string& input, const run::RunSettings& settings) {
+int optimiseGraph(SlamCommandLine& line, const std::string& input,
+                  const run::RunSettings& settings) {
     const auto record = run::optimiseAgain(io::loadG2o(input), optionsFor(line, {}), settings);
     const std::string fault =
         run::RunFolder(settings.folder).write(record, {}, picture::illustrate);
@@ -251,33 +145,8 @@ int optimiseGraph(CommandLine& line, const std::string& input, const run::RunSet
     return cli::kExitSuccess;
 }
 
-bool isGraph(const std::string& input) { return fs::path(input).extension() == ".g2o"; }
-
-/** Why the command line contradicts itself; empty: it does not. */
-std::string contradictionIn(CommandLine& line) {
-    const auto& inputs = line.input.getValue();
-    if (line.every.getValue() == 0) return "--every has to be 1 or more";
-    if (line.initialPose.isSet() && !line.map.isSet())
-        return "--initial-pose is a pose in a stored map: it needs --map";
-    if (line.extend.isSet() && !line.map.isSet())
-        return "--extend adds to a stored map: it needs --map";
-    if (line.noMap.isSet() && line.keepDynamic.isSet())
-        return "--keep-dynamic keeps what is taken out of the map: it does not go with --no-map";
-    if (line.noMap.isSet() && (line.extend.isSet() || inputs.size() > 1))
-        return "--no-map does not go with what is to become one map";
-    if (inputs.size() < 2) return "";
-    if (line.map.isSet() && !line.extend.isSet())
-        return "several drives are joined to one map: with --map that needs --extend";
-    if (line.truth.isSet() || line.images.isSet() || line.initialPose.isSet())
-        return "--ground-truth, --images and --initial-pose are one drive's: they do not go with "
-               "several";
-    for (const auto& input : inputs)
-        if (isGraph(input)) return "a pose graph is optimised alone";
-    return "";
-}
-
 /** Nothing that is read may be overwritten. */
-void checkFolders(CommandLine& line) {
+void checkFolders(SlamCommandLine& line) {
     if (!line.map.isSet()) return;
     const fs::path map = run::storedMapIn(line.map.getValue());
     std::error_code ignored;
@@ -286,7 +155,7 @@ void checkFolders(CommandLine& line) {
                     "': choose another folder than its own");
 }
 
-int slam(CommandLine& line, int argc, char** argv) {
+int slam(SlamCommandLine& line, int argc, char** argv) {
     cli::catchInterrupts();
     try {
         optionsFor(line, {});
@@ -306,9 +175,8 @@ int slam(CommandLine& line, int argc, char** argv) {
                                       threads > 0 ? threads : std::thread::hardware_concurrency());
     const auto& inputs = line.input.getValue();
     for (const auto& input : inputs)
-        if (!fs::is_regular_file(input))
-            throw Error("cannot read '" + input +
-                        "': " + (fs::exists(input) ? "it is no file" : "no such file"));
+        if (input != "-" && !fs::exists(input))
+            throw Error("cannot read '" + input + "': no such file or folder");
     checkFolders(line);
     const OutputFolder folder(line.output.getValue(), line.force.getValue());
     const auto settings = settingsFor(line, argc, argv);
@@ -326,7 +194,7 @@ int main(int argc, char** argv) {
     mallopt(M_MMAP_THRESHOLD, 1 << 20);
     const bool runs = std::none_of(
         argv, argv + argc, [](const char* word) { return std::string(word) == "--print-config"; });
-    CommandLine line(runs);
+    SlamCommandLine line(runs);
     const int exitCode =
         cli::run(line.cmd, argc, argv, line.verbose, [&] { return slam(line, argc, argv); });
     if (line.gui.getValue()) {

@@ -10,6 +10,7 @@
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/io/output_file.h"
+#include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
 #include "delio/run/run_folder.h"
 
@@ -26,7 +27,7 @@ struct Drive {
 std::list<Drive> drivesOf(const std::vector<std::string>& inputs) {
     std::list<Drive> drives;
     for (const auto& input : inputs) {
-        const std::string name = fs::path(input).stem().string();
+        const std::string name = io::nameOfDrive(input);
         if (std::any_of(drives.begin(), drives.end(),
                         [&](const Drive& other) { return other.name == name; }))
             throw Error("two drives are called '" + name +

@@ -1,10 +1,12 @@
 #include "gz_input.h"
 
+#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <stdexcept>
 
 #include "delio/core/error.h"
@@ -12,7 +14,10 @@
 namespace delio::io {
 GzInput::GzInput(const std::string& path) : file_(nullptr) {
     std::error_code fault;
-    if (std::filesystem::is_regular_file(path, fault)) {
+    if (path == "-") {
+        size_ = std::numeric_limits<std::uint64_t>::max();
+        file_ = gzdopen(dup(STDIN_FILENO), "rb");
+    } else if (std::filesystem::is_regular_file(path, fault)) {
         size_ = std::filesystem::file_size(path, fault);
         file_ = gzopen(path.c_str(), "rb");
     }
@@ -53,7 +58,9 @@ void GzInput::skipToEnd() {
 
 bool GzInput::endedWell() const { return ended_; }
 
-bool GzInput::compressed() const { return gzdirect(file_) == 0; }
+bool GzInput::compressed() const {
+    return size_ == std::numeric_limits<std::uint64_t>::max() || gzdirect(file_) == 0;
+}
 
 std::uint64_t GzInput::getPosition() const { return static_cast<std::uint64_t>(gztell(file_)); }
 

@@ -12,7 +12,7 @@ namespace delio::io {
  *  throw, so that no object is made of bytes that are not in the file. */
 class GzInput : public mrpt::io::CStream {
  public:
-    /** Throws Error if the file cannot be opened. */
+    /** Path "-": standard input. Throws Error if the file cannot be opened. */
     explicit GzInput(const std::string& path);
     ~GzInput() override;
     GzInput(const GzInput&) = delete;
@@ -29,6 +29,7 @@ class GzInput : public mrpt::io::CStream {
      */
     bool endedWell() const;
 
+    /** Or a stream: what is left in it is not known. */
     bool compressed() const;
     /** Position in what comes out; in an uncompressed file the same as in the file. */
     std::uint64_t getPosition() const override;

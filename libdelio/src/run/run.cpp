@@ -11,6 +11,7 @@
 #include "delio/localisation/join_maps.h"
 #include "delio/run/doubts.h"
 #include "delio/run/run_folder.h"
+#include "io/side_file.h"
 
 namespace delio::run {
 namespace fs = std::filesystem;
@@ -71,22 +72,28 @@ void Run::fail(const std::string& fault) {
 }
 
 void Run::readSideFiles(const std::string& recording, const std::string& truth, bool truthIsCam0) {
-    const std::string calib = io::sidecarPath(recording, ".calib.txt");
-    if (fs::exists(calib)) {
-        record_.calibration = io::readCalibration(calib);
+    readSideFiles(io::sideFile(io::sidecarPath(recording, ".calib.txt")),
+                  io::sideFile(io::sidecarPath(recording, ".poses.txt")), truth, truthIsCam0);
+}
+
+void Run::readSideFiles(const io::SideFile& calib, const io::SideFile& poses,
+                        const std::string& truth, bool truthIsCam0) {
+    if (!calib.text.empty()) {
+        record_.calibration = io::calibrationIn(calib.text, calib.name);
         if (!record_.calibration.hasTr)
-            warn("'" + calib + "' has no Tr: trajectory_kitti_cam0.txt is left out");
+            warn("'" + calib.name + "' has no Tr: trajectory_kitti_cam0.txt is left out");
     }
-    const std::string beside = io::sidecarPath(recording, ".poses.txt");
-    if (truth.empty() && !fs::exists(beside)) return;
+    if (truth.empty() && poses.text.empty()) return;
     truthIsCam0_ = truth.empty() || truthIsCam0;
     if (truthIsCam0_ && !record_.calibration.hasTr) {
-        const std::string why = "true poses of cam0 need Tr, and '" + calib + "' has none";
+        const std::string why =
+            "true poses of cam0 need Tr, and " +
+            (calib.name.empty() ? "there is no calib.txt" : "'" + calib.name + "' has none");
         if (!truth.empty()) throw Error(why + "; give poses of the vehicle instead");
         warn(why + ": no evaluation");
         return;
     }
-    truth_ = io::readTrajectory(truth.empty() ? beside : truth);
+    truth_ = truth.empty() ? io::trajectoryIn(poses.text, poses.name) : io::readTrajectory(truth);
     truthWasAskedFor_ = !truth.empty();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <mrpt/obs/CObservation.h>
+#include <mrpt/poses/CPose3D.h>
 
 #include <cstddef>
 #include <deque>
@@ -47,15 +48,24 @@ class RawlogReader : public ScanReader {
     SideFile truth() const override;
 
  private:
+    /** A sensor without a label. */
+    struct Unlabelled {
+        std::string className;
+        mrpt::poses::CPose3D pose;
+    };
+
     mrpt::obs::CObservation::Ptr nextObservation();
+    /** The sensor's label; of those without one the first's is empty, the others, told apart by
+     *  class and pose on the vehicle, are `unlabelled-2` and so on. */
+    std::string nameOf(const mrpt::obs::CObservation& observation);
     bool readEntry();
     std::vector<std::string> imagesFolders() const;
     /** Where the extras of an embedded scan's points would lie, without the extension. */
     std::string embeddedStem(std::size_t scan) const;
-    /** Returns the file that the points came from; empty where they are embedded. */
-    std::string loadExternal(mrpt::obs::CObservation& observation) const;
 
     std::string path_, label_, imagesFolder_;
+    bool chosen_;  //!< label_ is the sensor's; it may be empty
+    std::vector<Unlabelled> unlabelled_;
     std::optional<DriveMeta> meta_;
     bool ended_ = false;
     std::size_t count_ = 0;

@@ -12,7 +12,10 @@ struct Recording {
     bool pointTimes = false;                //!< points come with the times they were measured at
     std::optional<bool> motionCompensated;  //!< by the recorder; nothing: it does not say
     bool compensationMeasured = false;      //!< that was told from the points, not by the source
-    std::optional<std::size_t> scans;       //!< where they are counted without reading them
+    /** A scan whose points tell that they were de-skewed, although the first ones, of a vehicle
+     *  that stood, did not. */
+    std::optional<std::size_t> compensatedAfterAll;
+    std::optional<std::size_t> scans;  //!< where they are counted without reading them
 };
 
 /** In one line: "Velodyne VLP-16, 10 Hz, points with times, not de-skewed by the recorder, 3213

@@ -78,4 +78,7 @@ struct ScanSource {
 std::unique_ptr<ScanReader> openScans(const ScanSource& source);
 std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label = "",
                                       const std::string& imagesFolder = "");
+
+/** What a drive is called by: its file's name without the extension, or its folder's. */
+std::string nameOfDrive(const std::string& path);
 }  // namespace delio::io

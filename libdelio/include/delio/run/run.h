@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "delio/io/scan_reader.h"
 #include "delio/run/run_maps.h"
 #include "delio/run/run_record.h"
 #include "delio/slam/graph_builder.h"
@@ -43,9 +44,12 @@ class Run {
  public:
     Run(const Options& options, const RunSettings& settings);
 
-    /** Calibration and true poses. `truth`: a pose file; empty: that beside `recording`, if any.
-     *  `truthIsCam0`: they are KITTI's, otherwise the vehicle's. Throws Error if the truth cannot
-     * be read, or is of cam0 and there is no Tr. */
+    /** Calibration and true poses, as the drive's reader has them. `truth`: a pose file that
+     *  replaces `poses`. `truthIsCam0`: it is KITTI's, otherwise the vehicle's. Throws Error if the
+     *  truth cannot be read, or is of cam0 and there is no Tr. */
+    void readSideFiles(const io::SideFile& calib, const io::SideFile& poses,
+                       const std::string& truth = "", bool truthIsCam0 = true);
+    /** The same of the files beside the rawlog `recording`. */
     void readSideFiles(const std::string& recording, const std::string& truth = "",
                        bool truthIsCam0 = true);
 
