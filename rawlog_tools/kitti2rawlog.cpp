@@ -7,18 +7,24 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
+#include "delio/io/kitti_drive.h"
 #include "delio/io/rawlog_writer.h"
 #include "delio/version.h"
-#include "kitti_drive.h"
 
 namespace {
 using namespace delio;
 
-std::vector<float> readScan(const std::filesystem::path& file) {
+/** Throws Error for a scan that is cut off. */
+std::uintmax_t sizeOf(const std::filesystem::path& file) {
     const auto bytes = std::filesystem::file_size(file);
     if (bytes % (4 * sizeof(float)) != 0)
         throw Error("'" + file.string() + "' is cut off: its size (" + std::to_string(bytes) +
                     " bytes) is no multiple of 16");
+    return bytes;
+}
+
+std::vector<float> readScan(const std::filesystem::path& file) {
+    const auto bytes = sizeOf(file);
     std::vector<float> xyzi(bytes / sizeof(float));
     std::ifstream in(file, std::ios::binary);
     in.read(reinterpret_cast<char*>(xyzi.data()), static_cast<std::streamsize>(bytes));
@@ -39,6 +45,8 @@ struct Arguments {
     TCLAP::ValueArg<std::string> output{"o",          "output", "Rawlog to write", true, "",
                                         "OUT.rawlog", cmd};
     TCLAP::SwitchArg embed{"", "embed", "Keep the points in the rawlog, not in OUT_Images/", cmd};
+    TCLAP::SwitchArg link{"", "link", "OUT_Images/ links to the scans, which stay where they are",
+                          cmd};
     TCLAP::ValueArg<cli::Count> start{"",  "start", "First scan to take, from 0", false, {},
                                       "N", cmd};
     TCLAP::ValueArg<cli::Count> count{"",  "count", "How many scans to take; 0: all", false, {},
@@ -50,17 +58,23 @@ struct Arguments {
 };
 
 /** False if Ctrl-C came before the last scan. */
-bool writeScans(const KittiDrive& drive, io::RawlogWriter& writer) {
+bool writeScans(const io::KittiDrive& drive, bool link, io::RawlogWriter& writer) {
     cli::Progress progress("converting", drive.scans.size());
     for (std::size_t i = 0; i < drive.scans.size(); ++i) {
         if (cli::interrupted()) return false;
-        writer.add(drive.times_s[i], drive.meta.epoch_s, readScan(drive.scans[i]));
+        const auto& file = drive.scans[i];
+        if (link) {
+            sizeOf(file);
+            writer.addLinked(drive.times_s[i], drive.meta.epoch_s, file.string());
+        } else {
+            writer.add(drive.times_s[i], drive.meta.epoch_s, readScan(file));
+        }
         progress.update(i + 1);
     }
     return true;
 }
 
-std::vector<std::string> timeRowsOf(const KittiDrive& drive) {
+std::vector<std::string> timeRowsOf(const io::KittiDrive& drive) {
     if (!drive.timeRows.empty()) return drive.timeRows;
     std::vector<std::string> rows;
     for (const double time : drive.times_s) {
@@ -73,14 +87,18 @@ std::vector<std::string> timeRowsOf(const KittiDrive& drive) {
 
 int convert(Arguments& args) {
     cli::catchInterrupts();
+    if (args.link.getValue() && args.embed.getValue()) {
+        cli::inform("--link and --embed contradict each other; choose one");
+        return cli::kExitBadCommandLine;
+    }
     auto drive =
-        openKittiDrive(args.input.getValue(), args.start.getValue(), args.count.getValue());
+        io::openKittiDrive(args.input.getValue(), args.start.getValue(), args.count.getValue());
     for (const auto& warning : drive.warnings) cli::warn(warning);
     drive.meta.generator = std::string("kitti2rawlog (delio ") + kVersion + ")";
     const std::string& output = args.output.getValue();
     io::RawlogWriter writer(output, args.label.getValue(), args.embed.getValue(),
                             args.force.getValue());
-    if (!writeScans(drive, writer)) return cli::kExitInterrupted;
+    if (!writeScans(drive, args.link.getValue(), writer)) return cli::kExitInterrupted;
     writer.finish(drive.meta, joined(timeRowsOf(drive)), drive.calibText, joined(drive.poseRows));
     cli::inform("wrote " + std::to_string(writer.scans()) + " scans to '" + output + "'");
     return cli::kExitSuccess;

@@ -13,6 +13,7 @@
 
 namespace delio::io {
 namespace fs = std::filesystem;
+using mrpt::obs::CObservationPointCloud;
 
 namespace {
 const char* const kSideFiles[] = {".meta.yaml", ".times.txt",  ".calib.txt",
@@ -74,20 +75,35 @@ RawlogWriter::~RawlogWriter() {
 }
 
 void RawlogWriter::add(double stamp_s, double epoch_s, const std::vector<float>& xyzi) {
-    mrpt::obs::CObservationPointCloud observation;
-    observation.sensorLabel = label_;
-    observation.timestamp = timeOf(stamp_s, epoch_s);
-    if (embed_) {
-        observation.pointcloud = cloudOf(xyzi);
-    } else {
+    if (!embed_) {
         const std::string file = extraFile(".bin");
         writeFloats(file, xyzi);
-        observation.setAsExternalStorage(
-            fs::path(file).filename().string(),
-            mrpt::obs::CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+        appendExternal(stamp_s, epoch_s, file);
+        return;
     }
-    auto archive = mrpt::serialization::archiveFrom(out_);
-    archive << observation;
+    CObservationPointCloud observation;
+    observation.sensorLabel = label_;
+    observation.timestamp = timeOf(stamp_s, epoch_s);
+    observation.pointcloud = cloudOf(xyzi);
+    mrpt::serialization::archiveFrom(out_) << observation;
+    ++count_;
+}
+
+void RawlogWriter::addLinked(double stamp_s, double epoch_s, const std::string& file) {
+    const std::string link = extraFile(".bin");
+    std::error_code fault;
+    fs::create_symlink(fs::absolute(file), link, fault);
+    if (fault) throw Error("cannot link '" + link + "' to '" + file + "': " + fault.message());
+    appendExternal(stamp_s, epoch_s, link);
+}
+
+void RawlogWriter::appendExternal(double stamp_s, double epoch_s, const std::string& file) {
+    CObservationPointCloud observation;
+    observation.sensorLabel = label_;
+    observation.timestamp = timeOf(stamp_s, epoch_s);
+    observation.setAsExternalStorage(fs::path(file).filename().string(),
+                                     CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+    mrpt::serialization::archiveFrom(out_) << observation;
     ++count_;
 }
 

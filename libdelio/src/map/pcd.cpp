@@ -1,10 +1,8 @@
 #include "delio/map/pcd.h"
 
 #include <cstring>
-#include <optional>
-#include <sstream>
 
-#include "delio/core/numbers.h"
+#include "io/folders/pcd_header.h"
 #include "point_file.h"
 
 namespace delio::map {
@@ -14,69 +12,6 @@ void packColour(const mrpt::img::TColor& colour, char* to) {
     const std::uint32_t rgb =
         std::uint32_t{colour.R} << 16 | std::uint32_t{colour.G} << 8 | colour.B;
     std::memcpy(to, &rgb, sizeof(rgb));
-}
-
-struct Header {
-    std::vector<std::string> names, sizes, types, counts;
-    std::optional<std::size_t> points;
-    std::string data;
-};
-
-/** Reads up to and including the line `DATA`. */
-Header readHeader(PointFile& file) {
-    Header header;
-    std::optional<std::size_t> width, height;
-    std::string line;
-    for (unsigned row = 0; row < 1000 && file.line(line); ++row) {
-        std::istringstream words(line);
-        std::string keyword, word;
-        if (!(words >> keyword) || keyword[0] == '#') continue;
-        std::vector<std::string> rest;
-        while (words >> word) rest.push_back(word);
-        const auto number = numberIn<std::size_t>(rest.empty() ? "" : rest[0]);
-        if (keyword == "FIELDS" || keyword == "COLUMNS")
-            header.names = rest;
-        else if (keyword == "SIZE")
-            header.sizes = rest;
-        else if (keyword == "TYPE")
-            header.types = rest;
-        else if (keyword == "COUNT")
-            header.counts = rest;
-        else if (keyword == "WIDTH")
-            width = number;
-        else if (keyword == "HEIGHT")
-            height = number;
-        else if (keyword == "POINTS")
-            header.points = number;
-        else if (keyword == "DATA" && !rest.empty()) {
-            header.data = rest[0];
-            if (!header.points && width && height) header.points = *width * *height;
-            return header;
-        } else if (keyword != "VERSION" && keyword != "VIEWPOINT")
-            break;
-    }
-    file.refuse("it has no whole header");
-}
-
-/** A field with a count of more than one is as many columns, of which the first has its name. */
-std::vector<Column> columnsOf(const Header& header, const PointFile& file) {
-    const std::size_t fields = header.names.size();
-    if (fields == 0 || header.sizes.size() != fields || header.types.size() != fields ||
-        (!header.counts.empty() && header.counts.size() != fields))
-        file.refuse("FIELDS, SIZE, TYPE and COUNT do not have as many words");
-    std::vector<Column> columns;
-    for (std::size_t i = 0; i < fields; ++i) {
-        const auto bytes = numberIn<std::size_t>(header.sizes[i]);
-        const auto count =
-            numberIn<std::size_t>(header.counts.empty() ? std::string("1") : header.counts[i]);
-        constexpr std::size_t kMost = 4096;  // PCL's descriptors have some hundreds
-        if (!bytes || header.types[i].size() != 1 || !isNumber(header.types[i][0], *bytes) ||
-            !count || *count > kMost)
-            file.refuse("its field '" + header.names[i] + "' is of no known type");
-        for (std::size_t k = 0; k < *count; ++k)
-            columns.push_back({k == 0 ? header.names[i] : "", header.types[i][0], *bytes});
-    }
-    return columns;
 }
 }  // namespace
 
@@ -100,7 +35,7 @@ void savePcd(const MapPoints& points, const std::string& path, const Colouring& 
 
 MapPoints loadPcd(const std::string& path) {
     PointFile file(path, "PCD");
-    const Header header = readHeader(file);
+    const auto header = io::readPcdHeader(file);
     if (header.data == "binary_compressed")
         file.refuse(
             "its data is compressed; write it once more as ascii or binary "
@@ -108,6 +43,6 @@ MapPoints loadPcd(const std::string& path) {
     if (header.data != "ascii" && header.data != "binary")
         file.refuse("its data is '" + header.data + "'");
     if (!header.points) file.refuse("it does not say how many points it has");
-    return file.points(columnsOf(header, file), *header.points, header.data == "ascii");
+    return file.points(io::columnsOf(header, file), *header.points, header.data == "ascii");
 }
 }  // namespace delio::map

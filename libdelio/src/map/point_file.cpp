@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
-#include <locale>
 #include <string_view>
 
-#include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/io/output_file.h"
 
@@ -110,8 +109,6 @@ void put(MapPoint& point, const Found& found, float value) {
 }
 }  // namespace
 
-bool isNumber(char kind, std::size_t bytes) { return readerOf(kind, bytes) != nullptr; }
-
 std::vector<Column> writtenColumns(bool pcd) {
     std::vector<Column> columns;
     for (const auto& field : kFields) {
@@ -124,8 +121,7 @@ std::vector<Column> writtenColumns(bool pcd) {
 void writePoints(const std::string& path, const std::string& header, const MapPoints& points,
                  const Colours& colours, std::size_t colourBytes,
                  void (*packColour)(const mrpt::img::TColor& colour, char* to)) {
-    std::size_t stride = colourBytes;
-    for (const auto& column : writtenColumns(false)) stride += column.bytes;
+    const std::size_t stride = colourBytes + io::strideOf(writtenColumns(false));
     io::replaceFile(path, [&](const std::string& temporary) {
         std::ofstream out(temporary, std::ios::binary);
         out << header;
@@ -152,32 +148,6 @@ void writePoints(const std::string& path, const std::string& header, const MapPo
     });
 }
 
-PointFile::PointFile(const std::string& path, std::string kind)
-    : path_(path), kind_(std::move(kind)), in_(path, std::ios::binary) {
-    if (!in_) throw Error("cannot read '" + path + "': there is no such file");
-    in_.imbue(std::locale::classic());
-}
-
-void PointFile::refuse(const std::string& why) const {
-    throw Error("'" + path_ + "' is not a " + kind_ + " that can be read: " + why);
-}
-
-void PointFile::refuseCut(std::size_t done, std::size_t count) const {
-    refuse("it is cut off or malformed after " + std::to_string(done) + " of " +
-           std::to_string(count) + " points");
-}
-
-/** 0 where that cannot be told (a pipe). */
-std::size_t PointFile::bytesLeft() {
-    const auto here = in_.tellg();
-    in_.seekg(0, std::ios::end);
-    const auto end = in_.tellg();
-    in_.clear();
-    if (here < 0 || end < here) return 0;
-    in_.seekg(here);
-    return static_cast<std::size_t>(end - here);
-}
-
 MapPoints PointFile::points(const std::vector<Column>& columns, std::size_t count, bool ascii) {
     std::vector<Found> found;
     for (const auto& field : kFields) {
@@ -190,8 +160,7 @@ MapPoints PointFile::points(const std::vector<Column>& columns, std::size_t coun
         if (&field < kFields + kPlaces && found.size() == before)
             refuse("its points have no '" + std::string(field.ply) + "'");
     }
-    std::size_t stride = 0;
-    for (const auto& column : columns) stride += column.bytes;
+    const std::size_t stride = io::strideOf(columns);
     // A header may promise more than there is: what is reserved is what the file has room for.
     const std::size_t least = ascii ? 2 * columns.size() - 1 : stride;
     MapPoints points;
@@ -215,8 +184,8 @@ MapPoints PointFile::points(const std::vector<Column>& columns, std::size_t coun
     std::vector<char> block(kBlock * stride);
     for (std::size_t done = 0; done < count;) {
         const std::size_t wanted = std::min(kBlock, count - done);
-        in_.read(block.data(), static_cast<std::streamsize>(wanted * stride));
-        const std::size_t whole = static_cast<std::size_t>(in_.gcount()) / stride;
+        stream().read(block.data(), static_cast<std::streamsize>(wanted * stride));
+        const std::size_t whole = static_cast<std::size_t>(stream().gcount()) / stride;
         for (std::size_t i = 0; i < whole; ++i) {
             MapPoint point;
             for (const auto& each : found)

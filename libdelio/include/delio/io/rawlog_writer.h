@@ -16,7 +16,7 @@ constexpr double kDriveEpoch_s = 1316995200.0;
 /** Writes a drive as a rawlog of CObservationPointCloud in the observations-only format, with its
  *  side files. The rawlog is uncompressed (RawLogViewer needs that) and gets its name only in
  *  finish(): an unfinished drive leaves nothing under it. Scans lie in `OUT_Images/NNNNNN.bin`
- *  (KITTI's float32 x y z intensity) or, embedded, in the rawlog. */
+ *  (KITTI's float32 x y z intensity; a file or a link to one) or, embedded, in the rawlog. */
 class RawlogWriter {
  public:
     /** `path` ends in .rawlog. Throws Error if the rawlog, OUT_Images or a side file exists and
@@ -29,6 +29,11 @@ class RawlogWriter {
 
     /** Appends a scan. `stamp_s`: seconds since `epoch_s`; `xyzi`: four floats a point. */
     void add(double stamp_s, double epoch_s, const std::vector<float>& xyzi);
+
+    /** The same, of a scan that stays in `file`, which is in KITTI's format: OUT_Images holds a
+     *  symbolic link to its absolute path. Not for embedded scans. Throws Error where that fails.
+     */
+    void addLinked(double stamp_s, double epoch_s, const std::string& file);
 
     /** Path of the file that belongs to the scan to be added next, `OUT_Images/NNNNNN` +
      *  extension (while the drive is being written: in a temporary folder that finish() renames).
@@ -45,6 +50,9 @@ class RawlogWriter {
     std::size_t scans() const { return count_; }
 
  private:
+    /** Appends the observation of a scan in `file`, of which the rawlog has the name only. */
+    void appendExternal(double stamp_s, double epoch_s, const std::string& file);
+
     std::string path_, label_, partialRawlog_, partialImages_, images_;
     bool embed_;
     bool finished_ = false;

@@ -1,4 +1,4 @@
-#include "kitti_drive.h"
+#include "delio/io/kitti_drive.h"
 
 #include <mrpt/poses/CPose3D.h>
 
@@ -8,13 +8,13 @@
 #include <map>
 #include <sstream>
 
+#include "date_text.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/core/numbers.h"
 #include "delio/io/rawlog_writer.h"
 #include "delio/io/trajectory.h"
 
-namespace delio {
+namespace delio::io {
 namespace fs = std::filesystem;
 // Poses are composed by MRPT: another order of sums would change the last digits of what is
 // written.
@@ -99,17 +99,18 @@ void useNominalTimes(KittiDrive& drive, const std::string& missing) {
 
 void readOdometrySequence(const fs::path& folder, KittiDrive& drive) {
     drive.meta.source = "kitti-odometry";
-    drive.meta.epoch_s = io::kDriveEpoch_s;
+    drive.meta.epoch_s = kDriveEpoch_s;
     const fs::path times = folder / "times.txt";
     if (fs::exists(times)) {
-        drive.times_s = rowsOf(drive.scans, io::readTimes(times.string()), times);
+        drive.times_s = rowsOf(drive.scans, readTimes(times.string()), times);
         drive.timeRows = rowsOf(drive.scans, numberLinesOf(times), times);
     } else {
         useNominalTimes(drive, "'" + times.string() + "'");
     }
     const fs::path calib = folder / "calib.txt";
+    drive.calibName = calib.string();
     if (fs::exists(calib)) {
-        if (!io::readCalibration(calib.string()).hasTr)
+        if (!readCalibration(calib.string()).hasTr)
             drive.warnings.push_back("'" + calib.string() +
                                      "' has no Tr: nothing can be brought to the cam0 frame");
         drive.calibText = textOf(calib);
@@ -118,23 +119,20 @@ void readOdometrySequence(const fs::path& folder, KittiDrive& drive) {
     const fs::path whole = wholePath(folder);
     for (const auto& poses : {folder / "poses.txt", whole.parent_path().parent_path() / "poses" /
                                                         (whole.filename().string() + ".txt")}) {
+        if (drive.posesName.empty()) drive.posesName = poses.string();
         if (!fs::exists(poses)) continue;
-        io::readTrajectory(poses.string());  // for its checks; the rows travel as they are
+        drive.posesName = poses.string();
+        readTrajectory(poses.string());  // for its checks; the rows travel as they are
         drive.poseRows = rowsOf(drive.scans, numberLinesOf(poses), poses);
         break;
     }
 }
 
-/** Unix seconds of "2011-09-26 13:02:25.951199337" (UTC is assumed; KITTI gives no zone). */
+/** Unix seconds of a line of timestamps.txt. */
 double stampOf(const std::string& line, const fs::path& file) {
-    std::tm date{};
-    char fraction[16] = "0";
-    if (std::sscanf(line.c_str(), "%d-%d-%d %d:%d:%d.%15[0-9]", &date.tm_year, &date.tm_mon,
-                    &date.tm_mday, &date.tm_hour, &date.tm_min, &date.tm_sec, fraction) < 6)
-        throw Error("'" + file.string() + "': '" + line + "' is not a date and time");
-    date.tm_year -= 1900;
-    date.tm_mon -= 1;
-    return static_cast<double>(timegm(&date)) + *numberIn<double>(std::string("0.") + fraction);
+    const auto stamp = unixTimeOfDate(line);
+    if (!stamp) throw Error("'" + file.string() + "': '" + line + "' is not a date and time");
+    return *stamp;
 }
 
 using Rows = std::map<std::string, std::vector<double>>;
@@ -191,7 +189,7 @@ void readOxts(const fs::path& folder, const CPose3D& imuToCam0, KittiDrive& driv
         }
         const CPose3D imu = poseOfOxts(file, scale);
         if (drive.poseRows.empty()) first = imu;
-        drive.poseRows.push_back(io::kittiRow(fromMrpt(imuToCam0 + (imu - first) + (-imuToCam0))));
+        drive.poseRows.push_back(kittiRow(fromMrpt(imuToCam0 + (imu - first) + (-imuToCam0))));
         drive.poseRows.back().pop_back();  // rows are kept without their line feed
     }
 }
@@ -206,13 +204,15 @@ void readRawDrive(const fs::path& folder, KittiDrive& drive) {
         for (const auto& line : lines)
             drive.times_s.push_back(stampOf(line, times) - drive.meta.epoch_s);
     } else {
-        drive.meta.epoch_s = io::kDriveEpoch_s;
+        drive.meta.epoch_s = kDriveEpoch_s;
         useNominalTimes(drive, "'" + times.string() + "'");
     }
     const fs::path date = wholePath(folder).parent_path();
     const fs::path veloToCam = date / "calib_velo_to_cam.txt";
     const fs::path camToCam = date / "calib_cam_to_cam.txt";
     const fs::path imuToVelo = date / "calib_imu_to_velo.txt";
+    drive.calibName = veloToCam.string();
+    drive.posesName = (folder / "oxts").string();
     if (!fs::exists(veloToCam) || !fs::exists(camToCam)) {
         drive.warnings.push_back("'" + veloToCam.string() + "' or '" + camToCam.string() +
                                  "' is not there: no calibration and no ground truth");
@@ -220,11 +220,23 @@ void readRawDrive(const fs::path& folder, KittiDrive& drive) {
     }
     const CPose3D Tr = rigid(readRawCalibration(camToCam), "R_rect_00", "", camToCam) +
                        rigid(readRawCalibration(veloToCam), "R", "T", veloToCam);
-    drive.calibText = "Tr: " + io::kittiRow(fromMrpt(Tr));
+    drive.calibText = "Tr: " + kittiRow(fromMrpt(Tr));
     if (!fs::exists(folder / "oxts") || !fs::exists(imuToVelo)) return;
     readOxts(folder, Tr + rigid(readRawCalibration(imuToVelo), "R", "T", imuToVelo), drive);
 }
 }  // namespace
+
+fs::path kittiFolderOf(const fs::path& folder) {
+    const fs::path whole = wholePath(folder);
+    const fs::path above = whole.parent_path();
+    if (whole.filename() == "data" && above.filename() == "velodyne_points")
+        return above.parent_path();
+    if (whole.filename() == "velodyne_points") return above;
+    if (whole.filename() == "velodyne")
+        for (const char* name : {"calib.txt", "times.txt", "poses.txt"})
+            if (fs::exists(above / name)) return above;
+    return folder;
+}
 
 KittiDrive openKittiDrive(const fs::path& folder, std::size_t start, std::size_t count) {
     if (!fs::is_directory(folder))
@@ -254,4 +266,4 @@ KittiDrive openKittiDrive(const fs::path& folder, std::size_t start, std::size_t
         readOdometrySequence(folder, drive);
     return drive;
 }
-}  // namespace delio
+}  // namespace delio::io

@@ -5,17 +5,22 @@
 
 #include "delio/io/drive_meta.h"
 
-namespace delio {
+namespace delio::io {
 /** A drive in one of KITTI's two layouts, as it lies on the disk. */
 struct KittiDrive {
-    io::DriveMeta meta;
+    DriveMeta meta;
     std::vector<std::filesystem::path> scans;  //!< in order of their numbers
     std::vector<double> times_s;               //!< one per scan, since meta.epoch_s
     std::vector<std::string> timeRows;  //!< one per scan, as they stand in times.txt; or none
     std::vector<std::string> poseRows;  //!< one per scan, in the cam0 frame; or none
     std::string calibText;              //!< of calib.txt; empty where there is no calibration
+    std::string posesName, calibName;   //!< the files of these, also where there are none
     std::vector<std::string> warnings;  //!< what is missing but not needed
 };
+
+/** The folder of the drive where `folder` is its velodyne/ (beside calib.txt, times.txt or
+ *  poses.txt), velodyne_points/ or velodyne_points/data/; otherwise `folder`. */
+std::filesystem::path kittiFolderOf(const std::filesystem::path& folder);
 
 /** Reads everything but the scans of `count` scans from the `start`-th on (0: to the end).
  *  `folder` is a KITTI odometry sequence (velodyne/, and where they are there calib.txt, times.txt,
@@ -24,4 +29,4 @@ struct KittiDrive {
  *  Throws Error with one line for anything that cannot be used. */
 KittiDrive openKittiDrive(const std::filesystem::path& folder, std::size_t start,
                           std::size_t count);
-}  // namespace delio
+}  // namespace delio::io

@@ -1,0 +1,19 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "cloud_records.h"
+
+namespace delio::io {
+/** Reads .bin files of floats: x y z intensity (KITTI) or x y z intensity ring (nuScenes). Which,
+ *  is told by the first one and kept: one a drive. */
+class BinScans {
+ public:
+    /** Throws Error, which names the file, for one that is missing, empty or cut off. */
+    CloudRecords read(const std::filesystem::path& file);
+
+ private:
+    std::size_t numbers_ = 0;  // a point; 0: not known yet
+};
+}  // namespace delio::io

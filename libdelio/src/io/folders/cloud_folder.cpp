@@ -1,0 +1,116 @@
+#include "cloud_folder.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+#include "../drive_clock.h"
+#include "bin_scan.h"
+#include "delio/core/error.h"
+#include "folder_reader.h"
+#include "natural_order.h"
+#include "pcd_scan.h"
+#include "ply_scan.h"
+#include "text_scan.h"
+
+namespace delio::io {
+namespace fs = std::filesystem;
+
+namespace {
+using ReadRecords = std::function<CloudRecords(const fs::path&)>;
+
+/** Nothing where files of that extension are no scans. */
+ReadRecords recordsReader(const std::string& extension) {
+    if (extension == ".pcd") return [](const fs::path& file) { return readPcdScan(file.string()); };
+    if (extension == ".ply") return [](const fs::path& file) { return readPlyScan(file.string()); };
+    if (extension == ".bin")
+        return [scans = BinScans()](const fs::path& file) mutable { return scans.read(file); };
+    if (extension == ".txt" || extension == ".csv") return readTextScan;
+    return {};
+}
+
+std::string lowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+/** Texts that often lie beside scans. */
+bool isSideText(const fs::path& file) {
+    if (isTimesFile(file)) return true;
+    const std::string stem = lowerCase(file.stem().string());
+    const std::string extension = lowerCase(file.extension().string());
+    if (extension != ".txt" && extension != ".csv") return false;
+    for (const char* name : {"calib", "license", "poses", "readme"})
+        if (stem == name) return true;
+    return false;
+}
+
+using FilesByExtension = std::map<std::string, std::vector<fs::path>>;
+
+FilesByExtension scansIn(const fs::path& folder) {
+    if (!fs::is_directory(folder)) throw Error("'" + folder.string() + "' is not a folder");
+    FilesByExtension files;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const std::string extension = lowerCase(entry.path().extension().string());
+        const bool hidden = entry.path().filename().string()[0] == '.';
+        if (!hidden && entry.is_regular_file() && recordsReader(extension) &&
+            !isSideText(entry.path()))
+            files[extension].push_back(entry.path());
+    }
+    return files;
+}
+
+/** The one kind there is. */
+FilesByExtension::value_type onlyKindOf(const FilesByExtension& files, const fs::path& folder) {
+    if (files.empty())
+        throw Error("'" + folder.string() + "' holds no .pcd, .ply, .bin, .txt or .csv: no scans");
+    if (files.size() == 1) return *files.begin();
+    std::string kinds;
+    for (const auto& [extension, ofKind] : files)
+        kinds += (kinds.empty() ? "" : ", ") + std::to_string(ofKind.size()) + " " + extension;
+    throw Error("'" + folder.string() + "' holds files of several kinds (" + kinds +
+                "); leave those of one kind in it");
+}
+}  // namespace
+
+CloudFolder::CloudFolder(const fs::path& folder) : FilesReader("lidar") {
+    auto [extension, files] = onlyKindOf(scansIn(folder), folder);
+    std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+        return naturallyBefore(a.filename().string(), b.filename().string());
+    });
+    times_ = timesOf(folder, files);
+    files_ = std::move(files);
+    readRecords_ = recordsReader(extension);
+    extension_ = extension;
+}
+
+Recording CloudFolder::recording() const {
+    Recording recording;
+    recording.kind =
+        "folder of " + extension_ + " files" + (times_.nominal ? ", nominal times" : "");
+    recording.pointTimes = pointTimes_;
+    recording.scans = files_.size();
+    return recording;
+}
+
+Scan CloudFolder::read(std::size_t index) {
+    const auto records = readRecords_(files_[index]);
+    const double stamp_s = times_.stamps_s[index];
+    Scan scan;
+    try {
+        scan = table_.scan(records.layout, records.bytes.data(), records.bytes.size(),
+                           records.count, records.rows, stamp_s);
+    } catch (const Error& e) {
+        throw Error("'" + files_[index].string() + "': " + e.what());
+    }
+    pointTimes_ = pointTimes_ || !scan.times_s.empty();
+    scan.stamp_s = stamp_s;
+    scan.time = timeOf(stamp_s, times_.epoch_s);
+    return scan;
+}
+
+std::unique_ptr<ScanReader> openCloudFolder(const ScanSource& source) {
+    return std::make_unique<CloudFolder>(source.path);
+}
+}  // namespace delio::io

@@ -1,0 +1,117 @@
+#include "cloud_records.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+
+#include "number_line.h"
+
+namespace delio::io {
+namespace {
+NumberKind kindOf(const Column& column) {
+    switch (column.kind) {
+        case 'F':
+            return column.bytes == 4 ? NumberKind::kFloat32 : NumberKind::kFloat64;
+        case 'U':
+            return column.bytes == 1   ? NumberKind::kUint8
+                   : column.bytes == 2 ? NumberKind::kUint16
+                   : column.bytes == 4 ? NumberKind::kUint32
+                                       : NumberKind::kFloat64;  // see makeDoubles()
+        default:
+            return column.bytes == 1   ? NumberKind::kInt8
+                   : column.bytes == 2 ? NumberKind::kInt16
+                   : column.bytes == 4 ? NumberKind::kInt32
+                                       : NumberKind::kFloat64;
+    }
+}
+
+template <typename Whole>
+void makeDouble(std::uint8_t* bytes) {
+    Whole whole;
+    std::memcpy(&whole, bytes, sizeof(whole));
+    const auto value = static_cast<double>(whole);
+    std::memcpy(bytes, &value, sizeof(value));
+}
+
+/** The rest of a file as a text. */
+std::string restOf(RecordFile& file, std::size_t bytes) {
+    std::string text(bytes, '\0');
+    file.stream().read(text.data(), static_cast<std::streamsize>(bytes));
+    text.resize(static_cast<std::size_t>(file.stream().gcount()));
+    return text;
+}
+
+CloudRecords readLines(RecordFile& file, const std::vector<Column>& columns, std::size_t count) {
+    std::vector<std::string> names;
+    for (const auto& column : columns) names.push_back(column.name);
+    CloudRecords records{layoutOfDoubles(names), {}, count, 1};
+    const std::size_t width = columns.size();
+    const std::size_t left = file.bytesLeft();
+    // A digit and a space or line end a number.
+    if (width == 0 || count > (left + 1) / (2 * width)) file.refuseCut(0, count);
+    const std::string text = restOf(file, left);
+    records.bytes.resize(count * records.layout.step);
+    std::vector<double> values(width + 1);
+    std::string_view rest = text;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto line = nextLine(rest);
+        if (!line || numbersIn(*line, values) != width) file.refuseCut(i, count);
+        std::memcpy(&records.bytes[i * records.layout.step], values.data(), records.layout.step);
+    }
+    return records;
+}
+}  // namespace
+
+std::string plainName(std::string name) {
+    name.erase(std::remove_if(name.begin(), name.end(),
+                              [](char c) { return c == '"' || c == '\'' || c == '/'; }),
+               name.end());
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string scalar = "scalar_";  // CloudCompare
+    return name.rfind(scalar, 0) == 0 ? name.substr(scalar.size()) : name;
+}
+
+PointLayout layoutOf(const std::vector<Column>& columns) {
+    PointLayout layout;
+    for (const auto& column : columns) {
+        const std::string name = plainName(column.name);
+        if (!name.empty() && name != "_")
+            layout.fields.push_back({name, layout.step, kindOf(column)});
+        layout.step += column.bytes;
+    }
+    return layout;
+}
+
+PointLayout layoutOfDoubles(const std::vector<std::string>& names) {
+    std::vector<Column> columns;
+    for (const auto& name : names) columns.push_back({name, 'F', 8});
+    return layoutOf(columns);
+}
+
+void makeDoubles(const std::vector<Column>& columns, CloudRecords& records) {
+    std::size_t offset = 0;
+    for (const auto& column : columns) {
+        const auto make = column.kind == 'U' ? makeDouble<std::uint64_t> : makeDouble<std::int64_t>;
+        if (column.kind != 'F' && column.bytes == 8)
+            for (std::size_t i = 0; i < records.count; ++i)
+                make(&records.bytes[i * records.layout.step + offset]);
+        offset += column.bytes;
+    }
+}
+
+CloudRecords readRecords(RecordFile& file, const std::vector<Column>& columns, std::size_t count,
+                         bool ascii) {
+    if (ascii) return readLines(file, columns, count);
+    CloudRecords records{layoutOf(columns), {}, count, 1};
+    const std::size_t step = records.layout.step;
+    const std::size_t whole = step == 0 ? 0 : file.bytesLeft() / step;
+    if (step == 0 || count > whole) file.refuseCut(whole, count);
+    records.bytes.resize(count * step);
+    file.stream().read(reinterpret_cast<char*>(records.bytes.data()),
+                       static_cast<std::streamsize>(records.bytes.size()));
+    if (!file.stream()) file.refuseCut(0, count);
+    makeDoubles(columns, records);
+    return records;
+}
+}  // namespace delio::io

@@ -1,0 +1,89 @@
+#include "pcd_scan.h"
+
+#include <liblzf/lzf.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "pcd_header.h"
+
+namespace delio::io {
+namespace {
+/** What decompression gives: all values of the first field, then all of the second, and so on. */
+std::vector<std::uint8_t> decompressed(RecordFile& file, std::size_t count, std::size_t stride) {
+    std::array<std::uint32_t, 2> sizes{};  // compressed, and not
+    const std::size_t left = file.bytesLeft();
+    file.stream().read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes));
+    if (left < sizeof(sizes) || !file.stream() || sizes[0] > left - sizeof(sizes))
+        file.refuseCut(0, count);
+    constexpr std::size_t kMostShrunk = 88;  // LZF's 3 bytes for 264
+    if (sizes[1] / stride != count || sizes[1] % stride != 0 || sizes[1] / kMostShrunk > sizes[0])
+        file.refuse("the size of its data is not that of " + std::to_string(count) + " points");
+    std::vector<std::uint8_t> packed(sizes[0]), bytes(sizes[1]);
+    file.stream().read(reinterpret_cast<char*>(packed.data()),
+                       static_cast<std::streamsize>(packed.size()));
+    if (!bytes.empty() &&
+        lzf_decompress(packed.data(), sizes[0], bytes.data(), sizes[1]) != sizes[1])
+        file.refuse("its compressed data is damaged");
+    return bytes;
+}
+
+CloudRecords readCompressed(RecordFile& file, const std::vector<Column>& columns,
+                            std::size_t count) {
+    CloudRecords records{layoutOf(columns), {}, count, 1};
+    const std::size_t step = records.layout.step;
+    if (step == 0) file.refuse("its points have no fields");
+    const auto byField = decompressed(file, count, step);
+    records.bytes.resize(byField.size());
+    const std::uint8_t* from = byField.data();
+    std::size_t offset = 0;
+    for (const auto& column : columns) {
+        for (std::size_t i = 0; i < count; ++i, from += column.bytes)
+            std::copy_n(from, column.bytes, &records.bytes[i * step + offset]);
+        offset += column.bytes;
+    }
+    makeDoubles(columns, records);
+    return records;
+}
+
+/** A field of several numbers lies together in compressed data, point by point. */
+std::vector<Column> fieldsOf(const std::vector<Column>& columns) {
+    std::vector<Column> fields;
+    for (const auto& column : columns)
+        if (column.name.empty() && !fields.empty())
+            fields.back() = {"_", 'U', fields.back().bytes + column.bytes};
+        else
+            fields.push_back(column);
+    return fields;
+}
+
+std::size_t countOf(const PcdHeader& header, const RecordFile& file) {
+    if (!header.points) file.refuse("it does not say how many points it has");
+    const std::size_t count = *header.points, width = header.width.value_or(count),
+                      height = header.height.value_or(1);
+    const bool overflows = width != 0 && height > std::numeric_limits<std::size_t>::max() / width;
+    if (overflows || width * height != count)
+        file.refuse("it has " + std::to_string(count) + " points, but " + std::to_string(width) +
+                    " by " + std::to_string(height));
+    return count;
+}
+}  // namespace
+
+CloudRecords readPcdScan(const std::string& path) {
+    RecordFile file(path, "PCD");
+    if (file.bytesLeft() == 0) file.refuse("it is empty");
+    const auto header = readPcdHeader(file);
+    const std::size_t count = countOf(header, file);
+    const auto columns = columnsOf(header, file);
+    CloudRecords records;
+    if (header.data == "binary_compressed")
+        records = readCompressed(file, fieldsOf(columns), count);
+    else if (header.data == "ascii" || header.data == "binary")
+        records = readRecords(file, columns, count, header.data == "ascii");
+    else
+        file.refuse("its data is '" + header.data + "'");
+    if (header.width) records.rows = header.height.value_or(1);
+    return records;
+}
+}  // namespace delio::io
