@@ -1,6 +1,5 @@
 // rawlog2kitti: the LiDAR scans of a rawlog as a KITTI odometry sequence.
 #include <mrpt/3rdparty/tclap/CmdLine.h>
-#include <mrpt/maps/CPointsMapXYZI.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include "delio/io/drive_meta.h"
 #include "delio/io/output_file.h"
 #include "delio/io/rawlog_reader.h"
+#include "delio/io/rawlog_writer.h"
 #include "delio/version.h"
 
 namespace {
@@ -22,17 +22,7 @@ using namespace delio;
 namespace fs = std::filesystem;
 
 void writeScan(const mrpt::maps::CPointsMap& points, const fs::path& file) {
-    const auto* withIntensity = dynamic_cast<const mrpt::maps::CPointsMapXYZI*>(&points);
-    const auto& x = points.getPointsBufferRef_x();
-    const auto& y = points.getPointsBufferRef_y();
-    const auto& z = points.getPointsBufferRef_z();
-    std::vector<float> xyzi(4 * x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        xyzi[4 * i] = x[i];
-        xyzi[4 * i + 1] = y[i];
-        xyzi[4 * i + 2] = z[i];
-        xyzi[4 * i + 3] = withIntensity ? withIntensity->getPointIntensity(i) : 0.0F;
-    }
+    const auto xyzi = io::xyziOf(points);
     std::ofstream out(file, std::ios::binary);
     out.write(reinterpret_cast<const char*>(xyzi.data()),
               static_cast<std::streamsize>(xyzi.size() * sizeof(float)));

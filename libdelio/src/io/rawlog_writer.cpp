@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "delio/core/error.h"
+#include "delio/core/geometry.h"
 #include "delio/io/output_file.h"
 #include "drive_clock.h"
 
@@ -19,11 +20,18 @@ namespace {
 const char* const kSideFiles[] = {".meta.yaml", ".times.txt",  ".calib.txt",
                                   ".poses.txt", ".faults.tsv", ".origin.txt"};
 
-void writeFloats(const std::string& path, const std::vector<float>& values) {
+template <typename Value>
+void writeValues(const std::string& path, const std::vector<Value>& values) {
     std::ofstream out(path, std::ios::binary);
     out.write(reinterpret_cast<const char*>(values.data()),
-              static_cast<std::streamsize>(values.size() * sizeof(float)));
+              static_cast<std::streamsize>(values.size() * sizeof(Value)));
     if (!out.flush()) throw Error("cannot write '" + path + "': is the disk full?");
+}
+
+/** The rawlog has the name of the file only. */
+void setExternal(CObservationPointCloud& observation, const std::string& file) {
+    observation.setAsExternalStorage(fs::path(file).filename().string(),
+                                     CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
 }
 
 mrpt::maps::CPointsMapXYZI::Ptr cloudOf(const std::vector<float>& xyzi) {
@@ -37,6 +45,21 @@ mrpt::maps::CPointsMapXYZI::Ptr cloudOf(const std::vector<float>& xyzi) {
     return cloud;
 }
 }  // namespace
+
+std::vector<float> xyziOf(const mrpt::maps::CPointsMap& points) {
+    const auto* bright = dynamic_cast<const mrpt::maps::CPointsMapXYZI*>(&points);
+    const auto& x = points.getPointsBufferRef_x();
+    const auto& y = points.getPointsBufferRef_y();
+    const auto& z = points.getPointsBufferRef_z();
+    std::vector<float> xyzi(4 * x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        xyzi[4 * i] = x[i];
+        xyzi[4 * i + 1] = y[i];
+        xyzi[4 * i + 2] = z[i];
+        xyzi[4 * i + 3] = bright ? bright->getPointIntensity(i) : 0.0F;
+    }
+    return xyzi;
+}
 
 RawlogWriter::RawlogWriter(const std::string& path, std::string label, bool embed, bool force)
     : path_(path), label_(std::move(label)), embed_(embed) {
@@ -75,18 +98,18 @@ RawlogWriter::~RawlogWriter() {
 }
 
 void RawlogWriter::add(double stamp_s, double epoch_s, const std::vector<float>& xyzi) {
-    if (!embed_) {
-        const std::string file = extraFile(".bin");
-        writeFloats(file, xyzi);
-        appendExternal(stamp_s, epoch_s, file);
-        return;
-    }
     CObservationPointCloud observation;
-    observation.sensorLabel = label_;
-    observation.timestamp = timeOf(stamp_s, epoch_s);
-    observation.pointcloud = cloudOf(xyzi);
-    mrpt::serialization::archiveFrom(out_) << observation;
-    ++count_;
+    setPoints(observation, xyzi);
+    append(observation, stamp_s, epoch_s);
+}
+
+void RawlogWriter::add(const Scan& scan, double epoch_s) {
+    if (!scan.rings.empty()) writeValues(extraFile(".ring"), scan.rings);
+    if (!scan.times_s.empty()) writeValues(extraFile(".time"), scan.times_s);
+    CObservationPointCloud observation;
+    observation.setSensorPose(toMrpt(scan.sensorPose));
+    setPoints(observation, xyziOf(*scan.points));
+    append(observation, scan.stamp_s, epoch_s);
 }
 
 void RawlogWriter::addLinked(double stamp_s, double epoch_s, const std::string& file) {
@@ -94,15 +117,24 @@ void RawlogWriter::addLinked(double stamp_s, double epoch_s, const std::string& 
     std::error_code fault;
     fs::create_symlink(fs::absolute(file), link, fault);
     if (fault) throw Error("cannot link '" + link + "' to '" + file + "': " + fault.message());
-    appendExternal(stamp_s, epoch_s, link);
+    CObservationPointCloud observation;
+    setExternal(observation, link);
+    append(observation, stamp_s, epoch_s);
 }
 
-void RawlogWriter::appendExternal(double stamp_s, double epoch_s, const std::string& file) {
-    CObservationPointCloud observation;
+void RawlogWriter::setPoints(CObservationPointCloud& observation, const std::vector<float>& xyzi) {
+    if (embed_) {
+        observation.pointcloud = cloudOf(xyzi);
+        return;
+    }
+    const std::string file = extraFile(".bin");
+    writeValues(file, xyzi);
+    setExternal(observation, file);
+}
+
+void RawlogWriter::append(CObservationPointCloud& observation, double stamp_s, double epoch_s) {
     observation.sensorLabel = label_;
     observation.timestamp = timeOf(stamp_s, epoch_s);
-    observation.setAsExternalStorage(fs::path(file).filename().string(),
-                                     CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
     mrpt::serialization::archiveFrom(out_) << observation;
     ++count_;
 }

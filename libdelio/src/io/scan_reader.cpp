@@ -22,11 +22,16 @@ std::unique_ptr<ScanReader> openFolder(const ScanSource& source) {
 
 std::unique_ptr<ScanReader> openFile(const ScanSource& source) {
     switch (kindOf(source.path)) {
-        case FileKind::kPcap: return openPcap(source);
-        case FileKind::kRos1Bag: return openRos1Bag(source);
-        case FileKind::kRos2Database: return openRos2Database(source);
-        case FileKind::kMcap: return openMcap(source);
-        case FileKind::kRawlog: break;
+        case FileKind::kPcap:
+            return openPcap(source);
+        case FileKind::kRos1Bag:
+            return openRos1Bag(source);
+        case FileKind::kRos2Database:
+            return openRos2Database(source);
+        case FileKind::kMcap:
+            return openMcap(source);
+        case FileKind::kRawlog:
+            break;
     }
     return std::make_unique<RawlogReader>(source.path, source.label, source.imagesFolder);
 }

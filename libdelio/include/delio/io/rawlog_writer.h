@@ -1,17 +1,22 @@
 #pragma once
 #include <mrpt/io/CFileOutputStream.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/obs/CObservationPointCloud.h>
 
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "delio/io/drive_meta.h"
+#include "delio/scan/scan.h"
 
 namespace delio::io {
 /** The Unix time that stands for second 0 of a drive whose own times start at 0: MRPT takes time 0
  *  for "no time". (2011-09-26 00:00 UTC, the first day of KITTI.) */
 constexpr double kDriveEpoch_s = 1316995200.0;
+
+/** KITTI's floats of a cloud: x y z intensity of each point, 0 where it has no intensities. */
+std::vector<float> xyziOf(const mrpt::maps::CPointsMap& points);
 
 /** Writes a drive as a rawlog of CObservationPointCloud in the observations-only format, with its
  *  side files. The rawlog is uncompressed (RawLogViewer needs that) and gets its name only in
@@ -29,6 +34,10 @@ class RawlogWriter {
 
     /** Appends a scan. `stamp_s`: seconds since `epoch_s`; `xyzi`: four floats a point. */
     void add(double stamp_s, double epoch_s, const std::vector<float>& xyzi);
+
+    /** Appends a scan with all that it has: rings and times of its points in files beside its own,
+     *  and the sensor's pose. */
+    void add(const Scan& scan, double epoch_s);
 
     /** The same, of a scan that stays in `file`, which is in KITTI's format: OUT_Images holds a
      *  symbolic link to its absolute path. Not for embedded scans. Throws Error where that fails.
@@ -50,8 +59,10 @@ class RawlogWriter {
     std::size_t scans() const { return count_; }
 
  private:
-    /** Appends the observation of a scan in `file`, of which the rawlog has the name only. */
-    void appendExternal(double stamp_s, double epoch_s, const std::string& file);
+    /** Appends an observation that has no time or label yet. */
+    void append(mrpt::obs::CObservationPointCloud& observation, double stamp_s, double epoch_s);
+    /** Its points: in `OUT_Images` or embedded. */
+    void setPoints(mrpt::obs::CObservationPointCloud& observation, const std::vector<float>& xyzi);
 
     std::string path_, label_, partialRawlog_, partialImages_, images_;
     bool embed_;

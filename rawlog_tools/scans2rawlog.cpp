@@ -1,0 +1,163 @@
+// scans2rawlog: any recording that delio-slam reads as an MRPT rawlog.
+#include <mrpt/3rdparty/tclap/CmdLine.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <sstream>
+#include <vector>
+
+#include "cli.h"
+#include "delio/core/error.h"
+#include "delio/io/rawlog_writer.h"
+#include "delio/io/scan_reader.h"
+#include "delio/version.h"
+
+namespace {
+using namespace delio;
+namespace fs = std::filesystem;
+
+using Text = TCLAP::ValueArg<std::string>;
+using Number = TCLAP::ValueArg<cli::Count>;
+
+struct Arguments {
+    TCLAP::CmdLine cmd{
+        "scans2rawlog: a recording of a LiDAR (KITTI or other folder, ROS bag, mcap, "
+        "pcap, rawlog) as an MRPT rawlog with its side files",
+        ' ', kVersion};
+    Text input{"i",  "input", "Recording to read; \"-\": a rawlog or pcap from a pipe", true, "",
+               "IN", cmd};
+    Text output{"o", "output", "Rawlog to write", true, "", "OUT.rawlog", cmd};
+    Text sensor{"", "sensor-label", "Sensor to take: see delio-slam", false, "", "L", cmd};
+    Text sensorInfo{
+        "", "sensor-info", "Description of the sensor: see delio-slam", false, "", "FILE", cmd};
+    Text images{"", "images", "Folder of a rawlog's external files", false, "", "DIR", cmd};
+    Text label{"", "label", "Sensor label in the rawlog", false, "velodyne", "LABEL", cmd};
+    Number start{"", "start", "First scan to take, from 0", false, {}, "N", cmd};
+    Number count{"", "count", "How many scans to take; 0: all", false, {}, "N", cmd};
+    Number every{"", "every", "Take every N-th scan only", false, {1}, "N", cmd};
+    TCLAP::SwitchArg embed{"", "embed", "Keep the points in the rawlog, not in OUT_Images/", cmd};
+    TCLAP::SwitchArg force{"", "force", "Overwrite what exists", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "All the text of errors", cmd};
+};
+
+std::vector<std::string> linesOf(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);)
+        if (!line.empty() && line[0] != '#') lines.push_back(line);
+    return lines;
+}
+
+/** Scans into a rawlog, with the rows of the side files that are theirs. */
+class Conversion {
+ public:
+    Conversion(Arguments& args, io::ScanReader& reader)
+        : args_(args),
+          reader_(reader),
+          truth_(linesOf(reader.truth().text)),
+          writer_(args.output.getValue(), args.label.getValue(), args.embed.getValue(),
+                  args.force.getValue()) {}
+
+    /** False if Ctrl-C came before the end. What came before a fault is kept, which is returned. */
+    bool run(std::string& fault) {
+        const unsigned count = args_.count.getValue();
+        cli::Progress progress("converting", count);
+        try {
+            skip(args_.start.getValue());
+            while (count == 0 || writer_.scans() < count) {
+                if (cli::interrupted()) return false;
+                const auto scan = reader_.next();
+                if (!scan) break;
+                add(*scan);
+                progress.update(writer_.scans(), reader_.fraction());
+                skip(args_.every.getValue() - 1);
+            }
+        } catch (const Error& e) {
+            if (writer_.scans() == 0) throw;
+            fault = e.what();
+        }
+        if (writer_.scans() == 0)
+            throw Error("'" + args_.input.getValue() + "' holds no LiDAR scans" +
+                        (args_.start.getValue() > 0 ? " after --start" : ""));
+        return true;
+    }
+
+    std::size_t finish() {
+        auto meta = reader_.meta().value_or(io::DriveMeta{});
+        const auto recording = reader_.recording();
+        if (meta.sensorModel == "unknown" && !recording.sensor.empty())
+            meta.sensorModel = recording.sensor;
+        meta.epoch_s = epoch_s_;
+        meta.generator = std::string("scans2rawlog (delio ") + kVersion + ")";
+        writer_.finish(meta, times_, reader_.calibration().text, poses_);
+        return writer_.scans();
+    }
+
+ private:
+    void skip(unsigned count) {
+        for (unsigned i = 0; i < count; ++i)
+            if (!reader_.skip()) return;
+    }
+
+    void add(const Scan& scan) {
+        // Second 0 of the drive's stamps: MRPT's clock has the whole time.
+        if (writer_.scans() == 0)
+            epoch_s_ = reader_.meta() && reader_.meta()->epoch_s > 0
+                           ? reader_.meta()->epoch_s
+                           : std::round(mrpt::Clock::toDouble(scan.time) - scan.stamp_s);
+        writer_.add(scan, epoch_s_);
+        char row[48];
+        std::snprintf(row, sizeof(row), "%.9f\n", scan.stamp_s);
+        times_ += row;
+        if (!truth_.empty() && scan.index >= truth_.size())
+            throw Error("'" + reader_.truth().name + "' has no row for scan " +
+                        std::to_string(scan.index));
+        if (!truth_.empty()) poses_ += truth_[scan.index] + "\n";
+    }
+
+    Arguments& args_;
+    io::ScanReader& reader_;
+    std::vector<std::string> truth_;
+    io::RawlogWriter writer_;
+    double epoch_s_ = 0;
+    std::string times_, poses_;
+};
+
+/** Nothing that is read may be overwritten. */
+void refuseItself(const std::string& input, const std::string& output) {
+    std::error_code ignored;
+    if (fs::equivalent(input, output, ignored))
+        throw Error("'" + output + "' is what is to be read: choose another name");
+}
+
+int convert(Arguments& args) {
+    cli::catchInterrupts();
+    if (args.every.getValue() == 0) {
+        cli::inform("--every has to be 1 or more");
+        return cli::kExitBadCommandLine;
+    }
+    const std::string &input = args.input.getValue(), &output = args.output.getValue();
+    refuseItself(input, output);
+    const auto reader = io::openScans(
+        {input, args.sensor.getValue(), args.images.getValue(), args.sensorInfo.getValue()});
+    cli::inform(describe(reader->recording()));
+    Conversion conversion(args, *reader);
+    std::string fault;
+    if (!conversion.run(fault)) return cli::kExitInterrupted;
+    const std::size_t scans = conversion.finish();
+    for (const auto& other : reader->otherLabels())
+        cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
+    if (!fault.empty())
+        throw Error(fault + "; the " + std::to_string(scans) + " scans before are in '" + output +
+                    "'");
+    cli::inform("wrote " + std::to_string(scans) + " scans to '" + output + "'");
+    return cli::kExitSuccess;
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+    Arguments args;
+    return cli::run(args.cmd, argc, argv, args.verbose, [&] { return convert(args); });
+}
