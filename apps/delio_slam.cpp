@@ -105,7 +105,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     if (cli::interrupted()) return {cli::kExitInterrupted};
     settings.sensorLabel = reader->label();
     settings.drive = io::nameOfDrive(input);
-    cli::inform(describe(reader->recording()));
+    cli::inform("reading " + describe(reader->recording()));
     run::Run run(options, settings);
     if (!reader->meta())
         run.warn(

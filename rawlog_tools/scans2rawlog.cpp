@@ -142,7 +142,7 @@ int convert(Arguments& args) {
     refuseItself(input, output);
     const auto reader = io::openScans(
         {input, args.sensor.getValue(), args.images.getValue(), args.sensorInfo.getValue()});
-    cli::inform(describe(reader->recording()));
+    cli::inform("reading " + describe(reader->recording()));
     Conversion conversion(args, *reader);
     std::string fault;
     if (!conversion.run(fault)) return cli::kExitInterrupted;

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 TEST_F(DelioSlam, RefusesWhatIsNoRawlog) {
     expectRefused(slam(), 1, {rawlog_, "no such file"});
-    expectRefused(slamOf(folder_.path()), 1, {"no file"});
+    expectRefused(slamOf(folder_ / "."), 1, {"no scans"});
     const auto withBytes = [&](const std::string& bytes) {
         writeText(folder_ / "x.rawlog", bytes);
         return slamOf(folder_ / "x.rawlog");

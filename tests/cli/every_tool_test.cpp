@@ -10,8 +10,9 @@ using namespace delio;
 using test::runTool;
 
 TEST(EveryTool, HelpAndVersion) {
-    for (const std::string tool : {"kitti2rawlog", "rawlog2kitti", "synth2rawlog", "delio-slam",
-                                   "delio-eval", "delio-map", "delio-snapshot", "delio-figures"}) {
+    for (const std::string tool :
+         {"kitti2rawlog", "rawlog2kitti", "scans2rawlog", "synth2rawlog", "delio-slam",
+          "delio-eval", "delio-map", "delio-snapshot", "delio-figures"}) {
         const auto help = runTool(tool, {"--help"});
         EXPECT_EQ(help.exitCode, 0) << tool;
         EXPECT_EQ(help.err, "") << tool;

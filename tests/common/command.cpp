@@ -73,7 +73,8 @@ bool isOneLine(const std::string& err) {
 }
 
 std::string errorOf(const CommandResult& result) {
-    static const std::regex progress("[a-z0-9-]+: (warning: .*|[a-z]+ [0-9]+(/[0-9]+)?)");
+    static const std::regex progress(
+        "[a-z0-9-]+: (warning: .*|reading .*|[a-z]+ [0-9]+(/[0-9]+)?)");
     std::istringstream lines(result.err);
     std::string rest;
     for (std::string line; std::getline(lines, line);)

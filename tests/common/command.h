@@ -25,7 +25,7 @@ CommandResult runToolOnFullDisk(const std::string& tool, const std::vector<std::
 /** True if `err` is one plain line: what the contract asks of every error. */
 bool isOneLine(const std::string& err);
 
-/** What stderr holds besides lines of progress and of warnings. */
+/** What stderr holds besides lines of progress, of warnings and of what is read. */
 std::string errorOf(const CommandResult& result);
 
 /** A failed run as the contract has it: its exit code, and one line (besides progress and warnings)

@@ -1,0 +1,79 @@
+#include "io/compensation.h"
+
+#include <gtest/gtest.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+
+#include <cmath>
+
+namespace delio::io {
+namespace {
+struct Turn {
+    int rings = 16, columns = 900;
+    double clockwise = 1;
+    double speed_ms = 0;          //!< that the recorder took out
+    double offset = 0;            //!< of a ring's azimuth from the next's
+    double unevenness_deg = 0.2;  //!< packets have one time for some columns
+    bool told = true;             //!< rings are
+};
+
+/** A turn of 0.1 s in a yard of 24 x 16 m. */
+Scan scanOf(const Turn& turn) {
+    Scan scan;
+    auto points = mrpt::maps::CSimplePointsMap::Create();
+    for (int column = 0; column < turn.columns; ++column)
+        for (int ring = 0; ring < turn.rings; ++ring) {
+            const double share = static_cast<double>(column) / turn.columns;
+            const double azimuth = -turn.clockwise * 2 * M_PI * share + turn.offset * ring +
+                                   M_PI / 180 * turn.unevenness_deg * (column % 2);
+            const double range =
+                std::min(12 / std::abs(std::cos(azimuth)), 8 / std::abs(std::sin(azimuth)));
+            const double elevation = M_PI / 180 * (2 * ring - 15);
+            const auto time_s = static_cast<float>(0.1 * share);
+            points->insertPoint(
+                static_cast<float>(range * std::cos(azimuth) + turn.speed_ms * (time_s - 0.05)),
+                static_cast<float>(range * std::sin(azimuth)),
+                static_cast<float>(range * std::tan(elevation)));
+            if (turn.told) scan.rings.push_back(static_cast<std::uint16_t>(ring));
+            scan.times_s.push_back(time_s);
+        }
+    scan.points = points;
+    return scan;
+}
+}  // namespace
+
+TEST(Compensation, PointsAsTheyWereMeasured) {
+    for (const double clockwise : {1.0, -1.0})
+        for (const bool told : {true, false})
+            for (const double offset : {0.0, 0.05}) {
+                if (!told && offset > 0) continue;
+                Turn turn;
+                turn.clockwise = clockwise;
+                turn.told = told;
+                turn.offset = offset;
+                EXPECT_EQ(isMotionCompensated(scanOf(turn)), std::optional<bool>(false))
+                    << clockwise << " " << told << " " << offset;
+            }
+}
+
+TEST(Compensation, PointsThatWereMoved) {
+    for (const double speed_ms : {3.0, 10.0, 30.0, -15.0}) {
+        Turn turn;
+        turn.speed_ms = speed_ms;
+        EXPECT_EQ(isMotionCompensated(scanOf(turn)), std::optional<bool>(true)) << speed_ms;
+    }
+}
+
+TEST(Compensation, WhatDoesNotTell) {
+    Scan untimed = scanOf({});
+    untimed.times_s.clear();
+    EXPECT_FALSE(isMotionCompensated(untimed));
+    Scan few = scanOf({4, 20});
+    EXPECT_FALSE(isMotionCompensated(few));
+    // A camera sweeps, but nothing turns.
+    Scan still = scanOf({});
+    for (std::size_t i = 0; i < still.times_s.size(); ++i)
+        still.times_s[i] = static_cast<float>((i * 7919) % 1000) * 1e-4F;
+    EXPECT_FALSE(isMotionCompensated(still));
+    EXPECT_FALSE(isMotionCompensated(scanOf({0, 0})));
+}
+}  // namespace delio::io
