@@ -1,0 +1,165 @@
+#include "bag_reader.h"
+
+#include <exception>
+
+#include "bag_topics.h"
+#include "delio/core/error.h"
+#include "mcap_file.h"
+#include "ros1_bag.h"
+#include "ros2_database.h"
+#include "ros2_folder.h"
+#include "scan_maker.h"
+
+namespace delio::io {
+namespace {
+/** The scans of one topic of a bag, whatever it is stored in. */
+class BagReader : public ScanReader {
+ public:
+    BagReader(std::string container, const ScanSource& source, const OpenSource& open)
+        : container_(std::move(container)), bag_(open()) {
+        topic_ = chooseTopic(bag_->topics(), source.label);
+        type_ = scanTypeOf(topic_);
+        bag_->only(topic_.name);
+        if (type_ == ScanType::kCloud) {
+            maker_ = makeCloudMaker();
+        } else if (type_ == ScanType::kVelodyne) {
+            maker_ = makePacketMaker(type_, velodyneDecoder(source.sensorFile));
+        } else {
+            const SideFile json = ousterDescription(source, open);
+            maker_ = makePacketMaker(type_, ousterDecoder(json.text, json.name));
+        }
+        describe();
+    }
+
+    std::optional<Scan> next() override {
+        return guarded([this] {
+            std::optional<Scan> scan = nextScan();
+            if (scan) scan->index = count_++;
+            return scan;
+        });
+    }
+
+    bool skip() override {
+        return guarded([this]() -> std::optional<bool> {
+                   // Where a turn ends is known from its packets only.
+                   const bool there = type_ == ScanType::kCloud ? bag_->next().has_value()
+                                                                : nextScan().has_value();
+                   if (!there) return std::nullopt;
+                   ++count_;
+                   return true;
+               })
+            .has_value();
+    }
+
+    const std::string& label() const override { return topic_.name; }
+    const std::set<std::string>& otherLabels() const override { return otherLabels_; }
+    std::optional<double> fraction() const override { return ended_ ? 1 : bag_->fraction(); }
+    const std::optional<DriveMeta>& meta() const override { return meta_; }
+
+    Recording recording() const override {
+        Recording recording;
+        recording.kind = container_ + ", topic " + topic_.name;
+        recording.sensor = maker_->sensor();
+        if (type_ == ScanType::kCloud)
+            recording.scans = topic_.messages;
+        else
+            recording.motionCompensated = false;
+        return recording;
+    }
+
+ private:
+    std::optional<Scan> nextScan() {
+        while (true) {
+            if (auto scan = maker_->take()) {
+                describe();
+                return scan;
+            }
+            if (finished_) return std::nullopt;
+            const auto message = bag_->next();
+            if (!message) {
+                maker_->finish();
+                finished_ = true;
+            } else {
+                decode(*message);
+            }
+        }
+    }
+
+    void decode(const Message& message) {
+        try {
+            maker_->add(message);
+        } catch (const Error& e) {
+            const std::string scan = "scan " + std::to_string(count_) + " of '" + bag_->path();
+            fail(scan + "' (topic " + topic_.name + "): " + e.what());
+        }
+    }
+
+    /** After an error, and after nothing, the reader is at its end. */
+    template <typename Read>
+    auto guarded(const Read& read) -> decltype(read()) {
+        if (ended_) return std::nullopt;
+        try {
+            auto result = read();
+            ended_ = !result.has_value();
+            return result;
+        } catch (const std::exception& e) {
+            ended_ = true;
+            if (named_) throw Error(plainMessage(e));
+            throw Error("'" + bag_->path() + "' " + plainMessage(e) + ", after " +
+                        std::to_string(count_) + " scans");
+        }
+    }
+
+    [[noreturn]] void fail(const std::string& what) {
+        named_ = true;
+        throw Error(what);
+    }
+
+    void describe() {
+        if (type_ == ScanType::kCloud) return;
+        if (!meta_) meta_.emplace();
+        meta_->source = "bag";
+        meta_->motionCompensated = false;
+        // The model without its maker.
+        const std::string sensor = maker_->sensor();
+        if (!sensor.empty()) meta_->sensorModel = sensor.substr(sensor.find(' ') + 1);
+    }
+
+    std::string container_;
+    std::unique_ptr<MessageSource> bag_;
+    Topic topic_;
+    ScanType type_ = ScanType::kNone;
+    std::unique_ptr<ScanMaker> maker_;
+    std::optional<DriveMeta> meta_;
+    std::set<std::string> otherLabels_;
+    std::size_t count_ = 0;
+    bool finished_ = false, ended_ = false, named_ = false;
+};
+
+template <typename Source>
+std::unique_ptr<ScanReader> openBag(const std::string& container, const ScanSource& source) {
+    const OpenSource open = [&] { return std::make_unique<Source>(source.path); };
+    try {
+        return std::make_unique<BagReader>(container, source, open);
+    } catch (const std::exception& e) {
+        throw Error("'" + source.path + "' " + plainMessage(e));
+    }
+}
+}  // namespace
+
+std::unique_ptr<ScanReader> openRos1Bag(const ScanSource& source) {
+    return openBag<Ros1Bag>("ROS 1 bag", source);
+}
+
+std::unique_ptr<ScanReader> openRos2Database(const ScanSource& source) {
+    return openBag<Ros2Database>("ROS 2 bag", source);
+}
+
+std::unique_ptr<ScanReader> openMcap(const ScanSource& source) {
+    return openBag<McapFile>("MCAP", source);
+}
+
+std::unique_ptr<ScanReader> openRos2Folder(const ScanSource& source) {
+    return openBag<Ros2Folder>("ROS 2 bag", source);
+}
+}  // namespace delio::io

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <vector>
+
+#include "../point_table.h"
+#include "delio/core/error.h"
+#include "scan_maker.h"
+#include "wire_reader.h"
+
+namespace delio::io {
+namespace {
+/** A PointCloud2 as it is written: `rows` of `columns` points, `rowStep` bytes from one to the
+ *  next. */
+struct Cloud {
+    double stamp_s = 0;
+    std::size_t rows = 0, columns = 0, rowStep = 0;
+    PointLayout layout;
+    Bytes data;
+};
+
+Cloud readCloud(const Message& message) {
+    constexpr std::size_t kLeastField = 13;  // an empty name, offset, kind and count
+    WireReader in(message);
+    Cloud cloud;
+    cloud.stamp_s = in.header();
+    if (cloud.stamp_s == 0) cloud.stamp_s = message.log_s;
+    cloud.rows = in.number<std::uint32_t>();
+    cloud.columns = in.number<std::uint32_t>();
+    cloud.layout.fields.resize(in.length(kLeastField));
+    for (PointField& field : cloud.layout.fields) {
+        field.name = in.text();
+        field.offset = in.number<std::uint32_t>();
+        field.kind = static_cast<NumberKind>(in.number<std::uint8_t>());
+        in.number<std::uint32_t>();  // count: the first one is taken
+    }
+    cloud.layout.bigEndian = in.number<std::uint8_t>() != 0;
+    cloud.layout.step = in.number<std::uint32_t>();
+    cloud.rowStep = in.number<std::uint32_t>();
+    cloud.data = in.byteArray();
+    in.number<std::uint8_t>();  // is_dense: whether points are NaN is seen from them
+    return cloud;
+}
+
+class CloudMaker : public ScanMaker {
+ public:
+    void add(const Message& message) override {
+        Cloud cloud = readCloud(message);
+        const std::size_t count = checkedCount(cloud);
+        compact(cloud);
+        scan_ = table_.scan(cloud.layout, cloud.data.data, cloud.data.size, count, cloud.rows,
+                            cloud.stamp_s);
+        scan_->stamp_s = cloud.stamp_s;
+        scan_->time = mrpt::Clock::fromDouble(cloud.stamp_s);
+    }
+    void finish() override {}
+    std::optional<Scan> take() override {
+        auto scan = std::move(scan_);
+        scan_.reset();
+        return scan;
+    }
+    std::string sensor() const override { return ""; }
+
+ private:
+    static std::size_t checkedCount(const Cloud& cloud) {
+        const std::size_t count = cloud.rows * cloud.columns;  // of 32 bits each
+        const std::size_t step = cloud.layout.step;
+        if (count > 0 && (step == 0 || count > cloud.data.size / step))
+            throw Error(std::to_string(cloud.rows) + " x " + std::to_string(cloud.columns) +
+                        " points of " + std::to_string(step) + " bytes are announced, there are " +
+                        std::to_string(cloud.data.size) + " bytes");
+        return count;
+    }
+
+    /** Takes out what rows are padded with. A row step that cannot be one is not believed: some
+     *  drivers leave it 0. */
+    void compact(Cloud& cloud) {
+        const std::size_t row = cloud.columns * cloud.layout.step;
+        if (cloud.rows < 2 || cloud.rowStep <= row) return;
+        if (cloud.rowStep > (cloud.data.size - row) / (cloud.rows - 1))
+            throw Error("its rows of " + std::to_string(cloud.rowStep) + " bytes are beyond its " +
+                        std::to_string(cloud.data.size) + " bytes");
+        rows_.resize(cloud.rows * row);
+        for (std::size_t i = 0; i < cloud.rows; ++i)
+            std::copy_n(cloud.data.data + i * cloud.rowStep, row, rows_.data() + i * row);
+        cloud.data = {rows_.data(), rows_.size()};
+    }
+
+    PointTable table_;
+    std::vector<std::uint8_t> rows_;
+    std::optional<Scan> scan_;
+};
+}  // namespace
+
+std::unique_ptr<ScanMaker> makeCloudMaker() { return std::make_unique<CloudMaker>(); }
+}  // namespace delio::io

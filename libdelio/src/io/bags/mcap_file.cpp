@@ -1,0 +1,210 @@
+#include "mcap_file.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+
+#include "delio/core/error.h"
+#include "unpack.h"
+
+namespace delio::io {
+namespace {
+const std::string kMagic = "\x89MCAP0\r\n";
+constexpr std::uint64_t kLookAhead = std::uint64_t{64} << 20;
+enum Op : std::uint8_t {
+    kFooter = 2,
+    kSchema = 3,
+    kChannel = 4,
+    kMessage = 5,
+    kChunk = 6,
+    kStatistics = 11,
+    kDataEnd = 15
+};
+constexpr std::uint64_t kRecordStart = 9;  // kind and length
+constexpr std::uint64_t kFooterBytes = kRecordStart + 20;
+constexpr std::uint64_t kMessageStart = 22;
+
+std::uint32_t checksum(const std::vector<std::uint8_t>& bytes) {
+    return static_cast<std::uint32_t>(crc32_z(0, bytes.data(), bytes.size()));
+}
+}  // namespace
+
+McapFile::McapFile(const std::string& path) : path_(path), file_(path) {
+    std::string magic(std::min<std::uint64_t>(kMagic.size(), file_.size()), '\0');
+    file_.read(magic.data(), magic.size());
+    if (magic.size() < kMagic.size()) throw Error("is cut off in its first bytes");
+    if (magic != kMagic) throw Error("is not an MCAP file of version 0");
+    if (!listBySummary()) listByFirstChunks();
+    rewind();
+}
+
+void McapFile::rewind() {
+    file_.seek(kMagic.size());
+    chunk_.clear();
+    dataEnded_ = chunkIsCut_ = false;
+}
+
+double McapFile::fraction() const {
+    return static_cast<double>(file_.position()) / static_cast<double>(file_.size());
+}
+
+void McapFile::readSchema(ByteInput& in) {
+    const auto id = in.number<std::uint16_t>();
+    schemas_[id] = in.text();
+}
+
+void McapFile::readChannel(ByteInput& in) {
+    const auto id = in.number<std::uint16_t>();
+    const auto schema = in.number<std::uint16_t>();
+    Channel& channel = channels_[id];
+    channel.topic = in.text();
+    channel.encoding = encodingOf(in.text());
+    const auto type = schemas_.find(schema);
+    channel.type = type == schemas_.end() ? "" : type->second;
+}
+
+void McapFile::readStatistics(ByteInput& in) {
+    in.skip(42);  // totals and times
+    const std::uint32_t bytes = in.number<std::uint32_t>();
+    for (std::uint32_t i = 0; i < bytes / 10; ++i) {
+        const auto channel = channels_.find(in.number<std::uint16_t>());
+        const auto messages = in.number<std::uint64_t>();
+        if (channel != channels_.end()) channel->second.messages = messages;
+    }
+    counted_ = true;
+}
+
+void McapFile::enterChunk(std::uint64_t bytes) {
+    const std::uint64_t end = file_.position() + bytes;
+    file_.skip(16);  // first and last time
+    const auto size = file_.number<std::uint64_t>();
+    const auto crc = file_.number<std::uint32_t>();
+    const std::string compression = file_.text();
+    const auto packedBytes = file_.number<std::uint64_t>();
+    if (file_.position() > end || packedBytes > end - file_.position())
+        throw Error("is damaged: a chunk is longer than its record");
+    if (compression.empty()) {
+        if (end > file_.size()) {  // what is there of it is read in place
+            chunkIsCut_ = true;
+            return;
+        }
+        if (packedBytes != size) throw Error("is damaged: a chunk of two sizes");
+        file_.read(chunk_.bytes(), packedBytes);
+    } else {
+        file_.read(packed_, packedBytes);
+        unpack(compression, packed_, size, chunk_.bytes());
+    }
+    if (crc != 0 && checksum(chunk_.bytes()) != crc)
+        throw Error("is damaged: a chunk's checksum is wrong");
+    chunk_.rewind();
+    file_.skip(end - file_.position());
+}
+
+std::optional<Message> McapFile::readMessage(ByteInput& in, std::uint64_t bytes) {
+    if (bytes < kMessageStart) throw Error("is damaged: a message's record is too short");
+    const auto id = in.number<std::uint16_t>();
+    in.skip(4);  // sequence
+    const auto log_ns = in.number<std::uint64_t>();
+    in.skip(8);  // publish time
+    const auto channel = channels_.find(id);
+    if (channel == channels_.end())
+        throw Error("is damaged: a message of channel " + std::to_string(id) +
+                    ", which is not described");
+    const auto& [topic, type, encoding, messages] = channel->second;
+    if (only_ && topic != *only_) {
+        in.skip(bytes - kMessageStart);
+        return std::nullopt;
+    }
+    in.read(data_, bytes - kMessageStart);
+    return Message{
+        topic, type, encoding, 1e-9 * static_cast<double>(log_ns), {data_.data(), data_.size()}};
+}
+
+std::optional<Message> McapFile::readRecord(ByteInput& in) {
+    const auto op = in.number<std::uint8_t>();
+    const auto bytes = in.number<std::uint64_t>();
+    if (op == kMessage) return readMessage(in, bytes);
+    if (op == kChunk) {
+        if (&in != &file_) throw Error("is damaged: a chunk in a chunk");
+        enterChunk(bytes);
+        return std::nullopt;
+    }
+    const std::uint64_t left = in.left();
+    if (bytes <= left) {
+        if (op == kSchema) readSchema(in);
+        if (op == kChannel) readChannel(in);
+        if (op == kStatistics) readStatistics(in);
+        if (op == kDataEnd) dataEnded_ = true;
+    }
+    const std::uint64_t taken = left - in.left();
+    if (taken > bytes) throw Error("is damaged: a record is longer than it says");
+    in.skip(bytes - taken);
+    return std::nullopt;
+}
+
+std::optional<Message> McapFile::next() {
+    while (chunk_.left() > 0 || !dataEnded_) {
+        ByteInput& in = chunk_.left() > 0 ? static_cast<ByteInput&>(chunk_) : file_;
+        if (auto message = readRecord(in)) return message;
+    }
+    checkEnd();
+    return std::nullopt;
+}
+
+void McapFile::checkEnd() {
+    const std::uint64_t least = file_.position() + kFooterBytes + kMagic.size();
+    std::string end(kMagic.size(), '\0');
+    if (least <= file_.size()) {
+        file_.seek(file_.size() - end.size());
+        file_.read(end.data(), end.size());
+    }
+    if (chunkIsCut_ || end != kMagic)
+        throw Error("is cut off at byte " + std::to_string(file_.size()));
+}
+
+bool McapFile::listBySummary() {
+    try {
+        checkEnd();
+        file_.seek(file_.size() - kMagic.size() - kFooterBytes);
+        if (file_.number<std::uint8_t>() != kFooter) return false;
+        file_.skip(8);
+        const auto summary = file_.number<std::uint64_t>();
+        if (summary == 0) return false;
+        file_.seek(summary);
+        const std::uint64_t footer = file_.size() - kMagic.size() - kFooterBytes;
+        while (file_.position() < footer) {
+            const auto op = file_.number<std::uint8_t>();
+            const auto bytes = file_.number<std::uint64_t>();
+            const std::uint64_t end = file_.position() + bytes;
+            if (op == kSchema) readSchema(file_);
+            if (op == kChannel) readChannel(file_);
+            if (op == kStatistics) readStatistics(file_);
+            file_.seek(end);
+        }
+    } catch (const Error&) {
+        return false;  // next() says so, when it comes there
+    }
+    takeTopics();
+    return !topics_.empty();
+}
+
+void McapFile::listByFirstChunks() {
+    rewind();
+    try {
+        while (file_.position() < kLookAhead && next()) continue;
+    } catch (const Error&) {
+    }
+    takeTopics();
+}
+
+void McapFile::takeTopics() {
+    topics_.clear();
+    for (const auto& [id, channel] : channels_) {
+        // Channels without messages are not named.
+        const std::size_t unnamed = 0;
+        addTopic(topics_,
+                 {channel.topic, channel.type,
+                  counted_ ? std::optional(channel.messages.value_or(unnamed)) : std::nullopt});
+    }
+}
+}  // namespace delio::io

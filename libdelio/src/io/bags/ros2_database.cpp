@@ -1,0 +1,115 @@
+#include "ros2_database.h"
+
+#include <sqlite3.h>
+
+#include <fstream>
+
+#include "delio/core/error.h"
+
+namespace delio::io {
+namespace {
+const std::string kMagic("SQLite format 3\0", 16);
+const std::string kZstd = "\x28\xB5\x2F\xFD";
+
+[[noreturn]] void fault(sqlite3* database) {
+    const std::string what = database ? sqlite3_errmsg(database) : "no memory";
+    throw Error("cannot be read as a ROS 2 database (" + what + ")");
+}
+
+void checkMagic(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::string magic(kMagic.size(), '\0');
+    if (!in) throw Error("cannot be opened");
+    in.read(magic.data(), static_cast<std::streamsize>(magic.size()));
+    if (magic.compare(0, kZstd.size(), kZstd) == 0)
+        throw Error("is compressed: unpack it first (zstd -d)");
+    if (magic != kMagic) throw Error("is not a ROS 2 database (sqlite3)");
+}
+}  // namespace
+
+Ros2Database::Query::~Query() { sqlite3_finalize(statement_); }
+Ros2Database::Handle::~Handle() { sqlite3_close_v2(database); }
+
+void Ros2Database::Query::prepare(sqlite3* database, const std::string& sql) {
+    database_ = database;
+    if (sqlite3_prepare_v2(database, sql.c_str(), -1, &statement_, nullptr) != SQLITE_OK)
+        fault(database);
+}
+
+bool Ros2Database::Query::step() {
+    const int code = sqlite3_step(statement_);
+    if (code != SQLITE_ROW && code != SQLITE_DONE) fault(database_);
+    return code == SQLITE_ROW;
+}
+
+void Ros2Database::Query::restart() { sqlite3_reset(statement_); }
+
+void Ros2Database::Query::bind(int parameter, std::int64_t value) {
+    sqlite3_bind_int64(statement_, parameter, value);
+}
+
+void Ros2Database::Query::bind(int parameter, const std::string& value) {
+    sqlite3_bind_text(statement_, parameter, value.data(), static_cast<int>(value.size()),
+                      SQLITE_TRANSIENT);
+}
+
+std::int64_t Ros2Database::Query::integer(int column) {
+    return sqlite3_column_int64(statement_, column);
+}
+
+std::string Ros2Database::Query::text(int column) {
+    const Bytes bytes = blob(column);
+    return std::string(reinterpret_cast<const char*>(bytes.data), bytes.size);
+}
+
+Bytes Ros2Database::Query::blob(int column) {
+    const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(statement_, column));
+    const int bytes = sqlite3_column_bytes(statement_, column);
+    return {data, data ? static_cast<std::size_t>(bytes) : 0};
+}
+
+Ros2Database::Ros2Database(const std::string& path) : path_(path) {
+    checkMagic(path);
+    const int code =
+        sqlite3_open_v2(path.c_str(), &handle_.database, SQLITE_OPEN_READONLY, nullptr);
+    if (code != SQLITE_OK) fault(handle_.database);
+    list();
+}
+
+void Ros2Database::list() {
+    Query topics;
+    topics.prepare(handle_.database,
+                   "SELECT name, type, (SELECT COUNT(*) FROM messages WHERE topic_id = topics.id) "
+                   "FROM topics ORDER BY id");
+    while (topics.step())
+        addTopic(topics_,
+                 {topics.text(0), topics.text(1), static_cast<std::size_t>(topics.integer(2))});
+}
+
+void Ros2Database::start() {
+    for (const Topic& topic : topics_)
+        if (!only_ || topic.name == *only_) rows_ += topic.messages.value_or(0);
+    const std::string one =
+        only_ ? " WHERE topic_id IN (SELECT id FROM topics WHERE name = ?1)" : "";
+    order_.prepare(handle_.database, "SELECT id FROM messages" + one + " ORDER BY timestamp, id");
+    if (only_) order_.bind(1, *only_);
+    contents_.prepare(handle_.database,
+                      "SELECT t.name, t.type, t.serialization_format, m.timestamp, m.data FROM "
+                      "messages m JOIN topics t ON t.id = m.topic_id WHERE m.id = ?1");
+}
+
+std::optional<Message> Ros2Database::next() {
+    if (!order_.prepared()) start();
+    if (!order_.step()) return std::nullopt;
+    contents_.restart();
+    contents_.bind(1, order_.integer(0));
+    if (!contents_.step()) throw Error("is damaged: a message's row is missing");
+    ++read_;
+    return Message{contents_.text(0), contents_.text(1), encodingOf(contents_.text(2)),
+                   1e-9 * static_cast<double>(contents_.integer(3)), contents_.blob(4)};
+}
+
+double Ros2Database::fraction() const {
+    return rows_ ? static_cast<double>(read_) / static_cast<double>(rows_) : 0;
+}
+}  // namespace delio::io
