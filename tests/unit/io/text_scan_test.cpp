@@ -46,6 +46,14 @@ TEST_F(TextScan, ColumnsByTheirCount) {
     refused("# one\n\n1 2 3 4 5 6 7\n", {"line 3", "not 7"});
 }
 
+TEST_F(TextScan, NumbersBeyondADouble) {
+    const auto scan = scanOf(read("1e999 -1e-999 3\n-inf 1 1e-320\n"));
+    EXPECT_TRUE(std::isnan(scan.points->getPointsBufferRef_x()[0]));
+    EXPECT_EQ(scan.points->getPointsBufferRef_y()[0], 0);
+    EXPECT_TRUE(std::isinf(scan.points->getPointsBufferRef_x()[1]));
+    EXPECT_EQ(scan.points->getPointsBufferRef_z()[1], 0);
+}
+
 TEST_F(TextScan, ColumnsByTheirNames) {
     for (const char* names : {"laser,\"Z\",y,X,Intensity", "//laser Z Y X scalar_Intensity"})
         EXPECT_EQ(pointsOf(scanOf(read(std::string("# made by\n") + names + "\n9,3,2,1,0.5\n"))),
