@@ -5,6 +5,7 @@
 #include "delio/io/rawlog_reader.h"
 #include "delio/io/trajectory.h"
 #include "kitti_tools.h"
+#include "same_scans.h"
 
 namespace {
 using namespace delio;
@@ -172,6 +173,33 @@ TEST_F(KittiTools, AnInterruptLeavesNothing) {
     EXPECT_EQ(test::namesIn(folder_ / "out"), Words());
 }
 
+TEST_F(KittiTools, LinksToTheScans) {
+    const fs::path linked = folder_ / "out" / "linked.rawlog";
+    const auto from = fs::relative(seq_);  // links hold the whole path all the same
+    const auto run = runTool("kitti2rawlog", {"-i", from, "-o", linked, "--link"});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    ASSERT_EQ(toRawlog().exitCode, 0);
+    EXPECT_EQ(test::readText(linked), test::readText(rawlog_));
+    const fs::path link = folder_ / "out" / "linked_Images" / "000003.bin";
+    ASSERT_TRUE(fs::is_symlink(link));
+    EXPECT_TRUE(fs::read_symlink(link).is_absolute());
+    EXPECT_TRUE(fs::equivalent(link, seq_ / "velodyne" / "000003.bin"));
+    io::RawlogReader copies(rawlog_), links(linked);
+    EXPECT_EQ(test::expectSameScans(copies, links), 5U);
+    test::expectSameDrive(copies, links);
+
+    // What the links lead to stays when they are replaced.
+    ASSERT_EQ(runTool("kitti2rawlog", {"-i", seq_, "-o", linked, "--force"}).exitCode, 0);
+    EXPECT_FALSE(fs::is_symlink(link));
+    EXPECT_EQ(test::namesIn(seq_ / "velodyne").size(), 5U);
+}
+
+TEST_F(KittiTools, RefusesToLinkWrongly) {
+    expectRefused(toRawlog({"--link", "--embed"}), 2, {"--link", "--embed"});
+    writeText(seq_ / "velodyne" / "000003.bin", "123456789012345");
+    expectRefused(toRawlog({"--link"}), 1, {"000003.bin", "multiple of 16"});
+}
+
 TEST_F(KittiTools, FindsThePosesOfKittisOwnLayout) {
     const fs::path sequence = folder_ / "dataset" / "sequences" / "07";
     test::writeSequence(sequence, fewScans(3));
@@ -188,7 +216,7 @@ TEST_F(KittiTools, FindsThePosesOfKittisOwnLayout) {
 }
 
 TEST_F(KittiTools, RawlogEditCountsAllScans) {
-    ASSERT_EQ(toRawlog().exitCode, 0);
+    ASSERT_EQ(toRawlog({"--link"}).exitCode, 0);
     const auto info = runTool("rawlog-edit", {"--info", "-i", rawlog_});
     if (info.exitCode == 127) {
         if (test::dataIsRequired()) FAIL() << "rawlog-edit (mrpt-apps) is not installed";

@@ -51,13 +51,16 @@ using FilesByExtension = std::map<std::string, std::vector<fs::path>>;
 FilesByExtension scansIn(const fs::path& folder) {
     if (!fs::is_directory(folder)) throw Error("'" + folder.string() + "' is not a folder");
     FilesByExtension files;
-    for (const auto& entry : fs::directory_iterator(folder)) {
+    std::error_code fault;
+    for (const auto& entry : fs::directory_iterator(folder, fault)) {
         const std::string extension = lowerCase(entry.path().extension().string());
         const bool hidden = entry.path().filename().string()[0] == '.';
-        if (!hidden && entry.is_regular_file() && recordsReader(extension) &&
+        if (!hidden && entry.is_regular_file(fault) && recordsReader(extension) &&
             !isSideText(entry.path()))
             files[extension].push_back(entry.path());
     }
+    if (files.empty() && fault)
+        throw Error("cannot read the folder '" + folder.string() + "': " + fault.message());
     return files;
 }
 

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cstring>
+#include <limits>
 
 namespace delio::io {
 namespace {
@@ -15,6 +16,14 @@ const char* pastGap(const char* at, const char* end) {
     ++at;
     while (at != end && isBlank(*at)) ++at;
     return at;
+}
+
+/** What a number is that a double does not reach: 0 where it is too small, NaN too large. */
+double beyondRange(std::string_view number) {
+    const auto exponent = number.find_first_of("eE");
+    const bool small = exponent == number.npos ? number.find('.') < 300
+                                               : number.find('-', exponent) != number.npos;
+    return small ? 0 : std::numeric_limits<double>::quiet_NaN();
 }
 }  // namespace
 
@@ -41,8 +50,9 @@ std::size_t numbersIn(std::string_view line, std::vector<double>& values) {
         double value = 0;
         if (*at == '+' && at + 1 != end && at[1] != '-') ++at;
         const auto parsed = std::from_chars(at, end, value);
-        // What is too small or too large for a double is not worth an error.
         if (parsed.ec == std::errc::invalid_argument) return kNoNumbers;
+        if (parsed.ec == std::errc::result_out_of_range)
+            value = beyondRange({at, static_cast<std::size_t>(parsed.ptr - at)});
         at = parsed.ptr;
         if (at != end && !isBlank(*at) && !isSeparator(*at)) return kNoNumbers;
         if (count < values.size()) values[count] = value;

@@ -12,7 +12,8 @@ std::optional<std::string_view> nextLine(std::string_view& rest, std::size_t* pa
 constexpr std::size_t kNoNumbers = static_cast<std::size_t>(-1);
 
 /** How many numbers a line has, whatever the locale; they are written to `values`, as many as it
- *  holds. Between them: spaces, tabs, and at most one comma or semicolon. */
+ *  holds (NaN for one too large for a double). Between them: spaces, tabs, and at most one comma or
+ * semicolon. */
 std::size_t numbersIn(std::string_view line, std::vector<double>& values);
 
 /** The words of such a line. */

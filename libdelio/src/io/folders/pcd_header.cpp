@@ -15,6 +15,8 @@ PcdHeader readPcdHeader(RecordFile& file) {
         std::vector<std::string> rest;
         while (words >> word) rest.push_back(word);
         const auto number = numberIn<std::size_t>(rest.empty() ? "" : rest[0]);
+        const bool isCount = keyword == "WIDTH" || keyword == "HEIGHT" || keyword == "POINTS";
+        if (isCount && !number) file.refuse("its " + keyword + " is no count of points");
         if (keyword == "FIELDS" || keyword == "COLUMNS")
             header.names = rest;
         else if (keyword == "SIZE")

@@ -8,7 +8,7 @@
 namespace delio::io {
 struct PcdHeader {
     std::vector<std::string> names, sizes, types, counts;  //!< a word a field
-    std::optional<std::size_t> points, width, height;      //!< where they are numbers
+    std::optional<std::size_t> points, width, height;      //!< where it says them
     std::string data;                                      //!< ascii, binary, binary_compressed
 };
 

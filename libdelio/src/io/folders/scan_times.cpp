@@ -56,16 +56,16 @@ std::vector<double> readTimesFile(const fs::path& file) {
         if (line->front() == '#') continue;
         const auto found = wordsIn(*line);
         const auto number = found.size() == 1 ? numberIn<double>(found[0]) : std::nullopt;
-        const auto date = number ? std::nullopt : unixTimeOfDate(std::string(*line));
-        if (number && std::isfinite(*number)) {
+        if (number && std::isfinite(*number) && dates.empty()) {
             words.push_back(found[0]);
             numbers.push_back(*number);
-        } else if (date) {
-            dates.push_back(*date);
+            continue;
         }
-        if ((!date && words.empty()) || !(date || number) || (!dates.empty() && !words.empty()))
+        const auto date = number ? std::nullopt : unixTimeOfDate(std::string(*line));
+        if (!date || !words.empty())
             throw Error("'" + file.string() + "', line " + std::to_string(row) +
                         ": it has to be a time, in seconds or as a date and time like the others");
+        dates.push_back(*date);
     }
     if (!dates.empty()) return dates;
     const double ticks = ticksOf(numbers);
