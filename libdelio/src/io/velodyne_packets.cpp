@@ -3,6 +3,7 @@
 #include <mrpt/maps/CPointsMapXYZI.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -76,28 +77,35 @@ const Block* firstReturns(const Packet& packet, int b) {
     return nullptr;
 }
 
+/** Where the beams of a packet point to at azimuth 0: turned by how far the sensor gets between two
+ *  azimuths until a return is measured, and by its laser's correction. */
+struct Heading {
+    double sine = 0, cosine = 1;
+};
+
 class Decoder {
  public:
-    Decoder(const std::vector<LaserCalibration>& lasers, double minRange, double maxRange)
-        : lasers_(lasers),
-          times_(firingTimes(lasers.size())),
-          angleUnit_(radiansPerUnit(lasers)),
-          minRange_(minRange),
-          maxRange_(maxRange) {}
+    Decoder(const std::vector<LaserCalibration>& lasers, const VelodyneLayout& layout)
+        : lasers_(lasers), layout_(layout), angleUnit_(radiansPerUnit(lasers)) {}
 
     /** `start_s`: from the stamp to the packet, `period_s`: until the next one; with a period of 0
-     *  points get no times. */
-    void decode(const Packet& packet, double start_s, double period_s) {
-        const double turn = turnPerBlock(packet);
+     *  points get no times. Otherwise points get their block's time, or their laser's. */
+    void decode(const Packet& packet, double start_s, double period_s, bool ofLaser) {
+        turnTo(turnPerBlock(packet));
+        const int shots = ofLaser ? shotsOf(packet) : kBlocks;
+        int shot = 0;
         for (int b = 0; b < kBlocks; ++b) {
             const Block& block = packet.blocks[b];
+            if (b > 0 && (!ofLaser || block.rotation() != packet.blocks[b - 1].rotation())) ++shot;
             const bool lower = lasers_.size() == 64 && block.header() == Velodyne::LOWER_BANK;
+            if (!lower && block.header() != Velodyne::UPPER_BANK) continue;
             const std::size_t before = points_.size();
-            if (lower || block.header() == Velodyne::UPPER_BANK)
-                decode(block, firstReturns(packet, b), lower ? kReturns : 0, turn);
-            if (period_s > 0)
-                pointTimes_.insert(pointTimes_.end(), points_.size() - before,
-                                   static_cast<float>(start_s + period_s * b / kBlocks));
+            decode(block, firstReturns(packet, b), lower ? kReturns : 0);
+            if (period_s <= 0) continue;
+            pointTimes_.resize(points_.size(),
+                               static_cast<float>(start_s + period_s * shot / shots));
+            for (std::size_t i = before; ofLaser && i < points_.size(); ++i)
+                pointTimes_[i] += static_cast<float>(points_[i].share * period_s / shots);
         }
     }
 
@@ -116,52 +124,101 @@ class Decoder {
  private:
     struct Point {
         float x, y, z, intensity;
+        double share;  //!< of the way to the next azimuth
     };
 
-    void decode(const Block& block, const Block* first, std::size_t firstLaser, double turn) {
+    static int shotsOf(const Packet& packet) {
+        int shots = 1;
+        for (int b = 1; b < kBlocks; ++b)
+            shots += packet.blocks[b].rotation() != packet.blocks[b - 1].rotation();
+        return shots;
+    }
+
+    std::size_t perFiring() const { return std::min(kReturns, lasers_.size()); }
+
+    double shareOf(std::size_t k) const {
         // A VLP-16 fires twice within a block.
-        const std::size_t perFiring = std::min(kReturns, lasers_.size());
-        const std::size_t firings = kReturns / perFiring;
+        const std::size_t firings = kReturns / perFiring();
+        return (static_cast<double>(k / perFiring()) + layout_.firing.share(k % perFiring())) /
+               static_cast<double>(firings);
+    }
+
+    /** `turn`: 0.01 deg from one azimuth to the next. */
+    void turnTo(int turn) {
+        if (turn == turn_) return;
+        turn_ = turn;
+        for (std::size_t k = 0; k < 2 * kReturns; ++k) {
+            const std::size_t inBlock = k % kReturns;
+            const std::size_t laser = inBlock % perFiring() + (k < kReturns ? 0 : kReturns);
+            if (laser >= lasers_.size()) continue;
+            const double angle = mrpt::DEG2RAD(0.01 * turn * shareOf(inBlock)) -
+                                 angleUnit_ * lasers_[laser].azimuthCorrection;
+            headings_[k] = {std::sin(angle), std::cos(angle)};
+        }
+    }
+
+    void decode(const Block& block, const Block* first, std::size_t firstLaser) {
+        const double angle = mrpt::DEG2RAD(0.01 * block.rotation());
+        const Heading turned{std::sin(angle), std::cos(angle)};
         for (std::size_t k = 0; k < kReturns; ++k) {
             const auto& measured = block.laser_returns[k];
             if (measured.distance() == 0) continue;
             if (first && first->laser_returns[k].distance() == measured.distance()) continue;
-            const std::size_t firing = k / perFiring, laser = k % perFiring;
-            const double share =
-                (static_cast<double>(firing) + times_.share(laser)) / static_cast<double>(firings);
-            const double azimuth = mrpt::DEG2RAD(0.01 * (block.rotation() + turn * share));
-            add(firstLaser + laser, azimuth, measured);
+            const Heading& beam = headings_[k + firstLaser];
+            const Heading heading{turned.sine * beam.cosine + turned.cosine * beam.sine,
+                                  turned.cosine * beam.cosine - turned.sine * beam.sine};
+            add(firstLaser + k % perFiring(), heading, measured, shareOf(k));
         }
     }
 
     /** Velodyne's azimuth is clockwise, from the front to the right. The offsets of the laser are
      *  at right angles to the beam. */
-    void add(std::size_t laser, double azimuth, const Velodyne::laser_return_t& measured) {
+    void add(std::size_t laser, const Heading& heading, const Velodyne::laser_return_t& measured,
+             double share) {
         const LaserCalibration& c = lasers_[laser];
-        const auto unit = static_cast<double>(Velodyne::DISTANCE_RESOLUTION);
-        const double range = unit * measured.distance() + c.distanceCorrection;
-        if (!(range >= minRange_ && range <= maxRange_)) return;
-        azimuth -= angleUnit_ * c.azimuthCorrection;
+        const double range = layout_.unit_m * measured.distance() + c.distanceCorrection;
+        if (!(range >= layout_.minRange && range <= layout_.maxRange)) return;
         const double flat =
             range * c.cosVertCorrection - c.verticalOffsetCorrection * c.sinVertCorrection;
         const double up =
             range * c.sinVertCorrection + c.verticalOffsetCorrection * c.cosVertCorrection;
         const double sideways = c.horizontalOffsetCorrection;
-        const double cosine = std::cos(azimuth), sine = std::sin(azimuth);
-        points_.push_back({static_cast<float>(flat * cosine + sideways * sine),
-                           static_cast<float>(sideways * cosine - flat * sine),
+        points_.push_back({static_cast<float>(flat * heading.cosine + sideways * heading.sine),
+                           static_cast<float>(sideways * heading.cosine - flat * heading.sine),
                            static_cast<float>(up),
-                           static_cast<float>(measured.intensity()) / 255.0F});
+                           static_cast<float>(measured.intensity()) / 255.0F, share});
         rings_.push_back(static_cast<std::uint16_t>(laser));
     }
 
     const std::vector<LaserCalibration>& lasers_;
-    FiringTimes times_;
-    double angleUnit_, minRange_, maxRange_;
+    VelodyneLayout layout_;
+    double angleUnit_;
+    int turn_ = -1;
+    std::array<Heading, 2 * kReturns> headings_;
     std::vector<Point> points_;
     std::vector<std::uint16_t> rings_;
     std::vector<float> pointTimes_;
 };
+
+void checkCalibration(const std::vector<LaserCalibration>& lasers) {
+    if (lasers.empty())
+        throw Error(
+            "a Velodyne scan without its calibration; record it with a calibration file of the "
+            "sensor");
+    if (lasers.size() != 16 && lasers.size() != 32 && lasers.size() != 64)
+        throw Error("a Velodyne scan of " + std::to_string(lasers.size()) +
+                    " lasers; models of 16, 32 and 64 are known");
+}
+
+/** The usual step; 0 where there is none. */
+double medianStep(const std::vector<double>& values) {
+    if (values.size() < 2) return 0;
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return std::max(0.0, *middle);
+}
 }  // namespace
 
 FiringTimes firingTimes(std::size_t lasers) {
@@ -174,22 +231,30 @@ void decodeVelodynePackets(const std::vector<Packet>& packets,
                            const mrpt::obs::VelodyneCalibration& calibration, double minRange,
                            double maxRange, Scan& scan) {
     const auto& lasers = calibration.laser_corrections;
-    if (lasers.empty())
-        throw Error(
-            "a Velodyne scan without its calibration; record it with a calibration file of the "
-            "sensor");
-    if (lasers.size() != 16 && lasers.size() != 32 && lasers.size() != 64)
-        throw Error("a Velodyne scan of " + std::to_string(lasers.size()) +
-                    " lasers; models of 16, 32 and 64 are known");
-    Decoder decoder(lasers, minRange, maxRange);
+    checkCalibration(lasers);
+    Decoder decoder(lasers,
+                    {firingTimes(lasers.size()), static_cast<double>(Velodyne::DISTANCE_RESOLUTION),
+                     minRange, maxRange});
     const double period_s = 1e-6 * packetPeriod_us(packets);
     for (std::size_t i = 0; i < packets.size(); ++i) {
         // A clock that was set in between does not tell: then packets are taken as evenly spaced.
         constexpr double kOff_s = 0.05;
         const double even_s = static_cast<double>(i) * period_s;
         const double told_s = 1e-6 * microsecondsBetween(packets.front(), packets[i]);
-        decoder.decode(packets[i], std::abs(told_s - even_s) < kOff_s ? told_s : even_s, period_s);
+        decoder.decode(packets[i], std::abs(told_s - even_s) < kOff_s ? told_s : even_s, period_s,
+                       false);
     }
+    decoder.moveTo(scan);
+}
+
+void decodeVelodynePackets(const std::vector<Packet>& packets, const std::vector<double>& starts_s,
+                           const mrpt::obs::VelodyneCalibration& calibration,
+                           const VelodyneLayout& layout, Scan& scan) {
+    checkCalibration(calibration.laser_corrections);
+    Decoder decoder(calibration.laser_corrections, layout);
+    const double period_s = medianStep(starts_s);
+    for (std::size_t i = 0; i < packets.size(); ++i)
+        decoder.decode(packets[i], starts_s[i], period_s, true);
     decoder.moveTo(scan);
 }
 }  // namespace delio::io

@@ -12,9 +12,10 @@ namespace delio::io {
 struct FiringTimes {
     double laser_us = 0;
     double cycle_us = 1;
+    std::size_t atOnce = 1;  //!< lasers that fire together
 
     double share(std::size_t laser) const {
-        return static_cast<double>(laser) * laser_us / cycle_us;
+        return static_cast<double>(laser / atOnce) * laser_us / cycle_us;
     }
 };
 
@@ -37,4 +38,20 @@ void decodeVelodynePackets(
     const std::vector<mrpt::obs::CObservationVelodyneScan::TVelodyneRawPacket>& packets,
     const mrpt::obs::VelodyneCalibration& calibration, double minRange, double maxRange,
     Scan& scan);
+
+/** What else than its calibration a decoder has to know of a sensor. */
+struct VelodyneLayout {
+    FiringTimes firing;
+    double unit_m = 0.002;  //!< of a return's distance
+    double minRange = 0.5;  //!< metres
+    double maxRange = 300;
+};
+
+/** As above, with the times told by the caller: `starts_s`, one a packet, from the scan's stamp.
+ *  `times_s` are those of each point's laser; blocks that share an azimuth were measured at once.
+ */
+void decodeVelodynePackets(
+    const std::vector<mrpt::obs::CObservationVelodyneScan::TVelodyneRawPacket>& packets,
+    const std::vector<double>& starts_s, const mrpt::obs::VelodyneCalibration& calibration,
+    const VelodyneLayout& layout, Scan& scan);
 }  // namespace delio::io

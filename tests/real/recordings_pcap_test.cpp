@@ -1,0 +1,128 @@
+// Pcaps of Velodyne and Ouster sensors.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "delio/io/scan_reader.h"
+#include "io/packets/ouster_frame.h"
+#include "io/packets/pcap_reader.h"
+#include "io/packets/udp_stream.h"
+#include "pcap_writer.h"
+#include "test_data.h"
+
+namespace {
+using namespace delio;
+
+struct Known {
+    std::string file, json, sensor;
+    std::vector<std::size_t> points;  //!< a scan
+    double period_s;
+};
+
+void check(const std::string& path, const Known& known) {
+    io::ScanSource source;
+    source.path = path;
+    if (!known.json.empty()) source.sensorFile = (test::dataFolder() / known.json).string();
+    const auto reader = io::openPcap(source);
+    EXPECT_EQ(reader->recording().sensor, known.sensor);
+    EXPECT_FALSE(reader->meta()->motionCompensated);
+    std::vector<std::size_t> points;
+    std::vector<double> stamps_s;
+    while (const auto scan = reader->next()) {
+        points.push_back(scan->points->size());
+        stamps_s.push_back(scan->stamp_s);
+        ASSERT_EQ(scan->times_s.size(), scan->points->size());
+        EXPECT_EQ(scan->times_s.front(), 0);
+        EXPECT_TRUE(std::is_sorted(scan->times_s.begin(), scan->times_s.end()) ||
+                    known.sensor == "Velodyne HDL-32E");
+        EXPECT_LT(scan->times_s.back(), 1.01 * known.period_s);
+        for (std::size_t i = 0; i < scan->points->size(); i += 7) {
+            float x = 0, y = 0, z = 0;
+            scan->points->getPoint(i, x, y, z);
+            ASSERT_GT(std::hypot(x, y, z), 0.4);
+            ASSERT_LT(std::hypot(x, y, z), 300);
+        }
+    }
+    EXPECT_EQ(points, known.points) << path;
+    for (std::size_t i = 2; i < stamps_s.size(); ++i)
+        EXPECT_NEAR(stamps_s[i] - stamps_s[i - 1], known.period_s, 0.01 * known.period_s);
+    EXPECT_NEAR(reader->fraction().value_or(0), 1, 1e-9);
+}
+
+TEST(RecordingsPcap, Velodyne) {
+    DELIO_NEED_DATA("mrpt/vlp16_packets_1206.bin");
+    const Known hdl32{
+        "mrpt/sample_velodyne_hdl32.pcap", "", "Velodyne HDL-32E", {53405, 53475}, 0.1106};
+    const Known vlp16{"mrpt/sample_velodyne_vlp16_gps.pcap",
+                      "",
+                      "Velodyne VLP-16",
+                      {14522, 18561, 18554, 18482},
+                      0.1};
+    for (const Known& known : {hdl32, vlp16})
+        check((test::dataFolder() / known.file).string(), known);
+
+    std::ifstream in(test::dataFolder() / "mrpt/vlp16_packets_1206.bin", std::ios::binary);
+    test::PcapWriter writer;
+    test::Bytes packet(1206);
+    for (int i = 0; in.read(reinterpret_cast<char*>(packet.data()), 1206); ++i)
+        writer.add(packet, 1600000000 + 0.001327 * i);
+    const test::TemporaryFolder folder;
+    writer.write((folder / "packets.pcap").string());
+    const Known packets{"",
+                        "",
+                        "Velodyne VLP-16",
+                        {10108, 15364, 15325, 15248, 15244, 15310, 15293, 15265, 15282, 15274,
+                         15326, 15306, 15296, 9393},
+                        0.1};
+    check((folder / "packets.pcap").string(), packets);
+}
+
+TEST(RecordingsPcap, Ouster) {
+    DELIO_NEED_DATA("ouster");
+    const std::vector<Known> all{
+        {"ouster/OS-0-32-U1_v2.2.0_1024x10.pcap", "", "Ouster OS-0-32-U1", {21631}, 0.1},
+        {"ouster/OS-1-128_v2.3.0_1024x10_lb_n3.pcap",
+         "ouster/OS-1-128_v2.3.0_1024x10.json",
+         "Ouster OS-1-128",
+         {107647, 107357, 107532},
+         0.1},
+        {"ouster/OS-1-64_1024x10_fw20.pcap",
+         "ouster/OS-1-64_sensor_config_reduced.json",
+         "Ouster",
+         {16749},
+         0.1}};
+    for (const Known& known : all) check((test::dataFolder() / known.file).string(), known);
+}
+
+/** Ouster's own digest of this recording has MD5 sums of its fields, row by row. */
+TEST(RecordingsPcap, RangesAreThoseOfOustersDigest) {
+    DELIO_NEED_DATA("ouster");
+    const std::string stem = (test::dataFolder() / "ouster/OS-0-32-U1_v2.2.0_1024x10").string();
+    const auto info = io::readOusterInfo(test::readText(stem + ".json"), stem + ".json");
+    io::OusterFrame frame(info);
+    io::UdpStream stream(stem + ".pcap");
+    while (const auto datagram = stream.next()) {
+        if (datagram->bytes != info.packetBytes()) continue;
+        const io::OusterPacket packet(info, datagram->payload);
+        EXPECT_EQ(packet.frameOf(0), 1453);
+        for (std::size_t column = 0; column < info.columnsPerPacket; ++column)
+            if (packet.valid(column)) packet.copyTo(frame, column);
+    }
+    EXPECT_EQ(frame.count, 1024U);
+    const test::TemporaryFolder folder;
+    std::ofstream out(folder / "ranges", std::ios::binary);
+    for (std::size_t row = 0; row < info.rows; ++row)
+        for (std::size_t column = 0; column < info.columns; ++column)
+            out.write(reinterpret_cast<const char*>(&frame.ranges_mm[column * info.rows + row]), 4);
+    out.close();
+    const std::string command =
+        "md5sum " + (folder / "ranges").string() + " > " + (folder / "sum").string();
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    const std::string sum = test::readText(folder / "sum").substr(0, 32);
+    EXPECT_NE(test::readText(stem + "_digest.json").find("\"RANGE\": \"" + sum + "\""),
+              std::string::npos)
+        << sum;
+}
+}  // namespace
