@@ -85,7 +85,7 @@ TEST(BagDamage, LyingSizesTakeNoMemory) {
     for (const std::string compression : {"", "zstd"}) {
         writeMcap(mcap, drive(4, Kind::kCdr), compression);
         bytes = test::readText(mcap);
-        const std::size_t first = 8 + 9 + 12;  // magic and the header's record
+        const std::size_t first = 8 + 9 + 16;  // magic and the header's record
         ASSERT_EQ(bytes[first], 6);
         for (const std::size_t at :
              {first + 1, first + 9 + 16, first + 9 + 16 + 16 + compression.size()}) {
