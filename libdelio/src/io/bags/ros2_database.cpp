@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "delio/core/error.h"
@@ -16,14 +17,31 @@ const std::string kZstd = "\x28\xB5\x2F\xFD";
     throw Error("cannot be read as a ROS 2 database (" + what + ")");
 }
 
-void checkMagic(const std::string& path) {
+/** A big-endian number of the database's header. */
+std::uint64_t numberAt(const std::string& header, std::size_t at, std::size_t size) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < size; ++i)
+        value = value << 8U | static_cast<std::uint8_t>(header[at + i]);
+    return value;
+}
+
+void checkHeader(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
-    std::string magic(kMagic.size(), '\0');
+    std::string header(100, '\0');
     if (!in) throw Error("cannot be opened");
-    in.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-    if (magic.compare(0, kZstd.size(), kZstd) == 0)
+    in.read(header.data(), static_cast<std::streamsize>(header.size()));
+    if (header.compare(0, kZstd.size(), kZstd) == 0)
         throw Error("is compressed: unpack it first (zstd -d)");
-    if (magic != kMagic) throw Error("is not a ROS 2 database (sqlite3)");
+    if (header.compare(0, kMagic.size(), kMagic) != 0)
+        throw Error("is not a ROS 2 database (sqlite3)");
+    // sqlite3 takes what is missing of its last page for zeros. A page size of 1 is 65536; the
+    // number of pages is right if it is of the same change as the file.
+    const std::uint64_t page = numberAt(header, 16, 2), pages = numberAt(header, 28, 4);
+    const std::uint64_t bytes = std::filesystem::file_size(path);
+    const std::uint64_t least = pages * (page == 1 ? 65536 : page);
+    if (numberAt(header, 24, 4) == numberAt(header, 92, 4) && bytes < least)
+        throw Error("is cut off at byte " + std::to_string(bytes) + " of " +
+                    std::to_string(least));
 }
 }  // namespace
 
@@ -69,7 +87,7 @@ Bytes Ros2Database::Query::blob(int column) {
 }
 
 Ros2Database::Ros2Database(const std::string& path) : path_(path) {
-    checkMagic(path);
+    checkHeader(path);
     const int code =
         sqlite3_open_v2(path.c_str(), &handle_.database, SQLITE_OPEN_READONLY, nullptr);
     if (code != SQLITE_OK) fault(handle_.database);

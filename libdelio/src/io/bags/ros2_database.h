@@ -12,7 +12,6 @@ class Ros2Database : public MessageSource {
  public:
     /** Throws Error if it cannot be opened, is no such database, or is compressed. */
     explicit Ros2Database(const std::string& path);
-    ~Ros2Database() override;
 
     const std::vector<Topic>& topics() const override { return topics_; }
     void only(const std::string& topic) override { only_ = topic; }

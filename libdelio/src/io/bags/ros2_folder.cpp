@@ -13,23 +13,27 @@ namespace fs = std::filesystem;
 
 Ros2Folder::Ros2Folder(const std::string& folder) : folder_(folder) {
     path_ = (fs::path(folder) / "metadata.yaml").string();
-    if (!fs::is_regular_file(path_)) throw Error("is not there");
+    if (!fs::is_regular_file(path_)) throw Error("has no metadata.yaml");
     try {
         readMetadata(path_);
     } catch (const YAML::Exception& e) {
-        throw Error("cannot be understood (" + e.msg + ")");
+        throw Error("has a metadata.yaml that cannot be understood (" + e.msg + ")");
     }
-    if (files_.empty()) throw Error("names no files");
-    open();
+    if (files_.empty()) throw Error("has a metadata.yaml that names no files");
+    try {
+        open();
+    } catch (const Error& e) {
+        throw Error("has '" + files_.front() + "', which " + e.what());
+    }
     if (topics_.empty()) topics_ = source_->topics();
 }
 
 void Ros2Folder::readMetadata(const std::string& yaml) {
     const YAML::Node bag = YAML::LoadFile(yaml)["rosbag2_bagfile_information"];
-    if (!bag || !bag.IsMap()) throw Error("is not the description of a ROS 2 bag");
+    if (!bag || !bag.IsMap()) throw Error("has a metadata.yaml that does not describe a ROS 2 bag");
     const auto mode = bag["compression_mode"] ? bag["compression_mode"].as<std::string>() : "";
     if (!mode.empty() && mode != "NONE" && mode != "none")
-        throw Error("says that the bag is compressed: unpack it first (ros2 bag convert)");
+        throw Error("is compressed: unpack it first (ros2 bag convert)");
     for (const auto& file : bag["relative_file_paths"]) {
         // Older bags have their own folder's name in it.
         const fs::path name = file.as<std::string>(), inside = fs::path(folder_) / name;

@@ -1,0 +1,76 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/** Bags as recorders write them, for tests. */
+namespace delio::test {
+using BagBytes = std::string;
+
+/** Writes the fields of a message as ROS 1 or as CDR. */
+class WireWriter {
+ public:
+    enum class Kind { kRos1, kCdr, kCdrBigEndian };
+    explicit WireWriter(Kind kind);
+
+    template <typename Number>
+    WireWriter& number(Number value) {
+        return raw(static_cast<std::uint64_t>(value), sizeof(Number));
+    }
+    WireWriter& text(const std::string& value);
+    /** Bytes alone, and behind their length. */
+    WireWriter& bytes(const BagBytes& value);
+    WireWriter& byteArray(const BagBytes& value);
+    /** std_msgs/Header. */
+    WireWriter& header(double stamp_s);
+    WireWriter& time(double seconds);
+    const BagBytes& message() const { return bytes_; }
+
+ private:
+    WireWriter& raw(std::uint64_t value, std::size_t size);
+
+    Kind kind_;
+    BagBytes bytes_;
+};
+
+/** A sensor_msgs/PointCloud2 of x, y, z, intensity (float32), ring (uint16) and time (float32). */
+struct CloudSpec {
+    int scan = 0;  //!< what the points tell
+    double stamp_s = 0;
+    std::uint32_t rows = 1, columns = 20;
+    std::uint32_t padding = 0;  //!< bytes behind each row
+    bool withX = true;
+    bool bigEndian = false;  //!< the points' numbers
+};
+BagBytes cloudMessage(const CloudSpec& spec, WireWriter::Kind kind = WireWriter::Kind::kRos1);
+
+struct BagTopic {
+    std::string name, type;
+};
+struct BagMessage {
+    std::size_t topic = 0;  //!< which of the topics
+    double log_s = 0;
+    BagBytes bytes;
+};
+/** What lies in a bag. */
+struct BagContents {
+    std::vector<BagTopic> topics;
+    std::vector<BagMessage> messages;
+    std::string encoding = "ros1";  //!< of MCAP's channels
+};
+
+enum class Index { kWritten, kNever };
+/** `compression`: none, bz2 or lz4; a chunk holds `perChunk` messages. */
+void writeRos1Bag(const std::filesystem::path& file, const BagContents& contents,
+                  const std::string& compression = "none", Index index = Index::kWritten,
+                  std::size_t perChunk = 2);
+/** `compression`: "", lz4 or zstd; chunks of `perChunk` messages, 0: none. */
+void writeMcap(const std::filesystem::path& file, const BagContents& contents,
+               const std::string& compression = "", Index index = Index::kWritten,
+               std::size_t perChunk = 2);
+void writeDatabase(const std::filesystem::path& file, const BagContents& contents);
+/** metadata.yaml; the files themselves are the caller's. */
+void writeMetadata(const std::filesystem::path& folder, const BagContents& contents,
+                   const std::vector<std::string>& files);
+}  // namespace delio::test
