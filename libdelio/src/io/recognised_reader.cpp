@@ -12,7 +12,7 @@ RecognisedReader::RecognisedReader(std::unique_ptr<ScanReader> source)
 }
 
 void RecognisedReader::readAhead() {
-    constexpr std::size_t kScans = 2;
+    constexpr std::size_t kScans = 3;
     try {
         while (ahead_.size() < kScans) {
             auto scan = source_->next();
@@ -30,7 +30,8 @@ void RecognisedReader::recognise() {
     if (ahead_.empty()) return;
     recording_.pointTimes = !ahead_.front().times_s.empty();
     if (ahead_.size() > 1) {
-        const double period_s = ahead_[1].stamp_s - ahead_[0].stamp_s;
+        // The first scan of a stream is a part of a turn.
+        const double period_s = ahead_.back().stamp_s - ahead_[ahead_.size() - 2].stamp_s;
         constexpr double kLongest_s = 10;
         if (period_s > 0 && period_s < kLongest_s) recording_.rate_hz = 1 / period_s;
     }

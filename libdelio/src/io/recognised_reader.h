@@ -6,7 +6,7 @@
 #include "delio/io/scan_reader.h"
 
 namespace delio::io {
-/** A reader whose recording() and meta() are whole from the beginning: it reads two scans ahead,
+/** A reader whose recording() and meta() are whole from the beginning: it reads three scans ahead,
  *  and looks at the points where the source does not say whether they were de-skewed. That is
  *  looked at again now and then: a vehicle that stood first looks as if they were not. */
 class RecognisedReader : public ScanReader {

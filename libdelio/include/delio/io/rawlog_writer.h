@@ -39,7 +39,7 @@ class RawlogWriter {
      *  and the sensor's pose. */
     void add(const Scan& scan, double epoch_s);
 
-    /** The same, of a scan that stays in `file`, which is in KITTI's format: OUT_Images holds a
+    /** Appends a scan that stays in `file`, which is in KITTI's format: OUT_Images holds a
      *  symbolic link to its absolute path. Not for embedded scans. Throws Error where that fails.
      */
     void addLinked(double stamp_s, double epoch_s, const std::string& file);

@@ -71,7 +71,7 @@ struct ScanSource {
     std::string sensorFile;
 };
 
-/** Opens `source` and reads its first two scans, so that all of recording() is known, and meta()
+/** Opens `source` and reads its first three scans, so that all of recording() is known, and meta()
  *  also where the points had to be looked at for it. Throws Error if there is nothing to read, what
  *  it is is not known, or what is said about the drive cannot be understood; a fault in these scans
  *  is thrown by next(). */
