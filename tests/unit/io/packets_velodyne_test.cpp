@@ -23,7 +23,8 @@ std::vector<Bytes> packetsOf(const Spinner& spinner, int turns) {
     for (int turn = 0; turn < turns; ++turn)
         for (std::size_t i = 0; i < scan.scan_packets.size(); ++i) {
             packets.emplace_back(bytes + 1206 * i, bytes + 1206 * (i + 1));
-            putAt(packets.back(), 1200, static_cast<std::uint32_t>(1600e6 + 1e3 * packets.size()));
+            putAt(packets.back(), 1200,
+                  static_cast<std::uint32_t>(1600000000 + 1000 * packets.size()));
         }
     return packets;
 }
