@@ -165,6 +165,9 @@ TEST(PacketsVelodyne, OtherSensorsAreErrors) {
     packets[5][1205] = 0x77;
     EXPECT_NE(faultOf(packets).find("0x77"), std::string::npos);
     EXPECT_NE(faultOf(packets, "/none.xml").find("/none.xml"), std::string::npos);
+    // Every HDL-64E has a calibration of its own.
+    EXPECT_NE(faultOf(packetsOf(hdl64(1), 1)).find("calibration of a Velodyne HDL-64E"),
+              std::string::npos);
 }
 
 TEST(PacketsVelodyne, ClocksThatAreNotSetOrStand) {
