@@ -24,7 +24,7 @@ std::vector<Bytes> packetsOf(const Spinner& spinner, int turns) {
         for (std::size_t i = 0; i < scan.scan_packets.size(); ++i) {
             packets.emplace_back(bytes + 1206 * i, bytes + 1206 * (i + 1));
             putAt(packets.back(), 1200,
-                  static_cast<std::uint32_t>(1600e6 + 1e3 * static_cast<double>(packets.size())));
+                  static_cast<std::uint32_t>(1600000000 + 1000 * packets.size()));
         }
     return packets;
 }
@@ -165,6 +165,9 @@ TEST(PacketsVelodyne, OtherSensorsAreErrors) {
     packets[5][1205] = 0x77;
     EXPECT_NE(faultOf(packets).find("0x77"), std::string::npos);
     EXPECT_NE(faultOf(packets, "/none.xml").find("/none.xml"), std::string::npos);
+    // Every HDL-64E has a calibration of its own.
+    EXPECT_NE(faultOf(packetsOf(hdl64(1), 1)).find("calibration of a Velodyne HDL-64E"),
+              std::string::npos);
 }
 
 TEST(PacketsVelodyne, ClocksThatAreNotSetOrStand) {

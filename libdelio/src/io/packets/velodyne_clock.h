@@ -12,7 +12,8 @@ class VelodyneClock {
 
  private:
     bool started_ = false;
-    double time_s_ = 0;  //!< of the packet before
+    double start_s_ = 0;  //!< Unix time of the first packet
+    double since_s_ = 0;  //!< from there to the packet before: a sum of Unix times would drift
     double clock_s_ = 0, received_s_ = 0;
 };
 }  // namespace delio::io

@@ -52,8 +52,9 @@ VelodyneCalibration calibrationOfHiRes() {
 VelodyneCalibration usualCalibration(const std::string& name) {
     if (name == "VLP-32C") return calibrationOf32C();
     if (name == "Puck Hi-Res") return calibrationOfHiRes();
-    const std::string ofMrpt = name == "VLP-16" ? "VLP16" : name == "HDL-32E" ? "HDL32" : "HDL64";
-    return VelodyneCalibration::LoadDefaultCalibration(ofMrpt);
+    // No two HDL-64E are alike, and MRPT 2.5.8 fails to read the one that it has.
+    if (name == "HDL-64E") return {};
+    return VelodyneCalibration::LoadDefaultCalibration(name == "VLP-16" ? "VLP16" : "HDL32");
 }
 
 VelodyneCalibration readCalibration(const std::string& file) {
@@ -63,8 +64,10 @@ VelodyneCalibration readCalibration(const std::string& file) {
     bool read = false;
     try {
         const std::string kind = std::filesystem::path(file).extension().string();
-        read =
-            kind == ".xml" ? calibration.loadFromXMLFile(file) : calibration.loadFromYAMLFile(file);
+        // MRPT 2.5.8 takes the "text" of a YAML for its file's name, and so cannot read one either.
+        read = kind == ".xml"
+                   ? calibration.loadFromXMLFile(file)
+                   : calibration.loadFromYAMLText(file) || calibration.loadFromYAMLFile(file);
     } catch (const std::exception&) {
         read = false;
     }
