@@ -40,8 +40,7 @@ void checkHeader(const std::string& path) {
     const std::uint64_t bytes = std::filesystem::file_size(path);
     const std::uint64_t least = pages * (page == 1 ? 65536 : page);
     if (numberAt(header, 24, 4) == numberAt(header, 92, 4) && bytes < least)
-        throw Error("is cut off at byte " + std::to_string(bytes) + " of " +
-                    std::to_string(least));
+        throw Error("is cut off at byte " + std::to_string(bytes) + " of " + std::to_string(least));
 }
 }  // namespace
 
