@@ -84,7 +84,7 @@ BagBytes bagHeader(std::uint64_t index, std::size_t connections, std::size_t chu
                   {"index_pos", little(index)},
                   {"conn_count", little(static_cast<std::uint32_t>(connections))},
                   {"chunk_count", little(static_cast<std::uint32_t>(chunks))}});
-    return sized(fields) + sized(BagBytes(4096 - 8 - fields.size(), ' '));
+    return sized(fields) + sized(BagBytes(4096 - fields.size(), ' '));
 }
 
 /** A chunk of a ROS 1 bag, and what its index says of it. */
@@ -142,7 +142,7 @@ void save(const std::filesystem::path& file, const BagBytes& bytes) {
 void writeRos1Bag(const std::filesystem::path& file, const BagContents& contents,
                   const std::string& compression, Index index, std::size_t perChunk) {
     const std::string magic = "#ROSBAG V2.0\n";
-    const std::size_t start = magic.size() + 4096;
+    const std::size_t start = magic.size() + 4096 + 8;
     BagBytes body, infos, connections;
     std::size_t chunks = 0;
     std::vector<bool> described(contents.topics.size());

@@ -81,7 +81,8 @@ TEST(BagRosbag, CutBagHasWhatReindexFinds) {
     DELIO_NEED_ROSBAG();
     const test::TemporaryFolder folder;
     const auto file = folder / "d.bag";
-    writeRos1Bag(file, drive(9, Kind::kRos1, 3000), "lz4", Index::kNever);
+    writeRos1Bag(file, drive(9, Kind::kRos1, 3000), "bz2", Index::kNever);
+    // (Debian 12's reindex does nothing for lz4.)
     const std::string whole = test::readText(file);
     test::writeText(file, whole.substr(0, whole.size() * 2 / 3));
     const Outcome ours = readAll(io::openRos1Bag, {file.string(), "", "", ""});
