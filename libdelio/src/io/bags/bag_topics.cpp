@@ -74,7 +74,7 @@ SideFile ousterDescription(const ScanSource& source, const OpenSource& open) {
     if (beside.text.empty())
         throw Error(
             "holds an Ouster's packets but not the sensor's description: give its .json "
-            "with --sensor, or lay it beside as '" +
+            "with --sensor-info, or lay it beside as '" +
             beside.name + "'");
     return beside;
 }
