@@ -96,18 +96,20 @@ void load(CObservationPointCloud& cloud, const fs::path& file) {
 
 std::string loadRanges(CObservation3DRangeScan& scan, const std::vector<std::string>& folders) {
     std::string from;
-    if (scan.hasRangeImage && scan.rangeImage_isExternallyStored()) {
-        from = found(scan.rangeImage_getExternalStorageFile(""), folders).string();
-        unpackedSize(from);  // MRPT does not see that it is damaged
-        ExternalRanges::setRanges(scan, from);
-    }
-    if (scan.hasPoints3D && scan.points3D_isExternallyStored()) {
-        from = found(scan.points3D_getExternalStorageFile(), folders).string();
-        unpackedSize(from);
-        ExternalRanges::setPoints(scan, from);
-    }
     try {
+        if (scan.hasRangeImage && scan.rangeImage_isExternallyStored()) {
+            from = found(scan.rangeImage_getExternalStorageFile(""), folders).string();
+            unpackedSize(from);  // MRPT does not see that it is damaged
+            ExternalRanges::setRanges(scan, from);
+        }
+        if (scan.hasPoints3D && scan.points3D_isExternallyStored()) {
+            from = found(scan.points3D_getExternalStorageFile(), folders).string();
+            unpackedSize(from);
+            ExternalRanges::setPoints(scan, from);
+        }
         scan.load();
+    } catch (const Error&) {
+        throw;
     } catch (const std::exception&) {
         throw Error("cannot read its points from '" + from + "'");
     }

@@ -154,7 +154,7 @@ std::vector<std::uint16_t> ringsOf(const std::vector<double>& raw) {
 }
 
 std::vector<std::uint16_t> rowsOf(std::size_t count, std::size_t rows) {
-    constexpr std::size_t kFewest = 4, kMost = 256;
+    constexpr std::size_t kFewest = 2, kMost = 256;
     if (rows < kFewest || rows > kMost || count % rows != 0 || count / rows < rows) return {};
     std::vector<std::uint16_t> rings(count);
     for (std::size_t i = 0; i < count; ++i)
@@ -207,7 +207,7 @@ void PointTable::setTimes(const std::vector<double>& raw, double stamp_s, Scan& 
         }
     if (!(last > first)) return;
     if (!clock_) {
-        constexpr std::size_t kEnough = 100;  // points, of which some are of another part of a turn
+        constexpr std::size_t kEnough = 8;  // points, of which some are of another part of a turn
         if (raw.size() < kEnough) return;
         Clock clock;
         // A turn takes from 1 ms to 1 s: one unit fits.

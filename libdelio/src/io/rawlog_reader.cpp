@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <regex>
 #include <vector>
 
 #include "delio/core/error.h"
@@ -19,6 +20,15 @@
 namespace delio::io {
 namespace fs = std::filesystem;
 using mrpt::obs::CObservation;
+
+namespace {
+/** MRPT's words for what another version or program registers; damaged bytes make no name. */
+bool isOfUnknownClass(const std::exception& e) {
+    static const std::regex words(
+        "Stored object has class '[A-Za-z_][A-Za-z0-9_:]*' which is not .*");
+    return std::regex_match(plainMessage(e), words);
+}
+}  // namespace
 
 RawlogReader::RawlogReader(const std::string& path, std::string label, std::string imagesFolder)
     : path_(path),
@@ -111,8 +121,7 @@ bool RawlogReader::readEntry() {
         object = RawlogArchive(*in_).ReadObject();
     } catch (const std::exception& e) {
         ended_ = true;
-        // MRPT's own words for what another version or program registers.
-        if (std::string(e.what()).find("not registered") != std::string::npos)
+        if (isOfUnknownClass(e))
             throw Error("'" + path_ +
                         "' holds an object that this MRPT does not know: " + plainMessage(e));
         // Nothing was left to read: the end of the rawlog. Otherwise something is only half there,

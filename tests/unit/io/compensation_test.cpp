@@ -56,7 +56,7 @@ TEST(Compensation, PointsAsTheyWereMeasured) {
 }
 
 TEST(Compensation, PointsThatWereMoved) {
-    for (const double speed_ms : {3.0, 10.0, 30.0, -15.0}) {
+    for (const double speed_ms : {6.0, 10.0, 30.0, -15.0}) {
         Turn turn;
         turn.speed_ms = speed_ms;
         EXPECT_EQ(isMotionCompensated(scanOf(turn)), std::optional<bool>(true)) << speed_ms;

@@ -29,7 +29,8 @@ TEST(OpenScans, RefusesWhatIsNoRecording) {
     EXPECT_NE(refusal(folder / "a.osf").find(".osf files are not read"), std::string::npos);
     EXPECT_NE(refusal(folder / "old.bag").find("another version"), std::string::npos);
     EXPECT_NE(refusal(folder / "empty.bag").find("is empty"), std::string::npos);
-    EXPECT_NE(refusal(folder.path()), "");
+    std::filesystem::create_directory(folder / "empty");
+    EXPECT_NE(refusal(folder / "empty").find("no scans"), std::string::npos);
     EXPECT_NE(refusal("/dev/null"), "");
 }
 
