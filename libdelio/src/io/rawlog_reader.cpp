@@ -121,9 +121,6 @@ bool RawlogReader::readEntry() {
         object = RawlogArchive(*in_).ReadObject();
     } catch (const std::exception& e) {
         ended_ = true;
-        if (isOfUnknownClass(e))
-            throw Error("'" + path_ +
-                        "' holds an object that this MRPT does not know: " + plainMessage(e));
         // Nothing was left to read: the end of the rawlog. Otherwise something is only half there,
         // or is damaged and perhaps claims more than there is memory for.
         if (in_->getPosition() == before && before > 0 && in_->endedWell()) return false;
@@ -132,7 +129,10 @@ bool RawlogReader::readEntry() {
                                  : "is cut off or damaged " +
                                        (count_ == 0 ? "before its first scan"
                                                     : "after scan " + std::to_string(count_ - 1)) +
-                                       " (byte " + std::to_string(before) + ")"));
+                                       " (byte " + std::to_string(before) + ")") +
+                    (isOfUnknownClass(e)
+                         ? ", or holds what this MRPT does not know: " + plainMessage(e)
+                         : ""));
     }
     const auto accept = [&](const CObservation::Ptr& observation) {
         if (observation && isScan(*observation)) pending_.push_back(observation);
