@@ -1,4 +1,4 @@
-// delio-figures: the paper's pictures of the stages, made of scans of a rawlog.
+// delio-figures: the paper's pictures of the stages, made of scans of a recording.
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
 #include <filesystem>
@@ -123,10 +123,10 @@ PaperOdometryOptions optionsFor(const std::string& profile, const io::ScanReader
 }  // namespace
 
 int main(int argc, char** argv) {
-    TCLAP::CmdLine cmd("delio-figures: pictures of the stages, made of scans of a rawlog", ' ',
+    TCLAP::CmdLine cmd("delio-figures: pictures of the stages, made of scans of a recording", ' ',
                        kVersion);
     using Text = TCLAP::ValueArg<std::string>;
-    Text input("i", "input", "Rawlog to read", true, "", "IN.rawlog", cmd);
+    Text input("i", "input", "Recording to read: see delio-slam", true, "", "IN", cmd);
     Text output("o", "output", "Folder for the figures", true, "", "OUTDIR", cmd);
     TCLAP::ValueArg<cli::Count> scan("", "scan", "First of the scans that are shown, from 0", false,
                                      {}, "N", cmd);

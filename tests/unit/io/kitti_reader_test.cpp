@@ -126,6 +126,12 @@ TEST_F(KittiReader, MissingPartsAreWarnings) {
     EXPECT_FALSE(io::isKittiFolder(folder_ / "none"));
 }
 
+TEST_F(KittiReader, NominalTimesAreSaid) {
+    EXPECT_EQ(io::KittiReader{sequence_}.recording().kind, "KITTI odometry");
+    fs::remove(sequence_ / "times.txt");
+    EXPECT_EQ(io::KittiReader{sequence_}.recording().kind, "KITTI odometry, nominal times");
+}
+
 TEST_F(KittiReader, RefusesADamagedScan) {
     const fs::path cut = sequence_ / "velodyne" / "000002.bin";
     writeText(cut, "123456789012345");

@@ -15,6 +15,7 @@ struct KittiDrive {
     std::vector<std::string> poseRows;  //!< one per scan, in the cam0 frame; or none
     std::string calibText;              //!< of calib.txt; empty where there is no calibration
     std::string posesName, calibName;   //!< the files of these, also where there are none
+    bool nominalTimes = false;          //!< there are none: 0.1 s apart
     std::vector<std::string> warnings;  //!< what is missing but not needed
 };
 

@@ -92,6 +92,7 @@ fs::path wholePath(const fs::path& folder) {
 }
 
 void useNominalTimes(KittiDrive& drive, const std::string& missing) {
+    drive.nominalTimes = true;
     drive.warnings.push_back(missing + " is not there: scans are taken as 0.1 s apart");
     for (const auto& scan : drive.scans)
         drive.times_s.push_back(0.1 * static_cast<double>(numberOf(scan)));

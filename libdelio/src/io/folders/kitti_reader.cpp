@@ -41,6 +41,7 @@ KittiReader::KittiReader(const fs::path& folder)
 Recording KittiReader::recording() const {
     Recording recording;
     recording.kind = meta_->source == "kitti-raw" ? "KITTI raw" : "KITTI odometry";
+    if (drive_.nominalTimes) recording.kind += ", nominal times";
     recording.sensor = meta_->sensorModel;
     recording.motionCompensated = meta_->motionCompensated;
     recording.scans = drive_.scans.size();
