@@ -59,10 +59,10 @@ BagBytes pointsOf(const CloudSpec& spec) {
         for (std::uint32_t column = 0; column < spec.columns; ++column) {
             const std::uint32_t i = row * spec.columns + column;
             BagBytes record(kStep, '\0');
-            put(record, 0, static_cast<float>(10 + spec.scan), spec.bigEndian);
-            put(record, 4, static_cast<float>(i), spec.bigEndian);
-            put(record, 8, -1.5F, spec.bigEndian);
-            put(record, 12, 0.5F, spec.bigEndian);
+            const float told[] = {static_cast<float>(10 + spec.scan), static_cast<float>(i), -1.5F,
+                                  0.5F};
+            const float* point = spec.xyzi ? &spec.xyzi->at(4 * i) : told;
+            for (std::uint32_t k = 0; k < 4; ++k) put(record, 4 * k, point[k], spec.bigEndian);
             put(record, 16, static_cast<std::uint16_t>(i % 16), spec.bigEndian);
             put(record, 18, 0.001F * static_cast<float>(i % 100), spec.bigEndian);
             data += record;
@@ -87,9 +87,11 @@ BagBytes cloudMessage(const CloudSpec& spec, WireWriter::Kind kind) {
                             {"time", 18, 7}};
     WireWriter out(kind);
     out.header(spec.stamp_s).number(spec.rows).number(spec.columns);
-    out.number(std::uint32_t{6});
+    const std::uint32_t count = spec.xyzi ? 4 : 6;
+    out.number(count);
     for (const Field& field : fields)
-        out.text(field.name).number(field.offset).number(field.kind).number(std::uint32_t{1});
+        if (&field - fields < count)
+            out.text(field.name).number(field.offset).number(field.kind).number(std::uint32_t{1});
     out.number(static_cast<std::uint8_t>(spec.bigEndian)).number(kStep);
     out.number(kStep * spec.columns + spec.padding);
     return out.byteArray(pointsOf(spec)).number(std::uint8_t{1}).message();

@@ -42,6 +42,9 @@ struct CloudSpec {
     std::uint32_t padding = 0;  //!< bytes behind each row
     bool withX = true;
     bool bigEndian = false;  //!< the points' numbers
+    /** x, y, z and intensity of each point, rows x columns of them, instead of what tells the scan
+     *  and without rings and times. */
+    const std::vector<float>* xyzi = nullptr;
 };
 BagBytes cloudMessage(const CloudSpec& spec, WireWriter::Kind kind = WireWriter::Kind::kRos1);
 
