@@ -107,6 +107,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     settings.drive = io::nameOfDrive(input);
     cli::inform("reading " + describe(reader->recording()));
     run::Run run(options, settings);
+    for (const auto& warning : reader->recording().warnings) run.warn(warning);
     if (!reader->meta())
         run.warn(
             "nothing says what sensor this is (a meta.yaml would): no vertical correction, times "

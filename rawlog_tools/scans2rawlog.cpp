@@ -143,6 +143,7 @@ int convert(Arguments& args) {
     const auto reader = io::openScans(
         {input, args.sensor.getValue(), args.images.getValue(), args.sensorInfo.getValue()});
     cli::inform("reading " + describe(reader->recording()));
+    for (const auto& warning : reader->recording().warnings) cli::warn(warning);
     Conversion conversion(args, *reader);
     std::string fault;
     if (!conversion.run(fault)) return cli::kExitInterrupted;

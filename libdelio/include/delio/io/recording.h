@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace delio::io {
 /** What a source of scans says of itself. */
@@ -15,7 +16,8 @@ struct Recording {
     /** A scan whose points tell that they were de-skewed, although the first ones, of a vehicle
      *  that stood, did not. */
     std::optional<std::size_t> compensatedAfterAll;
-    std::optional<std::size_t> scans;  //!< where they are counted without reading them
+    std::optional<std::size_t> scans;   //!< where they are counted without reading them
+    std::vector<std::string> warnings;  //!< what is missing but not needed
 };
 
 /** In one line: "Velodyne VLP-16, 10 Hz, points with times, not de-skewed by the recorder, 3213

@@ -45,6 +45,7 @@ Recording KittiReader::recording() const {
     recording.sensor = meta_->sensorModel;
     recording.motionCompensated = meta_->motionCompensated;
     recording.scans = drive_.scans.size();
+    recording.warnings = drive_.warnings;
     return recording;
 }
 
