@@ -16,6 +16,7 @@
 #include "delio/io/trajectory.h"
 #include "delio/version.h"
 #include "eval_inputs.h"
+#include "overlap.h"
 
 namespace {
 namespace fs = std::filesystem;
@@ -175,6 +176,12 @@ void writeDistances(const std::vector<evaluation::Comparison>& comparisons, std:
     }
 }
 
+std::vector<std::string> inputsOf(CommandLine& line) {
+    std::vector<std::string> inputs = {line.reference.getValue(), line.calibration.getValue()};
+    for (const auto& text : line.estimates.getValue()) inputs.push_back(estimateOf(text).path);
+    return inputs;
+}
+
 int evaluate(CommandLine& line) {
     std::vector<Estimate> estimates;
     for (const auto& text : line.estimates.getValue()) estimates.push_back(estimateOf(text));
@@ -185,6 +192,7 @@ int evaluate(CommandLine& line) {
     const auto& reference = line.reference.getValue();
     const auto& output = line.output.getValue();
     refuseReport(output, line.force.getValue());
+    if (!output.empty()) cli::refuseOverlap(inputsOf(line), evaluation::reportFiles(output));
 
     const auto settings = settingsOf(line);
     std::vector<evaluation::Comparison> comparisons;

@@ -1,11 +1,11 @@
 // delio-figures: the paper's pictures of the stages, made of scans of a recording.
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
-#include <filesystem>
-
 #include "cli.h"
 #include "delio/core/error.h"
+#include "delio/io/partial_folder.h"
 #include "delio/io/scan_reader.h"
+#include "delio/io/target_folder.h"
 #include "delio/odometry/paper_odometry.h"
 #include "delio/picture/figures.h"
 #include "delio/picture/render.h"
@@ -13,33 +13,57 @@
 #include "delio/slam/options.h"
 #include "delio/surfaces/surfaces.h"
 #include "delio/version.h"
+#include "overlap.h"
 
 namespace {
 using namespace delio;
 
 constexpr std::size_t kScans = 4;  // as many as the paper's figure shows
 
-/** A figure as .3Dscene and .png. */
+/** What is drawn: each as .3Dscene and .png. */
+std::vector<std::string> figureFiles() {
+    std::vector<std::string> files;
+    for (const std::string name : {"normals_sphere", "outlier_removal", "line_cloud",
+                                   "line_matches_before", "line_matches_after"})
+        for (const char* kind : {".3Dscene", ".png"}) files.push_back(name + kind);
+    return files;
+}
+
+/** Nothing that is read may be overwritten, nor what is there without --force. */
+void checkFiles(const std::string& input, const std::string& folder, bool force) {
+    std::vector<std::string> outputs;
+    for (const auto& file : figureFiles()) outputs.push_back(folder + "/" + file);
+    cli::refuseOverlap(cli::filesOfRecording(input), outputs);
+    for (const auto& output : outputs) cli::refuseExisting(output, force);
+}
+
+/** The figures' folder; they get there when all are drawn. */
 class Figures {
  public:
-    Figures(std::string folder, bool force) : folder_(std::move(folder)), force_(force) {
-        std::error_code fault;
-        std::filesystem::create_directories(folder_, fault);
-        if (fault) throw Error("cannot make the folder '" + folder_ + "'");
-    }
+    explicit Figures(const std::string& folder)
+        : folder_(folder), target_(folder), partial_(folder, folder) {}
+
     void save(const std::string& name, mrpt::opengl::COpenGLScene& scene,
               const picture::SnapshotOptions& view) const {
-        const std::string path = folder_ + "/" + name;
-        cli::refuseExisting(path + ".3Dscene", force_);
-        cli::refuseExisting(path + ".png", force_);
-        picture::saveScene(scene, path + ".3Dscene");
-        picture::savePicture(scene, view, path + ".png");
-        cli::inform("wrote '" + path + ".3Dscene' and '.png'");
+        const std::string path = partial_.path() / name;
+        try {
+            picture::saveScene(scene, path + ".3Dscene");
+            picture::savePicture(scene, view, path + ".png");
+        } catch (const Error& e) {
+            throw Error(partial_.asInPlace(e.what()));
+        }
+    }
+
+    void finish() {
+        partial_.putInPlace(figureFiles());
+        cli::inform("wrote " + std::to_string(figureFiles().size()) + " files to '" + folder_ +
+                    "'");
     }
 
  private:
     std::string folder_;
-    bool force_;
+    io::TargetFolder target_;
+    io::PartialFolder partial_;
 };
 
 std::vector<Scan> readScans(io::ScanReader& reader, const std::string& input, std::size_t first) {
@@ -146,10 +170,12 @@ int main(int argc, char** argv) {
             return cli::kExitBadCommandLine;
         }
         const auto scans = readScans(*reader, input.getValue(), scan.getValue());
-        const Figures figures(output.getValue(), force.getValue());
+        checkFiles(input.getValue(), output.getValue(), force.getValue());
+        Figures figures(output.getValue());
         drawPatterns(scans, options, figures);
         drawOutlierRemoval(scans[0], options, figures);
         drawLines(scans, options, figures);
+        figures.finish();
         return cli::kExitSuccess;
     });
 }

@@ -8,11 +8,14 @@
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
+#include "delio/io/output_lock.h"
+#include "delio/io/partial_folder.h"
 #include "delio/map/edit.h"
 #include "delio/map/frames.h"
 #include "delio/version.h"
 #include "map_input.h"
 #include "map_outputs.h"
+#include "overlap.h"
 
 namespace {
 using namespace delio;
@@ -159,17 +162,18 @@ MapOutputOptions Arguments::options() {
 
 std::string frameFileOf(const std::string& output) { return output + ".frame.yaml"; }
 
-/** Everything about the files that can be told before the map is read. */
-void checkFiles(const std::string& input, const std::string& output, bool force) {
-    const std::string source = mapFileIn(input);
+/** All that may be written: OUT, which marks it as whole, and what is beside it. */
+std::vector<std::string> outputsOf(const std::string& output) {
     auto files = filesOf(output);
     files.push_back(frameFileOf(output));
-    for (const auto& file : files) {
-        std::error_code ignored;
-        if (fs::equivalent(source, file, ignored))
-            throw Error("'" + file + "' is what is read; choose another name to write");
-        cli::refuseExisting(file, force);
-    }
+    return files;
+}
+
+/** Everything about the files that can be told before the map is read. */
+void checkFiles(const std::string& input, const std::string& output, bool force) {
+    mapFileIn(input);
+    cli::refuseOverlap(mapFilesIn(input), outputsOf(output));
+    for (const auto& file : outputsOf(output)) cli::refuseExisting(file, force);
     const fs::path folder = fs::absolute(output).parent_path();
     if (!fs::is_directory(folder))
         throw Error("cannot write '" + output + "': there is no folder '" + folder.string() + "'");
@@ -191,20 +195,21 @@ void move(MapInput& map, const Eigen::Isometry3d& outFromMap) {
     for (auto& pose : map.keyframes) pose = outFromMap * pose;
 }
 
-/** The frame's file first, which is small: where OUT cannot be written, it is taken away. */
+/** All of the files or, where one cannot be written, none. */
 void write(const MapInput& map, const std::string& path, const MapOutputOptions& options,
            const std::optional<Eigen::Isometry3d>& outFromMap,
            const std::optional<map::GeoReference>& place) {
-    const std::string frameFile = frameFileOf(path);
-    std::error_code ignored;
-    fs::remove(frameFile, ignored);  // of an OUT that was in another frame
-    if (outFromMap) map::saveFrame(*outFromMap, place, frameFile);
+    io::PartialFolder partial(io::folderOf(path), path);
+    const std::string temporary = partial.path() / fs::path(path).filename();
     try {
-        mapOutputFor(path).write(map, path, options);
-    } catch (...) {
-        fs::remove(frameFile, ignored);
-        throw;
+        mapOutputFor(path).write(map, temporary, options);
+        if (outFromMap) map::saveFrame(*outFromMap, place, frameFileOf(temporary));
+    } catch (const Error& e) {
+        throw Error(partial.asInPlace(e.what()));
     }
+    std::vector<std::string> names;
+    for (const auto& file : outputsOf(path)) names.push_back(fs::path(file).filename());
+    partial.putInPlace(names);
 }
 
 void convert(Arguments& asked) {
@@ -213,6 +218,7 @@ void convert(Arguments& asked) {
     };
     const std::string input = asked.input.getValue(), output = asked.output.getValue();
     checkFiles(input, output, asked.force.getValue());
+    const io::OutputLock lock(output);
     MapInput map = readMap(input, 0);
     say("read " + std::to_string(map.points.size()) + " points of '" + mapFileIn(input) + "'");
 

@@ -10,11 +10,14 @@
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
+#include "delio/io/output_lock.h"
+#include "delio/io/partial_folder.h"
 #include "delio/picture/png.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
 #include "delio/version.h"
 #include "map_input.h"
+#include "overlap.h"
 
 namespace {
 namespace map = delio::map;
@@ -189,20 +192,37 @@ std::vector<std::string> Arguments::pictureNames() {
     return names;
 }
 
+/** All of the pictures or, where one cannot be written, none. */
+void save(mrpt::opengl::COpenGLScene& scene, const picture::SnapshotOptions& view,
+          const std::string& output, const std::vector<std::string>& files) {
+    delio::io::PartialFolder partial(delio::io::folderOf(output), output);
+    std::vector<std::string> names;
+    for (const auto& file : files) names.push_back(std::filesystem::path(file).filename().string());
+    try {
+        picture::orbit(scene, view, static_cast<unsigned>(names.size()),
+                       [&](unsigned i, const mrpt::img::CImage& image) {
+                           picture::savePng(image, partial.path() / names[i]);
+                       });
+    } catch (const delio::Error& e) {
+        throw delio::Error(partial.asInPlace(e.what()));
+    }
+    partial.putInPlace(names);
+}
+
 void render(Arguments& asked) {
     const auto say = [&](const std::string& text) {
         if (asked.verbose.getValue()) delio::cli::inform(text);
     };
-    const auto names = asked.pictureNames();
-    for (const auto& name : names) delio::cli::refuseExisting(name, asked.force.getValue());
-    const auto scene = open(asked.input.getValue(), asked.scene(), asked.colormap.isSet());
-    say("read '" + asked.input.getValue() + "'");
+    const auto files = asked.pictureNames();
+    const std::string& input = asked.input.getValue();
+    delio::cli::refuseOverlap(delio::mapFilesIn(input), files);
+    for (const auto& file : files) delio::cli::refuseExisting(file, asked.force.getValue());
+    const auto scene = open(input, asked.scene(), asked.colormap.isSet());
+    say("read '" + input + "'");
     picture::checkPngName(asked.output.getValue());
-    picture::orbit(*scene, asked.view(), static_cast<unsigned>(names.size()),
-                   [&](unsigned i, const mrpt::img::CImage& image) {
-                       picture::savePng(image, names[i]);
-                       say("wrote '" + names[i] + "'");
-                   });
+    const delio::io::OutputLock lock(asked.output.getValue());
+    save(*scene, asked.view(), asked.output.getValue(), files);
+    for (const auto& file : files) say("wrote '" + file + "'");
 }
 }  // namespace
 

@@ -90,6 +90,16 @@ std::string mapFileIn(const std::string& path) {
                 ": is it the folder of a delio-slam run (without --no-map) that has ended?");
 }
 
+std::vector<std::string> mapFilesIn(const std::string& path) {
+    if (!fs::is_directory(path)) return {path};
+    const RunFolder folder(path);
+    std::vector<std::string> files;
+    for (const auto& name :
+         {RunFolder::kPly, RunFolder::kDynamicPly, RunFolder::kTrajectory, RunFolder::kLoops})
+        files.push_back(folder.path(name));
+    return files;
+}
+
 MapInput readMap(const std::string& path, double storedSpacing_m) {
     MapInput input = readAny(path, storedSpacing_m);
     const fs::path name = fs::absolute(path).lexically_normal();

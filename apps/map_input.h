@@ -28,6 +28,9 @@ struct MapInput {
  *  folder has no map. */
 std::string mapFileIn(const std::string& path);
 
+/** All files that reading `path` may look into. */
+std::vector<std::string> mapFilesIn(const std::string& path);
+
 /** Reads the folder of a run, a .ply, .pcd, .simplemap or .delio.
  *  @param storedSpacing_m of a .delio one point in so many metres is taken; 0: all
  *  Throws Error for another kind of file, where it cannot be read, and for a map without points. */

@@ -2,11 +2,9 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "cam0_pose.h"
 #include "cli.h"
-#include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/io/trajectory.h"
 #include "delio/version.h"
@@ -29,14 +27,6 @@ std::string timeRow(std::size_t scan) {
     char row[32];
     std::snprintf(row, sizeof(row), "%.6f\n", kScanPeriod_s * static_cast<double>(scan));
     return row;
-}
-
-template <typename Value>
-void writeValues(const std::string& path, const std::vector<Value>& values) {
-    std::ofstream out(path, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(values.data()),
-              static_cast<std::streamsize>(values.size() * sizeof(Value)));
-    if (!out.flush()) throw Error("cannot write '" + path + "': is the disk full?");
 }
 }  // namespace
 
@@ -94,9 +84,9 @@ ScanPoints DriveWriter::simulate(std::size_t scan) {
 }
 
 void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
-    writeValues(writer_.extraFile(".ring"), points.ring);
-    if (request_.distort) writeValues(writer_.extraFile(".time"), points.time_s);
-    if (request_.labels) writeValues(writer_.extraFile(".label"), points.label);
+    writer_.addExtra(".ring", points.ring);
+    if (request_.distort) writer_.addExtra(".time", points.time_s);
+    if (request_.labels) writer_.addExtra(".label", points.label);
     writer_.add(kScanPeriod_s * static_cast<double>(scan), io::kDriveEpoch_s, points.xyzi);
     times_ += timeRow(scan);
     poses_ += poseRow(scan);

@@ -10,6 +10,7 @@
 #include "delio/io/kitti_drive.h"
 #include "delio/io/rawlog_writer.h"
 #include "delio/version.h"
+#include "overlap.h"
 
 namespace {
 using namespace delio;
@@ -85,6 +86,12 @@ std::vector<std::string> timeRowsOf(const io::KittiDrive& drive) {
     return rows;
 }
 
+std::vector<std::string> inputsOf(const std::string& folder, const io::KittiDrive& drive) {
+    std::vector<std::string> inputs = {folder, drive.posesName, drive.calibName};
+    inputs.insert(inputs.end(), drive.scans.begin(), drive.scans.end());
+    return inputs;
+}
+
 int convert(Arguments& args) {
     cli::catchInterrupts();
     if (args.link.getValue() && args.embed.getValue()) {
@@ -96,6 +103,7 @@ int convert(Arguments& args) {
     for (const auto& warning : drive.warnings) cli::warn(warning);
     drive.meta.generator = std::string("kitti2rawlog (delio ") + kVersion + ")";
     const std::string& output = args.output.getValue();
+    cli::refuseOverlap(inputsOf(args.input.getValue(), drive), io::RawlogWriter::outputsOf(output));
     io::RawlogWriter writer(output, args.label.getValue(), args.embed.getValue(),
                             args.force.getValue());
     if (!writeScans(drive, args.link.getValue(), writer)) return cli::kExitInterrupted;

@@ -4,53 +4,41 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <vector>
 
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/io/drive_meta.h"
-#include "delio/io/output_file.h"
+#include "delio/io/partial_folder.h"
 #include "delio/io/rawlog_reader.h"
 #include "delio/io/rawlog_writer.h"
+#include "delio/io/target_folder.h"
+#include "delio/io/trajectory.h"
 #include "delio/version.h"
+#include "overlap.h"
 
 namespace {
 using namespace delio;
 namespace fs = std::filesystem;
 
-void writeScan(const mrpt::maps::CPointsMap& points, const fs::path& file) {
-    const auto xyzi = io::xyziOf(points);
-    std::ofstream out(file, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(xyzi.data()),
-              static_cast<std::streamsize>(xyzi.size() * sizeof(float)));
-    if (!out.flush()) throw Error("cannot write '" + file.string() + "': is the disk full?");
+// Of a sequence; of a folder that is there already (--force) only these are replaced: it may hold
+// more. velodyne/ marks it as whole: a folder without it is no sequence.
+const std::vector<std::string> kNames = {"velodyne", "times.txt", "calib.txt", "poses.txt"};
+
+/** Writes into the folder `partial` what will be `name` in `target`. */
+void write(const io::PartialFolder& partial, const fs::path& target, const std::string& name,
+           const void* bytes, std::size_t count) {
+    std::ofstream out(partial.path() / name, std::ios::binary);
+    out.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+    out.close();
+    if (!out)
+        throw Error("cannot write '" + (target / name).string() +
+                    "': the disk is full, or the folder is gone or not writable");
 }
 
-// Of a sequence; only these are touched.
-const char* const kNames[] = {"velodyne", "times.txt", "calib.txt", "poses.txt"};
-
-/** Of a folder that is there already (--force) all else stays: it may hold more than a sequence. */
-void putInPlace(const fs::path& partial, const fs::path& target) {
-    std::error_code fault;
-    fs::create_directory(target, fault);
-    for (const char* name : kNames) {
-        if (!fault) fs::remove_all(target / name, fault);
-        if (!fault && fs::exists(partial / name)) fs::rename(partial / name, target / name, fault);
-    }
-    if (fault) throw Error("cannot write '" + target.string() + "': " + fault.message());
-}
-
-/** Removes the half-written sequence unless it was given its name. */
-struct PartialFolder {
-    fs::path path;
-    ~PartialFolder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-};
 struct Arguments {
     TCLAP::CmdLine cmd{"rawlog2kitti: the LiDAR scans of a rawlog as a KITTI odometry sequence",
                        ' ', kVersion};
@@ -65,63 +53,110 @@ struct Arguments {
     TCLAP::SwitchArg verbose{"", "verbose", "All the text of errors", cmd};
 };
 
-/** The folder to make; throws Error where it cannot be made. */
-fs::path targetOf(Arguments& args) {
-    const fs::path target =
-        fs::absolute(fs::path(args.output.getValue()) / "").lexically_normal().parent_path();
-    cli::refuseExisting(target.string(), args.force.getValue());
-    if (fs::exists(target) && !fs::is_directory(target))
-        throw Error("'" + target.string() + "' exists and is no folder; choose another name");
-    return target;
+/** The folder to make, by all its names. */
+fs::path targetOf(const std::string& output) {
+    return fs::absolute(fs::path(output) / "").lexically_normal().parent_path();
 }
 
-/** Fills velodyne/ of `folder`; the rows of times.txt, or nothing if Ctrl-C came before the end. */
-std::optional<std::vector<std::string>> writeScans(io::RawlogReader& reader,
-                                                   const fs::path& folder) {
-    std::vector<std::string> times;
-    cli::Progress progress("converting", 0);
-    while (const auto scan = reader.next()) {
-        if (cli::interrupted()) return {};
-        char text[64];
-        std::snprintf(text, sizeof(text), "%06zu.bin", times.size());
-        writeScan(*scan->points, folder / "velodyne" / text);
-        std::snprintf(text, sizeof(text), "%.7f\n", scan->stamp_s);
-        times.emplace_back(text);
-        progress.update(times.size());
-    }
-    return times;
+/** Nothing that is read may be overwritten. */
+void refuseItself(Arguments& args, const fs::path& target) {
+    auto inputs = cli::filesOfRecording(args.input.getValue());
+    inputs.push_back(args.images.getValue());
+    std::vector<std::string> outputs;
+    for (const auto& name : kNames) outputs.push_back((target / name).string());
+    cli::refuseOverlap(inputs, outputs);
 }
 
-void copySideFiles(const std::string& rawlog, const fs::path& folder) {
-    for (const std::string name : kNames) {
-        const fs::path side = io::sidecarPath(rawlog, "." + name);
-        if (fs::is_regular_file(side))
-            fs::copy_file(side, folder / name, fs::copy_options::overwrite_existing);
+/** A file beside the rawlog that travels as it is. */
+struct SideFile {
+    std::string name;  //!< in the sequence
+    std::string path, text;
+    std::optional<std::size_t> rows;  //!< none: they do not belong to scans
+};
+
+/** Those that are there. Throws Error for one that cannot be understood. */
+std::vector<SideFile> sideFilesOf(const std::string& rawlog) {
+    std::vector<SideFile> files;
+    for (const std::string name : {"times.txt", "calib.txt", "poses.txt"}) {
+        SideFile file{name, io::sidecarPath(rawlog, "." + name), "", {}};
+        if (!fs::exists(file.path)) continue;
+        if (name == "calib.txt")
+            io::readCalibration(file.path);
+        else
+            file.rows = name == "times.txt" ? io::readTimes(file.path).size()
+                                            : io::readTrajectory(file.path).poses.size();
+        std::ifstream in(file.path, std::ios::binary);
+        file.text.assign(std::istreambuf_iterator<char>(in), {});
+        files.push_back(file);
     }
+    return files;
 }
+
+/** The sequence that a rawlog becomes. */
+class Sequence {
+ public:
+    explicit Sequence(Arguments& args)
+        : path_(targetOf(args.output.getValue())),
+          reader_(args.input.getValue(), args.label.getValue(), args.images.getValue()),
+          sideFiles_(sideFilesOf(args.input.getValue())),
+          wasThere_(fs::exists(path_)),
+          target_(path_) {
+        if (wasThere_) cli::refuseExisting(path_.string(), args.force.getValue());
+        partial_.emplace(path_, path_.string());
+        std::error_code fault;
+        fs::create_directory(partial_->path() / "velodyne", fault);
+        if (fault) throw Error("cannot write '" + path_.string() + "': " + fault.message());
+    }
+
+    /** False if Ctrl-C came before the end. */
+    bool writeScans() {
+        cli::Progress progress("converting", 0);
+        while (const auto scan = reader_.next()) {
+            if (cli::interrupted()) return false;
+            char text[64];
+            std::snprintf(text, sizeof(text), "velodyne/%06zu.bin", scans_++);
+            const auto xyzi = io::xyziOf(*scan->points);
+            write(*partial_, path_, text, xyzi.data(), xyzi.size() * sizeof(float));
+            std::snprintf(text, sizeof(text), "%.7f\n", scan->stamp_s);
+            times_ += text;
+            progress.update(scans_);
+        }
+        return true;
+    }
+
+    void finish(const std::string& rawlog) {
+        if (scans_ == 0) throw Error("'" + rawlog + "' holds no LiDAR scans");
+        for (const auto& other : reader_.otherLabels())
+            cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
+        write(*partial_, path_, "times.txt", times_.data(), times_.size());
+        for (const auto& file : sideFiles_) {
+            if (file.rows && *file.rows != scans_)
+                throw Error("'" + file.path + "' has " + std::to_string(*file.rows) + " rows for " +
+                            std::to_string(scans_) +
+                            " scans; complete it or take it away, the rawlog can do without it");
+            write(*partial_, path_, file.name, file.text.data(), file.text.size());
+        }
+        partial_->putInPlace(kNames);
+        cli::inform("wrote " + std::to_string(scans_) + " scans to '" + path_.string() + "'");
+    }
+
+ private:
+    fs::path path_;
+    io::RawlogReader reader_;
+    std::vector<SideFile> sideFiles_;
+    bool wasThere_;
+    io::TargetFolder target_;
+    std::optional<io::PartialFolder> partial_;
+    std::size_t scans_ = 0;
+    std::string times_;
+};
 
 int convert(Arguments& args) {
     cli::catchInterrupts();
-    const fs::path target = targetOf(args);
-    const std::string& rawlog = args.input.getValue();
-    io::RawlogReader reader(rawlog, args.label.getValue(), args.images.getValue());
-
-    const PartialFolder partial{target.parent_path() / (".partial-" + target.filename().string())};
-    std::error_code fault;
-    fs::create_directories(partial.path / "velodyne", fault);
-    if (fault) throw Error("cannot write '" + target.string() + "': " + fault.message());
-
-    const auto times = writeScans(reader, partial.path);
-    if (!times) return cli::kExitInterrupted;
-    if (times->empty()) throw Error("'" + rawlog + "' holds no LiDAR scans");
-    for (const auto& other : reader.otherLabels())
-        cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
-    io::replaceTextFile((partial.path / "times.txt").string(), [&](std::ostream& out) {
-        for (const auto& time : *times) out << time;
-    });
-    copySideFiles(rawlog, partial.path);
-    putInPlace(partial.path, target);
-    cli::inform("wrote " + std::to_string(times->size()) + " scans to '" + target.string() + "'");
+    refuseItself(args, targetOf(args.output.getValue()));
+    Sequence sequence(args);
+    if (!sequence.writeScans()) return cli::kExitInterrupted;
+    sequence.finish(args.input.getValue());
     return cli::kExitSuccess;
 }
 }  // namespace

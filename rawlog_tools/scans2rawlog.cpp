@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <sstream>
 #include <vector>
@@ -13,10 +12,10 @@
 #include "delio/io/rawlog_writer.h"
 #include "delio/io/scan_reader.h"
 #include "delio/version.h"
+#include "overlap.h"
 
 namespace {
 using namespace delio;
-namespace fs = std::filesystem;
 
 using Text = TCLAP::ValueArg<std::string>;
 using Number = TCLAP::ValueArg<cli::Count>;
@@ -126,10 +125,12 @@ class Conversion {
 };
 
 /** Nothing that is read may be overwritten. */
-void refuseItself(const std::string& input, const std::string& output) {
-    std::error_code ignored;
-    if (fs::equivalent(input, output, ignored))
-        throw Error("'" + output + "' is what is to be read: choose another name");
+void refuseItself(Arguments& args, const io::ScanReader& reader) {
+    auto inputs = cli::filesOfRecording(args.input.getValue());
+    for (const auto& input : {args.images.getValue(), args.sensorInfo.getValue(),
+                              reader.calibration().name, reader.truth().name})
+        inputs.push_back(input);
+    cli::refuseOverlap(inputs, io::RawlogWriter::outputsOf(args.output.getValue()));
 }
 
 int convert(Arguments& args) {
@@ -139,9 +140,9 @@ int convert(Arguments& args) {
         return cli::kExitBadCommandLine;
     }
     const std::string &input = args.input.getValue(), &output = args.output.getValue();
-    refuseItself(input, output);
     const auto reader = io::openScans(
         {input, args.sensor.getValue(), args.images.getValue(), args.sensorInfo.getValue()});
+    refuseItself(args, *reader);
     cli::inform("reading " + describe(reader->recording()));
     for (const auto& warning : reader->recording().warnings) cli::warn(warning);
     Conversion conversion(args, *reader);

@@ -12,6 +12,7 @@
 #include "drive.h"
 #include "drive_writer.h"
 #include "make_scene.h"
+#include "overlap.h"
 
 namespace {
 using namespace delio;
@@ -244,6 +245,7 @@ int makeDrive(Arguments& args) {
     }
     cli::catchInterrupts();
     DriveRequest request = requestOf(args);
+    cli::refuseOverlap({args.trajectory.getValue()}, io::RawlogWriter::outputsOf(request.output));
     const auto count = static_cast<std::size_t>(args.scans.getValue());
     const Start start = startOf(args.start.getValue());
     const auto world =

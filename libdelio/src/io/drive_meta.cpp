@@ -4,12 +4,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <ostream>
 #include <set>
 
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
-#include "delio/io/output_file.h"
 
 namespace delio::io {
 namespace {
@@ -79,7 +77,7 @@ std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath) {
     }
 }
 
-void writeDriveMeta(const DriveMeta& meta, const std::string& rawlogPath) {
+std::string textOf(const DriveMeta& meta) {
     YAML::Emitter yaml;
     const auto text = [&](const char* key, const std::string& value) {
         yaml << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << value;
@@ -94,7 +92,6 @@ void writeDriveMeta(const DriveMeta& meta, const std::string& rawlogPath) {
     yaml << YAML::Key << "epoch_unix_s" << YAML::Value << digitsOf(meta.epoch_s);
     text("generator", meta.generator);
     yaml << YAML::EndMap;
-    replaceTextFile(sidecarPath(rawlogPath, ".meta.yaml"),
-                    [&](std::ostream& out) { out << yaml.c_str() << "\n"; });
+    return yaml.c_str() + std::string("\n");
 }
 }  // namespace delio::io

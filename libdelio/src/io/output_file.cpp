@@ -7,30 +7,27 @@
 #include <locale>
 
 #include "delio/core/error.h"
+#include "delio/io/partial_folder.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
 
 void replaceFile(const std::string& path, const std::function<bool(const std::string&)>& write) {
     const fs::path target(path);
-    const fs::path temporary = target.parent_path() / (".partial-" + target.filename().string());
-    const auto giveUp = [&](const std::string& why) {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
-        throw Error("cannot write '" + path + "': " + why);
-    };
+    const PartialFolder partial(folderOf(target), path);
+    const fs::path temporary = partial.path() / target.filename();
+    std::error_code fault;
     try {
-        if (!write(temporary.string())) giveUp("the disk is full or the folder is not writable");
+        if (!write(temporary.string()))
+            throw Error("cannot write '" + path +
+                        "': the disk is full or the folder is not writable");
+        fs::rename(temporary, target, fault);
     } catch (const Error&) {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
         throw;
     } catch (const std::exception& e) {
-        giveUp(plainMessage(e));
+        throw Error("cannot write '" + path + "': " + plainMessage(e));
     }
-    std::error_code fault;
-    fs::rename(temporary, target, fault);
-    if (fault) giveUp(fault.message());
+    if (fault) throw Error("cannot write '" + path + "': " + fault.message());
 }
 
 void replaceTextFile(const std::string& path, const std::function<void(std::ostream&)>& write) {

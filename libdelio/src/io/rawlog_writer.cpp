@@ -9,7 +9,6 @@
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/io/output_file.h"
 #include "drive_clock.h"
 
 namespace delio::io {
@@ -17,15 +16,20 @@ namespace fs = std::filesystem;
 using mrpt::obs::CObservationPointCloud;
 
 namespace {
-const char* const kSideFiles[] = {".meta.yaml", ".times.txt",  ".calib.txt",
-                                  ".poses.txt", ".faults.tsv", ".origin.txt"};
+constexpr const char* kImages = "_Images";
+constexpr const char* kSideFiles[] = {".meta.yaml", ".times.txt",  ".calib.txt",
+                                      ".poses.txt", ".faults.tsv", ".origin.txt"};
 
-template <typename Value>
-void writeValues(const std::string& path, const std::vector<Value>& values) {
-    std::ofstream out(path, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(values.data()),
-              static_cast<std::streamsize>(values.size() * sizeof(Value)));
-    if (!out.flush()) throw Error("cannot write '" + path + "': is the disk full?");
+/** `path`, if it can be a drive's. */
+const std::string& checked(const std::string& path) {
+    if (fs::path(path).extension() != ".rawlog")
+        throw Error("'" + path + "' does not end in .rawlog; name the output OUT.rawlog");
+    if (fs::is_directory(path))
+        throw Error("'" + path + "' is a folder; choose another name for the rawlog");
+    const fs::path folder = folderOf(path);
+    if (!fs::is_directory(folder))
+        throw Error("cannot write '" + path + "': there is no folder '" + folder.string() + "'");
+    return path;
 }
 
 /** The rawlog has the name of the file only. */
@@ -62,39 +66,44 @@ std::vector<float> xyziOf(const mrpt::maps::CPointsMap& points) {
 }
 
 RawlogWriter::RawlogWriter(const std::string& path, std::string label, bool embed, bool force)
-    : path_(path), label_(std::move(label)), embed_(embed) {
-    const fs::path target(path);
-    if (target.extension() != ".rawlog")
-        throw Error("'" + path + "' does not end in .rawlog; name the output OUT.rawlog");
-    if (fs::is_directory(path))
-        throw Error("'" + path + "' is a folder; choose another name for the rawlog");
-    images_ = sidecarPath(path, "_Images");
-    const std::string partial =
-        (target.parent_path() / (".partial-" + target.stem().string())).string();
-    partialRawlog_ = partial + ".rawlog";
-    partialImages_ = partial + "_Images";
-    if (!force) {
-        std::vector<std::string> outputs = {path_, images_};
-        for (const char* extension : kSideFiles) outputs.push_back(sidecarPath(path, extension));
-        for (const auto& output : outputs)
+    : path_(checked(path)),
+      label_(std::move(label)),
+      embed_(embed),
+      lock_(path),
+      partial_(folderOf(path), path),
+      partialRawlog_((partial_.path() / fs::path(path).filename()).string()),
+      partialImages_(sidecarPath(partialRawlog_, kImages)) {
+    if (!force)
+        for (const auto& output : outputsOf(path))
             if (fs::exists(output))
                 throw Error("'" + output +
                             "' exists; choose another name, or overwrite it with --force");
-    }
-    std::error_code fault;
-    fs::remove_all(partialImages_, fault);
-    if (!out_.open(partialRawlog_))
-        throw Error("cannot write '" + path + "': the folder does not exist or is not writable");
-    if (!embed_ && !fs::create_directory(partialImages_, fault))
-        throw Error("cannot make the folder '" + images_ + "': " + fault.message());
+    if (!embed_) makeImages();
+    if (!out_.open(partialRawlog_)) giveUp();
 }
 
-RawlogWriter::~RawlogWriter() {
-    if (finished_) return;
-    out_.close();
-    std::error_code ignored;
-    fs::remove(partialRawlog_, ignored);
-    fs::remove_all(partialImages_, ignored);
+std::vector<std::string> RawlogWriter::outputsOf(const std::string& path) {
+    std::vector<std::string> outputs = {path, sidecarPath(path, kImages)};
+    for (const char* extension : kSideFiles) outputs.push_back(sidecarPath(path, extension));
+    return outputs;
+}
+
+void RawlogWriter::giveUp() const {
+    throw Error("cannot write '" + path_ +
+                "': the disk is full, or the folder is gone or not writable");
+}
+
+void RawlogWriter::makeImages() const {
+    std::error_code fault;
+    fs::create_directory(partialImages_, fault);
+    if (fault) giveUp();
+}
+
+void RawlogWriter::write(const std::string& file, const void* bytes, std::size_t count) const {
+    std::ofstream out(file, std::ios::binary);
+    out.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+    out.close();
+    if (!out) giveUp();
 }
 
 void RawlogWriter::add(double stamp_s, double epoch_s, const std::vector<float>& xyzi) {
@@ -104,8 +113,8 @@ void RawlogWriter::add(double stamp_s, double epoch_s, const std::vector<float>&
 }
 
 void RawlogWriter::add(const Scan& scan, double epoch_s) {
-    if (!scan.rings.empty()) writeValues(extraFile(".ring"), scan.rings);
-    if (!scan.times_s.empty()) writeValues(extraFile(".time"), scan.times_s);
+    if (!scan.rings.empty()) addExtra(".ring", scan.rings);
+    if (!scan.times_s.empty()) addExtra(".time", scan.times_s);
     CObservationPointCloud observation;
     observation.setSensorPose(toMrpt(scan.sensorPose));
     setPoints(observation, xyziOf(*scan.points));
@@ -116,7 +125,9 @@ void RawlogWriter::addLinked(double stamp_s, double epoch_s, const std::string& 
     const std::string link = extraFile(".bin");
     std::error_code fault;
     fs::create_symlink(fs::absolute(file), link, fault);
-    if (fault) throw Error("cannot link '" + link + "' to '" + file + "': " + fault.message());
+    if (fault)
+        throw Error("cannot write '" + path_ + "': a link to '" + file +
+                    "' cannot be made: " + fault.message());
     CObservationPointCloud observation;
     setExternal(observation, link);
     append(observation, stamp_s, epoch_s);
@@ -127,9 +138,8 @@ void RawlogWriter::setPoints(CObservationPointCloud& observation, const std::vec
         observation.pointcloud = cloudOf(xyzi);
         return;
     }
-    const std::string file = extraFile(".bin");
-    writeValues(file, xyzi);
-    setExternal(observation, file);
+    addExtra(".bin", xyzi);
+    setExternal(observation, extraFile(".bin"));
 }
 
 void RawlogWriter::append(CObservationPointCloud& observation, double stamp_s, double epoch_s) {
@@ -139,8 +149,7 @@ void RawlogWriter::append(CObservationPointCloud& observation, double stamp_s, d
     ++count_;
 }
 
-std::string RawlogWriter::extraFile(const std::string& extension) {
-    fs::create_directories(partialImages_);
+std::string RawlogWriter::extraFile(const std::string& extension) const {
     char name[32];
     std::snprintf(name, sizeof(name), "%06zu", count_);
     return (fs::path(partialImages_) / (name + extension)).string();
@@ -152,26 +161,19 @@ void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
     // A full disk may show only now: everything that was handed over has to be in the file.
     const auto written = out_.getPosition();
     out_.close();
-    if (fs::file_size(partialRawlog_) != written)
-        throw Error("cannot write '" + path_ + "': is the disk full?");
+    std::error_code fault;
+    if (fs::file_size(partialRawlog_, fault) != written || fault) giveUp();
     const auto writeText = [&](const char* extension, const std::string& text) {
-        const std::string file = sidecarPath(path_, extension);
-        if (text.empty())
-            fs::remove(file);  // of a drive that was here before
-        else
-            replaceTextFile(file, [&](std::ostream& out) { out << text; });
+        if (!text.empty()) write(sidecarPath(partialRawlog_, extension), text.data(), text.size());
     };
     writeText(".times.txt", timesText);
     writeText(".calib.txt", calibText);
     writeText(".poses.txt", posesText);
     writeText(".faults.tsv", faultsText);
     writeText(".origin.txt", originText);
-    writeDriveMeta(meta, path_);
-    std::error_code fault;
-    fs::remove_all(images_, fault);
-    if (fs::exists(partialImages_)) fs::rename(partialImages_, images_, fault);
-    if (!fault) fs::rename(partialRawlog_, path_, fault);
-    if (fault) throw Error("cannot write '" + path_ + "': " + fault.message());
-    finished_ = true;
+    writeText(".meta.yaml", textOf(meta));
+    std::vector<std::string> names;  // the rawlog's first: it marks the whole
+    for (const auto& output : outputsOf(path_)) names.push_back(fs::path(output).filename());
+    partial_.putInPlace(names);
 }
 }  // namespace delio::io

@@ -23,7 +23,7 @@ TEST(DriveMeta, ComesBackAsItWasWritten) {
         meta.verticalCorrectionDeg = 0.205;
         meta.epoch_s = 1317042145.951199;
         meta.generator = text;
-        io::writeDriveMeta(meta, rawlog);
+        test::writeText(io::sidecarPath(rawlog, ".meta.yaml"), io::textOf(meta));
         ASSERT_TRUE(std::filesystem::exists(folder / "a.b.meta.yaml"));
         const auto back = io::readDriveMeta(rawlog);
         ASSERT_TRUE(back);

@@ -58,7 +58,7 @@ inline std::string faultOf(io::ScanReader& reader, std::size_t& scans) {
 inline void writeEpoch(const std::string& rawlog, double epoch_s) {
     io::DriveMeta meta;
     meta.epoch_s = epoch_s;
-    io::writeDriveMeta(meta, rawlog);
+    test::writeText(io::sidecarPath(rawlog, ".meta.yaml"), io::textOf(meta));
 }
 
 template <typename Value>

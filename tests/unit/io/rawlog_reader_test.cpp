@@ -140,7 +140,7 @@ TEST(RawlogReader, TellsWhatIsKnownOfTheDrive) {
     meta.sensorModel = "HDL-64E";
     meta.verticalCorrectionDeg = 0.205;
     meta.epoch_s = 999;
-    io::writeDriveMeta(meta, rawlog);
+    test::writeText(io::sidecarPath(rawlog, ".meta.yaml"), io::textOf(meta));
     const auto told = io::openScans(rawlog);
     ASSERT_TRUE(told->meta());
     EXPECT_EQ(told->meta()->sensorModel, "HDL-64E");

@@ -38,7 +38,7 @@ TEST(RawlogWriter, AnAbortedDriveLeavesNothingBehindAndOldFilesUntouched) {
         for (const bool embed : {false, true}) {
             io::RawlogWriter writer(folder / "out.rawlog", "lidar", embed, old);
             writer.add(0, 1000, kPoints);
-            test::writeText(writer.extraFile(".ring"), "0");
+            writer.addExtra(".ring", std::vector<std::uint16_t>{0});
         }
         EXPECT_EQ(namesIn(folder.path()), old ? names : Names{});
         for (const auto& name : namesIn(folder.path()))

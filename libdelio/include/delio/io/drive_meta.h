@@ -20,7 +20,6 @@ std::string sidecarPath(const std::string& rawlogPath, const std::string& extens
  *  which names the file, for an unknown key, one that is there twice, a value that is not of its
  *  key's kind or is out of range, or anything else that cannot be understood. */
 std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath);
-/** Writes all of it: what readDriveMeta() gives back equals `meta`. Throws Error where the file
- *  cannot be written. */
-void writeDriveMeta(const DriveMeta& meta, const std::string& rawlogPath);
+/** The text of a meta.yaml with all of it: what readDriveMeta() gives back equals `meta`. */
+std::string textOf(const DriveMeta& meta);
 }  // namespace delio::io

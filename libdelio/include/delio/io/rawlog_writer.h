@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "delio/io/drive_meta.h"
+#include "delio/io/output_lock.h"
+#include "delio/io/partial_folder.h"
 #include "delio/scan/scan.h"
 
 namespace delio::io {
@@ -19,18 +21,20 @@ constexpr double kDriveEpoch_s = 1316995200.0;
 std::vector<float> xyziOf(const mrpt::maps::CPointsMap& points);
 
 /** Writes a drive as a rawlog of CObservationPointCloud in the observations-only format, with its
- *  side files. The rawlog is uncompressed (RawLogViewer needs that) and gets its name only in
- *  finish(): an unfinished drive leaves nothing under it. Scans lie in `OUT_Images/NNNNNN.bin`
- *  (KITTI's float32 x y z intensity; a file or a link to one) or, embedded, in the rawlog. */
+ *  side files. The rawlog is uncompressed (RawLogViewer needs that). Scans lie in
+ *  `OUT_Images/NNNNNN.bin` (KITTI's float32 x y z intensity; a file or a link to one) or, embedded,
+ *  in the rawlog. All of it lies in a PartialFolder until finish(): an unfinished drive leaves
+ *  nothing behind, and a drive that was there before stays. Whenever the process is killed, there
+ *  is the old drive or the new one or no OUT.rawlog, without which there is no drive. */
 class RawlogWriter {
  public:
     /** `path` ends in .rawlog. Throws Error if the rawlog, OUT_Images or a side file exists and
-     *  `force` is false, or if the folder cannot be written. With `force` they are replaced. */
+     *  `force` is false, if the folder cannot be written, or another program writes the same drive.
+     *  With `force` they are replaced. */
     RawlogWriter(const std::string& path, std::string label, bool embed, bool force);
-    /** Removes what was written so far unless finish() was called. */
-    ~RawlogWriter();
-    RawlogWriter(const RawlogWriter&) = delete;
-    RawlogWriter& operator=(const RawlogWriter&) = delete;
+
+    /** Everything that a drive at `path` may consist of: what finish() replaces. */
+    static std::vector<std::string> outputsOf(const std::string& path);
 
     /** Appends a scan. `stamp_s`: seconds since `epoch_s`; `xyzi`: four floats a point. */
     void add(double stamp_s, double epoch_s, const std::vector<float>& xyzi);
@@ -44,14 +48,18 @@ class RawlogWriter {
      */
     void addLinked(double stamp_s, double epoch_s, const std::string& file);
 
-    /** Path of the file that belongs to the scan to be added next, `OUT_Images/NNNNNN` +
-     *  extension (while the drive is being written: in a temporary folder that finish() renames).
-     *  For per-point extras; makes the folder. */
-    std::string extraFile(const std::string& extension);
+    /** Writes a value a point of the scan to be added next into `OUT_Images/NNNNNN` + extension.
+     *  Throws Error where that fails. */
+    template <typename Value>
+    void addExtra(const std::string& extension, const std::vector<Value>& values) {
+        makeImages();
+        write(extraFile(extension), values.data(), values.size() * sizeof(Value));
+    }
 
     /** Writes OUT.meta.yaml and, where the text is not empty, OUT.times.txt, OUT.calib.txt,
      *  OUT.poses.txt, OUT.faults.tsv, OUT.origin.txt (a made-up drive's place in its world), byte
-     *  for byte as given; then gives the rawlog its name. */
+     *  for byte as given; then puts the drive in place of the old one. Throws Error where that
+     *  fails; then the old one is still there. */
     void finish(const DriveMeta& meta, const std::string& timesText, const std::string& calibText,
                 const std::string& posesText, const std::string& faultsText = "",
                 const std::string& originText = "");
@@ -64,9 +72,18 @@ class RawlogWriter {
     /** Its points: in `OUT_Images` or embedded. */
     void setPoints(mrpt::obs::CObservationPointCloud& observation, const std::vector<float>& xyzi);
 
-    std::string path_, label_, partialRawlog_, partialImages_, images_;
+    /** Error naming the drive; for a full disk. */
+    [[noreturn]] void giveUp() const;
+    void makeImages() const;
+    /** Of the scan to be added next, in the temporary folder. */
+    std::string extraFile(const std::string& extension) const;
+    void write(const std::string& file, const void* bytes, std::size_t count) const;
+
+    std::string path_, label_;
     bool embed_;
-    bool finished_ = false;
+    OutputLock lock_;
+    PartialFolder partial_;
+    std::string partialRawlog_, partialImages_;
     std::size_t count_ = 0;
     mrpt::io::CFileOutputStream out_;
 };

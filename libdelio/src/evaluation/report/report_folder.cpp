@@ -10,6 +10,8 @@
 #include "delio/core/error.h"
 #include "delio/evaluation/report/report.h"
 #include "delio/io/output_file.h"
+#include "delio/io/partial_folder.h"
+#include "delio/io/target_folder.h"
 #include "html_report.h"
 #include "report_charts.h"
 
@@ -17,32 +19,8 @@ namespace delio::evaluation {
 namespace fs = std::filesystem;
 
 namespace {
-// All that a report consists of.
-const char* const kNames[] = {"metrics.tsv", "lengths.tsv", "plots", "report.html"};
-
-/** Removes what is left in it at the end. */
-struct PartialFolder {
-    fs::path path;
-    ~PartialFolder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-};
-
-void makeFolder(const fs::path& folder) {
-    std::error_code fault;
-    fs::create_directories(folder, fault);
-    if (fault) throw Error("cannot make folder '" + folder.string() + "': " + fault.message());
-}
-
-void putInPlace(const fs::path& partial, const fs::path& target) {
-    std::error_code fault;
-    for (const char* name : kNames) {
-        if (!fault) fs::remove_all(target / name, fault);
-        if (!fault) fs::rename(partial / name, target / name, fault);
-    }
-    if (fault) throw Error("cannot write into '" + target.string() + "': " + fault.message());
-}
+// All that a report consists of; the page marks it as whole.
+const std::vector<std::string> kNames = {"report.html", "metrics.tsv", "lengths.tsv", "plots"};
 
 Group& groupCalled(const std::string& name, std::vector<Group>& groups) {
     const auto found = std::find_if(groups.begin(), groups.end(),
@@ -124,14 +102,13 @@ void writeReportFolder(const std::vector<Comparison>& comparisons,
     std::copy_if(rows.begin(), rows.end(), std::back_inserter(averages),
                  [](const ReportRow& row) { return row.sequence == "avg"; });
 
-    const fs::path target(folder);
-    const bool madeHere = !fs::exists(target);
-    makeFolder(target);
-    const PartialFolder partial{target / ".partial-report"};
+    const io::TargetFolder target(folder);
+    io::PartialFolder partial(folder, folder);
+    const auto path = [&](const char* name) { return (partial.path() / name).string(); };
     try {
-        fs::remove_all(partial.path);
-        makeFolder(partial.path / "plots");
-        const auto path = [&](const char* name) { return (partial.path / name).string(); };
+        std::error_code fault;
+        if (!fs::create_directory(path("plots"), fault))
+            throw Error("cannot make the folder '" + path("plots") + "': " + fault.message());
         drawCharts(all, path("plots"));
         io::replaceTextFile(path("metrics.tsv"),
                             [&](std::ostream& out) { writeMetricsTsv(rows, out); });
@@ -140,12 +117,15 @@ void writeReportFolder(const std::vector<Comparison>& comparisons,
         io::replaceTextFile(path("report.html"), [&](std::ostream& out) {
             writeHtml(byEstimate, sections, overview, averages, notes, path("plots"), out);
         });
-        putInPlace(partial.path, target);
-    } catch (...) {
-        std::error_code ignored;
-        fs::remove_all(partial.path, ignored);
-        if (madeHere) fs::remove(target, ignored);  // only if it is empty
-        throw;
+    } catch (const Error& e) {
+        throw Error(partial.asInPlace(e.what()));
     }
+    partial.putInPlace(kNames);
+}
+
+std::vector<std::string> reportFiles(const std::string& folder) {
+    std::vector<std::string> files;
+    for (const auto& name : kNames) files.push_back((fs::path(folder) / name).string());
+    return files;
 }
 }  // namespace delio::evaluation

@@ -15,9 +15,13 @@ struct ReportNotes {
 /** Writes metrics.tsv, lengths.tsv, report.html and plots/ (SVG, PNG, data and gnuplot scripts)
  * into `folder`, which is made if it is not there; of one that is, all else stays. The page holds
  * its pictures itself and opens without a network. Nothing is changed before everything is written:
- *  Error where that fails, or gnuplot is not installed.
+ *  Error where that fails, gnuplot is not installed, or another program writes there. While the old
+ *  report is being replaced, or after a kill in between, there is no report.html.
  *  `rows`: those of the comparisons, and of averages ("avg"), in the order of the TSV. */
 void writeReportFolder(const std::vector<Comparison>& comparisons,
                        const std::vector<ReportRow>& rows, const ReportNotes& notes,
                        const std::string& folder);
+
+/** What writeReportFolder() replaces in `folder`. */
+std::vector<std::string> reportFiles(const std::string& folder);
 }  // namespace delio::evaluation

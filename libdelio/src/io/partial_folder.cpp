@@ -1,0 +1,87 @@
+#include "delio/io/partial_folder.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "delio/core/error.h"
+
+namespace delio::io {
+namespace fs = std::filesystem;
+
+namespace {
+bool isThere(const fs::path& path) {
+    std::error_code ignored;
+    return fs::exists(fs::symlink_status(path, ignored));
+}
+
+bool isFolder(const fs::path& path) {
+    std::error_code ignored;
+    return fs::is_directory(fs::symlink_status(path, ignored));
+}
+
+/** Renames that can be taken back. */
+class Moves {
+ public:
+    /** Does nothing where `from` is not there, or an earlier move has failed. */
+    void move(const fs::path& from, const fs::path& to) {
+        if (fault || !isThere(from)) return;
+        fs::rename(from, to, fault);
+        if (!fault) done_.emplace_back(from, to);
+    }
+    /** False if something had to stay where it had been moved to. */
+    bool takeBack() {
+        bool whole = true;
+        for (auto each = done_.rbegin(); each != done_.rend(); ++each) {
+            std::error_code failed;
+            fs::rename(each->second, each->first, failed);
+            if (failed) whole = false;
+        }
+        return whole;
+    }
+    std::error_code fault;
+
+ private:
+    std::vector<std::pair<fs::path, fs::path>> done_;
+};
+}  // namespace
+
+fs::path folderOf(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+PartialFolder::PartialFolder(const fs::path& folder, std::string output)
+    : folder_(folder), output_(std::move(output)) {
+    std::string name = (folder / ".partial-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw Error("cannot write '" + output_ + "': " + strerror(errno));
+    path_ = name;
+}
+
+PartialFolder::~PartialFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+}
+
+void PartialFolder::putInPlace(const std::vector<std::string>& names) {
+    Moves moves;
+    for (const auto& name : names)
+        if (isFolder(folder_ / name) && isThere(path_ / name) && !isFolder(path_ / name))
+            throw Error("cannot write '" + (folder_ / name).string() +
+                        "': there is a folder of that name");
+    PartialFolder old(folder_, output_);
+    for (const auto& name : names) moves.move(folder_ / name, old.path_ / name);
+    for (auto name = names.rbegin(); name != names.rend(); ++name)
+        moves.move(path_ / *name, folder_ / *name);
+    if (!moves.fault) return;
+    if (!moves.takeBack()) old.path_.clear();  // it holds what is nowhere else: it stays
+    throw Error("cannot write '" + output_ + "': " + moves.fault.message());
+}
+
+std::string PartialFolder::asInPlace(std::string message) const {
+    const std::string here = path_.string();
+    for (std::size_t at; (at = message.find(here)) != message.npos;)
+        message.replace(at, here.size(), folder_.string());
+    return message;
+}
+}  // namespace delio::io
