@@ -17,7 +17,8 @@
 #include "delio/io/g2o.h"
 #include "delio/io/scan_reader.h"
 #include "delio/picture/illustrate.h"
-#include "delio/run/run.h"
+#include "delio/run/keeper.h"
+#include "delio/run/run_folder.h"
 #include "initial_pose.h"
 #include "live_view.h"
 #include "output_folder.h"
@@ -35,8 +36,8 @@ struct Reading {
 };
 
 /** The next scan after some that are passed over. */
-Reading read(io::ScanReader& reader, unsigned passedOver) {
-    for (unsigned i = 0; i < passedOver; ++i)
+Reading read(io::ScanReader& reader, std::size_t passedOver) {
+    for (std::size_t i = 0; i < passedOver; ++i)
         if (!reader.skip()) break;
     auto scan = reader.next();
     return {std::move(scan), reader.fraction()};
@@ -52,23 +53,25 @@ void warnOfOthers(const io::ScanReader& reader,
  *  more than one thread each is read while the one before is registered: `read_ms` is what is
  *  waited for. */
 void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double read_ms,
-             run::Run& run) {
+             run::Run& run, run::Keeper& keeper) {
     const unsigned count = line.count.getValue(), passedOver = line.every.getValue() - 1;
     const auto policy = line.threads.getValue() == 1 ? std::launch::deferred : std::launch::async;
     cli::Progress progress("scans", count);
     try {
-        for (std::size_t done = 1; now.scan; ++done) {
+        for (std::size_t done = run.record().rows.size() + 1; now.scan; ++done) {
             // A fault in a scan that is not wanted is none: the last one is not read beyond.
             std::future<Reading> next;
             if (done != count) next = std::async(policy, [&] { return read(reader, passedOver); });
             const auto& row = run.process(*now.scan, read_ms);
             if (line.verbose.getValue()) cli::inform(describe(row));
+            keeper.add(run);
             progress.update(done, now.fraction);
             if (cli::interrupted() || done == count) break;
             Stopwatch watch;
             now = next.get();
             read_ms = watch.lap_ms();
         }
+        if (cli::interrupted()) keeper.keep(run);
     } catch (const std::exception& e) {
         run.fail(plainMessage(e));
     }
@@ -87,53 +90,92 @@ std::shared_ptr<LiveView> liveViewFor(SlamCommandLine& line, const Options& opti
     return view;
 }
 
-/** One drive, from `input` to the folder `settings.folder`. */
-DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunSettings settings) {
-    Stopwatch watch;
-    const auto reader = io::openScans(sourceFor(line, input));
-    const Options options = optionsFor(line, reader->meta());
-    auto first = read(*reader, line.start.getValue());
-    const double read_ms = watch.lap_ms();
-    if (!first.scan) {
-        warnOfOthers(*reader, cli::warn);
-        const unsigned start = line.start.getValue();
-        const std::string label = line.label.getValue();
-        throw Error("'" + input + "' holds no LiDAR scans" +
-                    (label.empty() ? "" : " of sensor '" + label + "'") +
-                    (start > 0 ? " after --start " + std::to_string(start) : ""));
-    }
-    if (cli::interrupted()) return {cli::kExitInterrupted};
-    settings.sensorLabel = reader->label();
-    settings.drive = io::nameOfDrive(input);
-    cli::inform("reading " + describe(reader->recording()));
-    run::Run run(options, settings);
-    for (const auto& warning : reader->recording().warnings) run.warn(warning);
-    if (!reader->meta())
+/** What the scans of a run are, in a line. */
+std::string scansOf(SlamCommandLine& line, const std::string& input) {
+    return fs::absolute(input).string() + " --start " + std::to_string(line.start.getValue()) +
+           " --every " + std::to_string(line.every.getValue());
+}
+
+/** The first scan that is wanted. Error where there is none. */
+Reading firstOf(SlamCommandLine& line, const std::string& input, io::ScanReader& reader) {
+    const unsigned start = line.start.getValue();
+    auto first = read(reader, start);
+    if (first.scan) return first;
+    warnOfOthers(reader, cli::warn);
+    const std::string label = line.label.getValue();
+    throw Error("'" + input + "' holds no LiDAR scans" +
+                (label.empty() ? "" : " of sensor '" + label + "'") +
+                (start > 0 ? " after --start " + std::to_string(start) : ""));
+}
+
+/** The run as it was kept, and the scan to go on with, if there is one. */
+Reading resume(SlamCommandLine& line, io::ScanReader& reader, const run::Keeper& keeper,
+               run::Run& run) {
+    keeper.resume(run);
+    const std::size_t done = run.record().rows.size(), count = line.count.getValue();
+    cli::inform("going on after " + std::to_string(done) + " scans");
+    if (count > 0 && done >= count) return {};
+    return read(reader, line.start.getValue() + done * line.every.getValue());
+}
+
+void warnOfRecording(const io::ScanReader& reader, run::Run& run) {
+    for (const auto& warning : reader.recording().warnings) run.warn(warning);
+    if (!reader.meta())
         run.warn(
             "nothing says what sensor this is (a meta.yaml would): no vertical correction, times "
-            "are "
-            "taken as they are");
-    run.readSideFiles(reader->calibration(), reader->truth(), line.truth.getValue(),
-                      line.truthFrame.getValue() == "cam0");
-    const auto view = liveViewFor(line, options, run);
-    process(line, std::move(first), *reader, read_ms, run);
+            "are taken as they are");
+}
 
+/** Of a run that has seen its scans: the rest of the work, and its results in `folder`. Gives what
+ *  is missing in them. */
+std::string finish(const std::string& input, const std::string& folder, run::Run& run) {
     const auto& record = run.record();
     const bool anyUsed = record.predicted() < record.rows.size();
     if (!anyUsed)
         run.fail("no scan of '" + input +
                  "' could be used: " + record.rows.front().report.step.reason);
     run.finish(record.fault.empty() && !cli::interrupted());
-    const std::string fault =
-        run::RunFolder(settings.folder)
-            .write(record, anyUsed ? run.maps() : run::RunMaps{}, picture::illustrate);
-    printTable(record, settings.folder, std::cout);
+    const std::string fault = run::RunFolder(folder).write(
+        record, anyUsed ? run.maps() : run::RunMaps{}, picture::illustrate);
+    printTable(record, folder, std::cout);
+    return fault;
+}
+
+/** One drive, from `input` to the folder `settings.folder`. */
+DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunSettings settings) {
+    Stopwatch watch;
+    const auto reader = io::openScans(sourceFor(line, input));
+    const Options options = optionsFor(line, reader->meta());
+    const std::string folder = settings.folder;
+    run::Keeper keeper(folder, scansOf(line, input));
+    const bool resumes = line.resume.getValue() && keeper.hasState();
+    Reading first;
+    if (!resumes) first = firstOf(line, input, *reader);
+    if (cli::interrupted()) return {cli::kExitInterrupted};
+    settings.sensorLabel = reader->label();
+    settings.drive = io::nameOfDrive(input);
+    settings.folder = keeper.folder();
+    settings.mayGoOn = true;
+    cli::inform("reading " + describe(reader->recording()));
+    if (!resumes) keeper.begin();
+    run::Run run(options, settings);
+    warnOfRecording(*reader, run);
+    run.readSideFiles(reader->calibration(), reader->truth(), line.truth.getValue(),
+                      line.truthFrame.getValue() == "cam0");
+    const auto view = liveViewFor(line, options, run);
+    if (resumes) first = resume(line, *reader, keeper, run);
+    process(line, std::move(first), *reader, watch.lap_ms(), run, keeper);
+    const std::string fault = finish(input, folder, run);
+    if (!cli::interrupted()) keeper.remove();
     if (!fault.empty()) throw Error(fault);
-    if (cli::interrupted()) return {cli::kExitInterrupted, record.extended, false};
+    if (cli::interrupted()) {
+        cli::inform("interrupted; --resume goes on from there");
+        return {cli::kExitInterrupted, run.record().extended, false};
+    }
     if (view && view->isOpen()) cli::inform("done; close the window to end");
     while (view && view->isOpen() && !cli::interrupted())
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    return {cli::kExitSuccess, record.extended, record.addedSubmaps > 0};
+    return {cli::kExitSuccess, run.record().extended, run.record().addedSubmaps > 0};
 }
 
 /** IN may be a pose graph: it is optimised again. */
@@ -179,7 +221,8 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
         if (input != "-" && !fs::exists(input))
             throw Error("cannot read '" + input + "': no such file or folder");
     checkFolders(line);
-    const OutputFolder folder(line.output.getValue(), line.force.getValue());
+    const OutputFolder folder(line.output.getValue(), line.force.getValue(),
+                              line.resume.getValue());
     const auto settings = settingsFor(line, argc, argv);
     if (inputs.size() > 1)
         return slamSeveral(inputs, settings, [&](const auto& input, const auto& its) {

@@ -1,28 +1,23 @@
 #include "output_folder.h"
 
 #include <filesystem>
-#include <fstream>
 
 #include "cli.h"
 #include "delio/core/error.h"
+#include "delio/io/partial_folder.h"
+#include "delio/run/keeper.h"
 
 namespace delio {
 namespace fs = std::filesystem;
 
-OutputFolder::OutputFolder(const std::string& folder, bool force) : folder_(folder) {
+OutputFolder::OutputFolder(const std::string& folder, bool force, bool resume) : folder_(folder) {
+    const bool isUnfinished = run::Keeper(folder, "").hasState();
+    if (isUnfinished && !force && !resume)
+        throw Error("'" + folder +
+                    "' holds a run that was ended before its time: go on with it by --resume, or "
+                    "begin anew by --force");
     std::error_code fault;
-    if (fs::exists(folder) && !fs::is_directory(folder))
-        throw Error("'" + folder + "' exists and is no folder; choose another name");
-    if (fs::exists(folder) && !fs::is_empty(folder, fault)) cli::refuseExisting(folder, force);
-    made_ = fs::create_directories(folder, fault);
-    const fs::path probe = fs::path(folder) / ".partial-probe";
-    const bool writable = !fault && std::ofstream(probe).put('x').good();
-    fs::remove(probe, fault);
-    if (!writable) throw Error("cannot write into the folder '" + folder + "'");
-}
-
-OutputFolder::~OutputFolder() {
-    std::error_code ignored;
-    if (made_) fs::remove(folder_, ignored);  // only an empty one
+    if (!isUnfinished && !fs::is_empty(folder, fault)) cli::refuseExisting(folder, force);
+    const io::PartialFolder probe(folder, folder);
 }
 }  // namespace delio

@@ -1,19 +1,18 @@
 #pragma once
 #include <string>
 
+#include "delio/io/target_folder.h"
+
 namespace delio {
 /** The folder for results is made at once, so that an unwritable one is found before the work is
- *  done; one that was made for nothing is taken away again. */
+ *  done; one that was made for nothing is taken away again. No other run can have it meanwhile. */
 class OutputFolder {
  public:
-    /** Throws Error where it cannot be written into, or is not empty and `force` is false. */
-    OutputFolder(const std::string& folder, bool force);
-    ~OutputFolder();
-    OutputFolder(const OutputFolder&) = delete;
-    OutputFolder& operator=(const OutputFolder&) = delete;
+    /** Throws Error where it cannot be written into, or is not empty and neither `force`, nor there
+     *  is a run in it that `resume` may go on with. */
+    OutputFolder(const std::string& folder, bool force, bool resume);
 
  private:
-    std::string folder_;
-    bool made_ = false;
+    io::TargetFolder folder_;
 };
 }  // namespace delio

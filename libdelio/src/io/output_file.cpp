@@ -1,5 +1,8 @@
 #include "delio/io/output_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -28,6 +31,16 @@ void replaceFile(const std::string& path, const std::function<bool(const std::st
         throw Error("cannot write '" + path + "': " + plainMessage(e));
     }
     if (fault) throw Error("cannot write '" + path + "': " + fault.message());
+}
+
+void putOnDisk(const std::string& path) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool done = file >= 0 && fsync(file) == 0;
+    const int fault = errno;
+    if (file >= 0) close(file);
+    // Not every file system can say that of a folder.
+    if (!done && fault != EINVAL)
+        throw Error("cannot write '" + path + "': " + std::strerror(fault));
 }
 
 void replaceTextFile(const std::string& path, const std::function<void(std::ostream&)>& write) {

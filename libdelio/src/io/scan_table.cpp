@@ -54,19 +54,26 @@ ScanTable readScanTable(const std::string& path) {
     return table;
 }
 
+std::string scanTableHeading(const ScanRow& row) {
+    std::string line = "scan,stamp_s";
+    for (const auto& value : row.values) line += ',' + cellOf(value.first);
+    return line + ",predicted,reason\n";
+}
+
+std::string scanTableLine(const ScanRow& row) {
+    std::string line = std::to_string(row.scan) + mrpt::format(",%.7f", row.stamp_s);
+    for (const auto& value : row.values) line += ',' + cellOf(value.second);
+    return line + (row.predicted ? ",1," : ",0,") + cellOf(row.reason) + '\n';
+}
+
 void writeScanTable(const std::vector<ScanRow>& rows, const std::string& path) {
     replaceTextFile(path, [&](std::ostream& out) {
-        out << "scan,stamp_s";
-        if (!rows.empty())
-            for (const auto& value : rows.front().values) out << ',' << cellOf(value.first);
-        out << ",predicted,reason\n";
+        out << scanTableHeading(rows.empty() ? ScanRow() : rows.front());
         for (const auto& row : rows) {
             if (!sameColumns(row, rows.front()))
                 throw Error("cannot write '" + path + "': scan " + std::to_string(row.scan) +
                             " has other columns than the first");
-            out << row.scan << mrpt::format(",%.7f", row.stamp_s);
-            for (const auto& value : row.values) out << ',' << cellOf(value.second);
-            out << ',' << row.predicted << ',' << cellOf(row.reason) << '\n';
+            out << scanTableLine(row);
         }
     });
 }

@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <limits>
+#include <sstream>
 
+#include "core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/io/drive_meta.h"
@@ -44,12 +46,12 @@ Run::Run(const Options& options, const RunSettings& settings)
     }
     if (searchesLoops() || settings.map) {
         loops_ = std::make_shared<LoopCloser>(options.submaps, loopOptions(), options.closures,
-                                              settings.folder);
+                                              settings.folder, settings.mayGoOn);
         attach(loops_);
     }
     if (!settings.map) return;
     map_ = std::make_shared<MapListener>(
-        map::MapBuilder(options.map, settings.sensorLabel, settings.folder));
+        map::MapBuilder(options.map, settings.sensorLabel, settings.folder, settings.mayGoOn));
     attach(map_);
 }
 
@@ -117,6 +119,28 @@ const RunRow& Run::process(const Scan& scan, double read_ms) {
     }
     rows.push_back(std::move(row));
     return rows.back();
+}
+
+/** What decides which results there are, for a state's label. */
+std::string Run::asked() const {
+    std::ostringstream text;
+    record_.options.write(text);
+    text << settings_.sensorLabel << '\n'
+         << settings_.graph << settings_.map << settings_.loops << settings_.keepDynamic
+         << settings_.extend << '\n'
+         << settings_.storedMap << '\n';
+    if (settings_.initialPose) text << settings_.initialPose->matrix();
+    return text.str();
+}
+
+void Run::save(std::ostream& out) const {
+    checkpoint::save(out, {"run", asked()}, record_);
+    slam_.save(out);
+}
+
+void Run::restore(std::istream& in) {
+    checkpoint::restore(in, {"run", asked()}, record_);
+    slam_.restore(in);
 }
 
 /** Where there are none, the graph stays as it was. */

@@ -11,4 +11,8 @@ void replaceFile(const std::string& path, const std::function<bool(const std::st
 
 /** The same for text: `write` gets a stream in the "C" locale. */
 void replaceTextFile(const std::string& path, const std::function<void(std::ostream&)>& write);
+
+/** Waits until a file, or what a folder says of its files, is on the disk, where power that fails
+ *  leaves it. Error where that fails. */
+void putOnDisk(const std::string& path);
 }  // namespace delio::io

@@ -25,6 +25,10 @@ struct ScanRow {
     std::string reason;  //!< why it was predicted
 };
 
+/** Lines of scans.csv, with their ends: the first, which names the columns of `row`, and a row. */
+std::string scanTableHeading(const ScanRow& row);
+std::string scanTableLine(const ScanRow& row);
+
 /** Writes `scan,stamp_s,<values>,predicted,reason`, where the columns in the middle are those of
  *  the first row (none where there are no rows); stamps have seven decimals. A comma in a text
  *  becomes ';' and a line end a space. Throws Error where a row's columns are not those of the

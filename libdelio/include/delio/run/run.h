@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,8 @@ struct RunSettings {
     /** Where keyframes are put aside while the drive goes on; empty: the system's folder for
      *  temporary files. */
     std::string folder;
+    /** They are put aside in files of `folder` that stay: what Run::save() needs. */
+    bool mayGoOn = false;
     bool graph = true;         //!< false: the chain of increments alone, not optimised
     bool map = true;           //!< false: memory grows by the poses alone
     bool keepDynamic = false;  //!< map_dynamic.ply: what was taken out of the map
@@ -59,6 +62,13 @@ class Run {
     /** Processes the next scan, which took `read_ms` to read. */
     const RunRow& process(const Scan& scan, double read_ms = 0);
 
+    /** All that was done so far, to go on from there later. Error where it cannot be written. */
+    void save(std::ostream& out) const;
+    /** Into a run of the same options and settings, whose side files are read and that has seen no
+     *  scan. Error where what was saved is damaged, or of another run: then this one is of no use.
+     */
+    void restore(std::istream& in);
+
     void warn(const std::string& text);
     /** What ended the run, or is missing in it; of several the first is kept. */
     void fail(const std::string& fault);
@@ -68,6 +78,8 @@ class Run {
     void finish(bool complete);
 
     const RunRecord& record() const { return record_; }
+    /** Of the odometry, so far. */
+    const io::Trajectory& odometry() const { return slam_.trajectory(); }
     /** Of a run that is finished; they live as long as it does. */
     RunMaps maps() const {
         return {map_ ? &map_->builder() : nullptr, stored_ ? &*stored_ : nullptr,
@@ -75,6 +87,7 @@ class Run {
     }
 
  private:
+    std::string asked() const;
     bool searchesLoops() const;
     loops::LoopOptions loopOptions() const;
     void optimise();

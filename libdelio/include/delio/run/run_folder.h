@@ -22,8 +22,9 @@ std::string storedMapIn(const std::string& path);
 using Illustrate =
     std::function<void(const RunRecord& record, const map::BuiltMap& map, const RunFolder& folder)>;
 
-/** The folder that a run leaves. Every result file has its name, its writer and its reader here;
- *  summary.yaml is removed first and written last: a folder that has one is whole. */
+/** The folder that a run leaves. Every result file has its name, its writer and its reader here.
+ *  All are written into an io::PartialFolder first and put in their places together, summary.yaml
+ *  last: a folder that has one is whole. */
 class RunFolder {
  public:
     static constexpr const char* kTrajectory = "trajectory_kitti.txt";
@@ -58,7 +59,7 @@ class RunFolder {
     /** Writes all that the record has (making the folder where it is not there); files of an
      * earlier run that this one does not have are removed. Returns what is
      * missing: the record's fault, or why map or pictures could not be made; empty if nothing.
-     * Where anything else cannot be written, Error, and there is no summary. */
+     * Where anything else cannot be written, Error, and what was there before is as it was. */
     std::string write(RunRecord record, const RunMaps& maps = {},
                       const Illustrate& illustrate = {}) const;
 
@@ -80,7 +81,7 @@ class RunFolder {
     Summary summary() const { return readSummary(path(kSummary)); }
 
  private:
-    void remove(const char* name) const;
+    void writeTables(const RunRecord& record) const;
     void writeTrajectories(const RunRecord& record) const;
     void writeMaps(const RunRecord& record, const RunMaps& maps,
                    const Illustrate& illustrate) const;

@@ -1,0 +1,87 @@
+#include "delio/run/keeper.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "core/checkpoint.h"
+#include "delio/core/error.h"
+#include "delio/io/output_file.h"
+#include "row_files.h"
+
+namespace delio::run {
+namespace fs = std::filesystem;
+
+namespace {
+constexpr std::chrono::seconds kInterval{1};
+
+void writeState(const std::string& path, const std::string& state) {
+    io::replaceFile(path, [&](const std::string& temporary) {
+        std::ofstream out(temporary, std::ios::binary);
+        out.write(state.data(), static_cast<std::streamsize>(state.size()));
+        out.close();
+        if (out) io::putOnDisk(temporary);
+        return static_cast<bool>(out);
+    });
+}
+}  // namespace
+
+Keeper::Keeper(const std::string& results, std::string drive)
+    : folder_(fs::path(results) / kFolder), state_(folder_ / "state"), drive_(std::move(drive)) {}
+
+Keeper::~Keeper() = default;
+
+bool Keeper::hasState() const { return fs::exists(state_); }
+
+void Keeper::begin() const {
+    std::error_code fault;
+    fs::remove_all(folder_, fault);
+    if (!fault) fs::create_directories(folder_, fault);
+    if (fault) throw Error("cannot make the folder '" + folder() + "': " + fault.message());
+}
+
+void Keeper::resume(Run& run) const {
+    std::ifstream in(state_, std::ios::binary);
+    if (!in) throw Error("cannot read '" + state_.string() + "'");
+    try {
+        checkpoint::readPart(in, {"drive", drive_});
+        run.restore(in);
+    } catch (const Error& e) {
+        throw Error("the run in '" + folder() + "' cannot be gone on with: " + e.what() +
+                    "; begin it anew with --force");
+    }
+}
+
+void Keeper::add(const Run& run) {
+    if (!files_) files_ = std::make_unique<RowFiles>(folder_);
+    const auto& rows = run.record().rows;
+    for (; rows_ < rows.size(); ++rows_) files_->add(rows[rows_], run.odometry().poses[rows_]);
+    const auto now = Clock::now();
+    if (now >= flushAt_) {
+        files_->flush();
+        flushAt_ = now + kInterval;
+    }
+    const bool isFree = !writing_.valid() ||
+                        writing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    if (now >= keepAt_ && isFree) keep(run);
+}
+
+void Keeper::keep(const Run& run) {
+    if (writing_.valid()) writing_.get();
+    const auto begin = Clock::now();
+    std::ostringstream state;
+    checkpoint::writePart(state, {"drive", drive_}, "");
+    run.save(state);
+    constexpr int kShare = 20;
+    const auto end = Clock::now();
+    keepAt_ = begin + std::max<Clock::duration>(kInterval, kShare * (end - begin));
+    writing_ = std::async(std::launch::async, writeState, state_.string(), state.str());
+}
+
+void Keeper::remove() {
+    if (writing_.valid()) writing_.wait();
+    files_.reset();
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+}
+}  // namespace delio::run
