@@ -161,6 +161,7 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg verbose("", "verbose", "All the text of errors", cmd);
 
     return cli::run(cmd, argc, argv, verbose, [&] {
+        checkFiles(input.getValue(), output.getValue(), force.getValue());
         const auto reader = io::openScans(input.getValue());
         PaperOdometryOptions options;
         try {
@@ -170,7 +171,6 @@ int main(int argc, char** argv) {
             return cli::kExitBadCommandLine;
         }
         const auto scans = readScans(*reader, input.getValue(), scan.getValue());
-        checkFiles(input.getValue(), output.getValue(), force.getValue());
         Figures figures(output.getValue());
         drawPatterns(scans, options, figures);
         drawOutlierRemoval(scans[0], options, figures);
