@@ -33,7 +33,7 @@ std::vector<std::string> figureFiles() {
 void checkFiles(const std::string& input, const std::string& folder, bool force) {
     std::vector<std::string> outputs;
     for (const auto& file : figureFiles()) outputs.push_back(folder + "/" + file);
-    cli::refuseOverlap(cli::filesOfRecording(input), outputs);
+    cli::refuseOverlap(cli::filesOfRawlog(input), outputs);
     for (const auto& output : outputs) cli::refuseExisting(output, force);
 }
 

@@ -133,10 +133,12 @@ class Conversion {
 
 /** Nothing that is read may be overwritten. */
 void refuseItself(Arguments& args, const io::ScanReader& reader) {
-    auto inputs = cli::filesOfRecording(args.input.getValue());
-    for (const auto& input : {args.images.getValue(), args.sensorInfo.getValue(),
-                              reader.calibration().name, reader.truth().name})
-        inputs.push_back(input);
+    const std::string& input = args.input.getValue();
+    // What lies beside a bag of the same name is no part of it, but what was made of it before.
+    const bool isRawlog = reader.truth().name == io::sidecarPath(input, ".poses.txt");
+    auto inputs = isRawlog ? cli::filesOfRawlog(input) : std::vector<std::string>{input};
+    inputs.insert(inputs.end(), {args.images.getValue(), args.sensorInfo.getValue(),
+                                 reader.calibration().name, reader.truth().name});
     cli::refuseOverlap(inputs, io::RawlogWriter::outputsOf(args.output.getValue()));
 }
 

@@ -69,6 +69,26 @@ TEST_F(ConvertersOutput, OneProgramAtATime) {
     EXPECT_EQ(test::namesIn(folder_ / "back").size(), 4U + 5);
 }
 
+TEST_F(ConvertersOutput, AFolderThatIsGoneIsOneLine) {
+    test::writeSequence(folder_ / "long", test::fewScans(600));
+    const auto expectLine = [&](const std::string& tool, const Words& words, const fs::path& gone) {
+        test::RunningTool running(tool, words);
+        while (!running.hasEnded() && !(fs::exists(gone) && test::hasLeftovers(gone)))
+            std::this_thread::yield();
+        running.send(SIGSTOP);
+        fs::remove_all(gone);
+        running.send(SIGCONT);
+        test::expectFailure(running.wait(), 1, {"cannot write", gone.string()});
+        EXPECT_FALSE(fs::exists(gone));
+    };
+    const fs::path rawlog = folder_ / "d.rawlog";
+    ASSERT_EQ(test::runTool("kitti2rawlog", {"-i", folder_ / "long", "-o", rawlog}).exitCode, 0);
+    expectLine("kitti2rawlog", {"-i", folder_ / "long", "-o", rawlog_}, folder_ / "out");
+    expectLine("rawlog2kitti", {"-i", rawlog, "-o", folder_ / "back"}, folder_ / "back");
+    fs::create_directory(folder_ / "out");
+    expectLine("scans2rawlog", {"-i", rawlog, "-o", rawlog_, "--embed"}, folder_ / "out");
+}
+
 TEST_F(ConvertersOutput, NobodysLinksAreFollowed) {
     const fs::path mine = folder_ / "mine.txt";
     test::writeText(mine, "mine");

@@ -65,6 +65,9 @@ TEST_F(ConvertersOverlap, Scans2rawlog) {
     fs::rename(seq_, folder_ / "s_Images");
     expectRefusal("scans2rawlog",
                   {"-i", folder_ / "s_Images", "-o", folder_ / "s.rawlog", "--force"});
+    fs::rename(rawlog_, folder_ / "out" / "d.dat");
+    expectRefusal("scans2rawlog", {"-i", folder_ / "out" / "d.dat", "-o", rawlog_, "--force"});
+    fs::rename(folder_ / "out" / "d.dat", rawlog_);
     const Words again = {"-i", rawlog_, "-o", folder_ / "t.rawlog", "--force"};
     for (int i = 0; i < 2; ++i)
         EXPECT_EQ(test::runTool("scans2rawlog", again).exitCode, 0) << "and again";
