@@ -33,7 +33,7 @@ std::vector<std::string> figureFiles() {
 void checkFiles(const std::string& input, const std::string& folder, bool force) {
     std::vector<std::string> outputs;
     for (const auto& file : figureFiles()) outputs.push_back(folder + "/" + file);
-    cli::refuseOverlap(cli::filesOfRecording(input), outputs);
+    cli::refuseOverlap(cli::filesOfRawlog(input), outputs);
     for (const auto& output : outputs) cli::refuseExisting(output, force);
 }
 
@@ -161,6 +161,7 @@ int main(int argc, char** argv) {
     TCLAP::SwitchArg verbose("", "verbose", "All the text of errors", cmd);
 
     return cli::run(cmd, argc, argv, verbose, [&] {
+        checkFiles(input.getValue(), output.getValue(), force.getValue());
         const auto reader = io::openScans(input.getValue());
         PaperOdometryOptions options;
         try {
@@ -170,7 +171,6 @@ int main(int argc, char** argv) {
             return cli::kExitBadCommandLine;
         }
         const auto scans = readScans(*reader, input.getValue(), scan.getValue());
-        checkFiles(input.getValue(), output.getValue(), force.getValue());
         Figures figures(output.getValue());
         drawPatterns(scans, options, figures);
         drawOutlierRemoval(scans[0], options, figures);

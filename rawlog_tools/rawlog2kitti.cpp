@@ -60,7 +60,7 @@ fs::path targetOf(const std::string& output) {
 
 /** Nothing that is read may be overwritten. */
 void refuseItself(Arguments& args, const fs::path& target) {
-    auto inputs = cli::filesOfRecording(args.input.getValue());
+    auto inputs = cli::filesOfRawlog(args.input.getValue());
     inputs.push_back(args.images.getValue());
     std::vector<std::string> outputs;
     for (const auto& name : kNames) outputs.push_back((target / name).string());

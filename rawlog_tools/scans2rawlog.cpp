@@ -59,29 +59,27 @@ class Conversion {
           writer_(args.output.getValue(), args.label.getValue(), args.embed.getValue(),
                   args.force.getValue()) {}
 
-    /** False if Ctrl-C came before the end. What came before a fault is kept, which is returned. */
-    bool run(std::string& fault) {
+    /** False if Ctrl-C came before the end. What came before a fault of the recording is kept. */
+    bool run() {
         const unsigned count = args_.count.getValue();
         cli::Progress progress("converting", count);
-        try {
-            skip(args_.start.getValue());
-            while (count == 0 || writer_.scans() < count) {
-                if (cli::interrupted()) return false;
-                const auto scan = reader_.next();
-                if (!scan) break;
-                add(*scan);
-                progress.update(writer_.scans(), reader_.fraction());
-                skip(args_.every.getValue() - 1);
-            }
-        } catch (const Error& e) {
-            if (writer_.scans() == 0) throw;
-            fault = e.what();
+        unsigned passed = args_.start.getValue();
+        while (count == 0 || writer_.scans() < count) {
+            if (cli::interrupted()) return false;
+            const auto scan = next(passed);
+            if (!scan) break;
+            add(*scan);
+            progress.update(writer_.scans(), reader_.fraction());
+            passed = args_.every.getValue() - 1;
         }
         if (writer_.scans() == 0)
             throw Error("'" + args_.input.getValue() + "' holds no LiDAR scans" +
                         (args_.start.getValue() > 0 ? " after --start" : ""));
         return true;
     }
+
+    /** What ended the recording before its end; empty: nothing did. */
+    const std::string& fault() const { return fault_; }
 
     std::size_t finish() {
         auto meta = reader_.meta().value_or(io::DriveMeta{});
@@ -95,9 +93,21 @@ class Conversion {
     }
 
  private:
-    void skip(unsigned count) {
-        for (unsigned i = 0; i < count; ++i)
-            if (!reader_.skip()) return;
+    /** The scan after `passed` others; nothing at the end, or where the recording has a fault. */
+    std::optional<Scan> next(unsigned passed) {
+        try {
+            for (unsigned i = 0; i < passed; ++i)
+                if (!reader_.skip()) break;
+            auto scan = reader_.next();
+            if (scan && !truth_.empty() && scan->index >= truth_.size())
+                throw Error("'" + reader_.truth().name + "' has no row for scan " +
+                            std::to_string(scan->index));
+            return scan;
+        } catch (const Error& e) {
+            if (writer_.scans() == 0) throw;
+            fault_ = e.what();
+            return {};
+        }
     }
 
     void add(const Scan& scan) {
@@ -110,9 +120,6 @@ class Conversion {
         char row[48];
         std::snprintf(row, sizeof(row), "%.9f\n", scan.stamp_s);
         times_ += row;
-        if (!truth_.empty() && scan.index >= truth_.size())
-            throw Error("'" + reader_.truth().name + "' has no row for scan " +
-                        std::to_string(scan.index));
         if (!truth_.empty()) poses_ += truth_[scan.index] + "\n";
     }
 
@@ -121,15 +128,17 @@ class Conversion {
     std::vector<std::string> truth_;
     io::RawlogWriter writer_;
     double epoch_s_ = 0;
-    std::string times_, poses_;
+    std::string times_, poses_, fault_;
 };
 
 /** Nothing that is read may be overwritten. */
 void refuseItself(Arguments& args, const io::ScanReader& reader) {
-    auto inputs = cli::filesOfRecording(args.input.getValue());
-    for (const auto& input : {args.images.getValue(), args.sensorInfo.getValue(),
-                              reader.calibration().name, reader.truth().name})
-        inputs.push_back(input);
+    const std::string& input = args.input.getValue();
+    // What lies beside a bag of the same name is no part of it, but what was made of it before.
+    const bool isRawlog = reader.truth().name == io::sidecarPath(input, ".poses.txt");
+    auto inputs = isRawlog ? cli::filesOfRawlog(input) : std::vector<std::string>{input};
+    inputs.insert(inputs.end(), {args.images.getValue(), args.sensorInfo.getValue(),
+                                 reader.calibration().name, reader.truth().name});
     cli::refuseOverlap(inputs, io::RawlogWriter::outputsOf(args.output.getValue()));
 }
 
@@ -146,14 +155,13 @@ int convert(Arguments& args) {
     cli::inform("reading " + describe(reader->recording()));
     for (const auto& warning : reader->recording().warnings) cli::warn(warning);
     Conversion conversion(args, *reader);
-    std::string fault;
-    if (!conversion.run(fault)) return cli::kExitInterrupted;
+    if (!conversion.run()) return cli::kExitInterrupted;
     const std::size_t scans = conversion.finish();
     for (const auto& other : reader->otherLabels())
         cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
-    if (!fault.empty())
-        throw Error(fault + "; the " + std::to_string(scans) + " scans before are in '" + output +
-                    "'");
+    if (!conversion.fault().empty())
+        throw Error(conversion.fault() + "; the " + std::to_string(scans) +
+                    " scans before are in '" + output + "'");
     cli::inform("wrote " + std::to_string(scans) + " scans to '" + output + "'");
     return cli::kExitSuccess;
 }

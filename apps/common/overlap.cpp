@@ -57,8 +57,7 @@ void refuseOverlap(const std::vector<std::string>& inputs,
     }
 }
 
-std::vector<std::string> filesOfRecording(const std::string& path) {
-    if (fs::path(path).extension() != ".rawlog") return {path};
+std::vector<std::string> filesOfRawlog(const std::string& path) {
     auto files = io::RawlogWriter::outputsOf(path);
     files.push_back((io::folderOf(path) / "Images").string());
     return files;

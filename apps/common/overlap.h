@@ -8,6 +8,6 @@ namespace delio::cli {
  *  not there do no harm. */
 void refuseOverlap(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-/** The recording at `path`, and of a rawlog what is read beside it. */
-std::vector<std::string> filesOfRecording(const std::string& path);
+/** The rawlog at `path` and what may be read beside it. */
+std::vector<std::string> filesOfRawlog(const std::string& path);
 }  // namespace delio::cli

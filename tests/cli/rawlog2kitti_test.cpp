@@ -49,6 +49,29 @@ TEST_F(KittiTools, TimesComeBackWithoutTheirFile) {
     for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(back[i], 0.1 * static_cast<double>(i), 1e-7);
 }
 
+TEST_F(KittiTools, SideFilesThatDoNotBelongToTheScansAreRefused) {
+    ASSERT_EQ(toRawlog().exitCode, 0);
+    const fs::path target = folder_ / "back";
+    const auto expectRefusal = [&](const std::string& name, const std::string& text,
+                                   const std::string& word) {
+        const std::string good = test::readText(side("." + name));
+        writeText(side("." + name), text);
+        test::expectFailure(toKitti(target), 1, {side("." + name), word});
+        EXPECT_FALSE(fs::exists(target)) << name << text;
+        writeText(side("." + name), good);
+    };
+    const std::string pose = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+    expectRefusal("times.txt", "0\n0.1\nnoon\n0.3\n0.4\n", "line 3");
+    expectRefusal("times.txt", "0\nnan\n0.2\n0.3\n0.4\n", "line 2");
+    expectRefusal("times.txt", "0\n0.1\n0.2\n0.3\n", "4 rows for 5 scans");
+    expectRefusal("times.txt", "0\n1\n2\n3\n4\n5\n", "6 rows for 5 scans");
+    expectRefusal("times.txt", "", "empty");
+    expectRefusal("poses.txt", pose + pose, "2 rows for 5 scans");
+    expectRefusal("poses.txt", "somewhere\n", "line 1");
+    expectRefusal("calib.txt", "Tr: 1 2 3\n", "line 1");
+    EXPECT_EQ(toKitti(target).exitCode, 0);
+}
+
 TEST_F(KittiTools, Rawlog2kittiRefusesAndLeavesNothing) {
     ASSERT_EQ(toRawlog({"--embed"}).exitCode, 0);
     const fs::path target = folder_ / "back";

@@ -134,7 +134,7 @@ TEST_F(Scans2Rawlog, WhatCameBeforeAFaultIsKept) {
 TEST_F(Scans2Rawlog, RefusesWhatCannotBe) {
     writeDrive(1, true);
     expectFailure(runTool("scans2rawlog", {"-i", rawlog_, "-o", rawlog_, "--force"}), 1,
-                  {"to be read"});
+                  {"what is read"});
     EXPECT_TRUE(io::RawlogReader(rawlog_).next());
     expectFailure(convert(folder_ / "none"), 1, {"no such file or folder"});
     fs::create_directory(folder_ / "empty");

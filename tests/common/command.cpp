@@ -19,44 +19,65 @@ std::string toolPath(const std::string& tool) {
     return std::filesystem::exists(own) ? own.string() : tool;
 }
 
-CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments,
-                      const std::string& interruptAt) {
+RunningTool::RunningTool(const std::string& tool, const std::vector<std::string>& arguments) {
     const std::string program = toolPath(tool);
-    const TemporaryFolder folder;
-    const std::string out = folder / "out", err = folder / "err";
-
     std::vector<std::string> words = {program};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (auto& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
 
+    const std::string out = folder_ / "out", err = folder_ / "err";
     std::fflush(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
+    child_ = fork();
+    if (child_ == 0) {
         if (!freopen("/dev/null", "r", stdin) || !freopen(out.c_str(), "w", stdout) ||
             !freopen(err.c_str(), "w", stderr))
             _exit(126);
         execvp(argv[0], argv.data());
         _exit(127);
     }
-    int status = 0;
-    if (!interruptAt.empty()) {
-        while (waitpid(child, &status, WNOHANG) == 0) {
-            if (std::filesystem::exists(err) &&
-                readText(err).find(interruptAt) != std::string::npos) {
-                kill(child, SIGINT);
-                break;
-            }
-            usleep(2000);
-        }
-    }
-    waitpid(child, &status, 0);  // does nothing where it has ended above
+}
+
+RunningTool::~RunningTool() {
+    if (ended_) return;
+    kill(child_, SIGKILL);
+    waitpid(child_, &status_, 0);
+}
+
+void RunningTool::send(int signal) const { kill(child_, signal); }
+
+bool RunningTool::hasEnded() {
+    if (!ended_) ended_ = waitpid(child_, &status_, WNOHANG) != 0;
+    return ended_;
+}
+
+std::string RunningTool::err() const {
+    const auto file = folder_ / "err";
+    return std::filesystem::exists(file) ? readText(file) : "";
+}
+
+CommandResult RunningTool::wait() {
+    if (!ended_) waitpid(child_, &status_, 0);
+    ended_ = true;
     CommandResult result;
-    result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    result.out = readText(out);
-    result.err = readText(err);
+    result.exitCode = WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+    result.out = readText(folder_ / "out");
+    result.err = err();
     return result;
+}
+
+CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments,
+                      const std::string& interruptAt) {
+    RunningTool running(tool, arguments);
+    while (!interruptAt.empty() && !running.hasEnded()) {
+        if (running.err().find(interruptAt) != std::string::npos) {
+            running.send(SIGINT);
+            break;
+        }
+        usleep(2000);
+    }
+    return running.wait();
 }
 
 CommandResult runToolOnFullDisk(const std::string& tool, const std::vector<std::string>& arguments,

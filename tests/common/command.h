@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "test_data.h"
+
 namespace delio::test {
 struct CommandResult {
     int exitCode = -1;  //!< 128 + signal if a signal ended it
@@ -16,6 +18,27 @@ std::string toolPath(const std::string& tool);
  *  `interruptAt`: as soon as stderr holds this text, Ctrl-C (SIGINT) is sent; empty: never. */
 CommandResult runTool(const std::string& tool, const std::vector<std::string>& arguments,
                       const std::string& interruptAt = "");
+
+/** A tool that runs beside the test. */
+class RunningTool {
+ public:
+    RunningTool(const std::string& tool, const std::vector<std::string>& arguments);
+    /** Kills it if it was not waited for. */
+    ~RunningTool();
+    RunningTool(const RunningTool&) = delete;
+    RunningTool& operator=(const RunningTool&) = delete;
+
+    void send(int signal) const;
+    bool hasEnded();
+    /** What it has said on stderr so far. */
+    std::string err() const;
+    CommandResult wait();
+
+ private:
+    TemporaryFolder folder_;
+    int child_ = -1, status_ = 0;
+    bool ended_ = false;
+};
 
 /** The same on a disk that is full as soon as a file has `bytes` (a multiple of 1024): writing
  * fails from there on. stdout goes to stderr. */

@@ -69,8 +69,13 @@ void PartialFolder::putInPlace(const std::vector<std::string>& names) {
         if (isFolder(folder_ / name) && isThere(path_ / name) && !isFolder(path_ / name))
             throw Error("cannot write '" + (folder_ / name).string() +
                         "': there is a folder of that name");
+    std::vector<std::string> concerned;
+    for (const auto& name : names)
+        if (isThere(folder_ / name) || isThere(path_ / name)) concerned.push_back(name);
     PartialFolder old(folder_, output_);
-    for (const auto& name : names) moves.move(folder_ / name, old.path_ / name);
+    // A file alone takes the place of the old one in one step.
+    if (concerned.size() != 1 || !isThere(path_ / concerned[0]) || isFolder(path_ / concerned[0]))
+        for (const auto& name : names) moves.move(folder_ / name, old.path_ / name);
     for (auto name = names.rbegin(); name != names.rend(); ++name)
         moves.move(path_ / *name, folder_ / *name);
     if (!moves.fault) return;

@@ -145,7 +145,11 @@ void RawlogWriter::setPoints(CObservationPointCloud& observation, const std::vec
 void RawlogWriter::append(CObservationPointCloud& observation, double stamp_s, double epoch_s) {
     observation.sensorLabel = label_;
     observation.timestamp = timeOf(stamp_s, epoch_s);
-    mrpt::serialization::archiveFrom(out_) << observation;
+    try {
+        mrpt::serialization::archiveFrom(out_) << observation;
+    } catch (const std::exception&) {  // MRPT's words do not name the file
+        giveUp();
+    }
     ++count_;
 }
 

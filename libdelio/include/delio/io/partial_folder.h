@@ -23,8 +23,8 @@ class PartialFolder {
      *  there; a name that is not in here is not there either afterwards. All of it or, where that
      *  fails, nothing is done: Error. The first of `names` marks the whole: the old one goes first
      *  and the new one comes last. So whoever looks in between, or after a kill, finds no file of
-     *  that name, not parts of two outputs. (The old ones of a killed process lie in a folder of
-     *  this kind, too.) */
+     *  that name, not parts of two outputs; where it is one file only, the old one or the new one.
+     * (The old ones of a killed process lie in a folder of this kind, too.) */
     void putInPlace(const std::vector<std::string>& names);
 
     /** A message about a file in here as one about the file that it was to become. */

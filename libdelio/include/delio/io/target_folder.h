@@ -15,8 +15,6 @@ class TargetFolder {
     TargetFolder(const TargetFolder&) = delete;
     TargetFolder& operator=(const TargetFolder&) = delete;
 
-    bool wasMade() const { return made_; }
-
  private:
     std::filesystem::path path_;
     bool made_ = false;
