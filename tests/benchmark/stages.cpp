@@ -168,7 +168,7 @@ void print(const std::string& rawlog, const Run& run) {
     print("normalised squared error, rotation", errors.rotationNes, "(3 expected)");
     print("                       translation", errors.translationNes, "(3 expected)");
     std::printf("  ms a scan:");
-    for (const auto& [stage, ms] : run.times_ms) std::printf(" %s %.1f", stage, ms / scans);
+    for (const auto& [stage, ms] : run.times_ms) std::printf(" %s %.1f", stage.c_str(), ms / scans);
     std::printf("\n");
 }
 }  // namespace

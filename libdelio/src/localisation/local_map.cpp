@@ -25,7 +25,7 @@ void LocalMap::comeNear(const Eigen::Vector3d& place) {
         if (distance > kFar_m) isNear_[i] = false;
         if (distance > kNear_m || isNear_[i]) continue;
         isNear_[i] = true;
-        waiting_.push_back({stored_->points(i), level});
+        waiting_.push_back({i, stored_->points(i), 0});
     }
 }
 
@@ -33,7 +33,7 @@ void LocalMap::take(Eigen::Index most) {
     while (most > 0 && !waiting_.empty()) {
         auto& cloud = waiting_.front();
         const Eigen::Index count = std::min(most, cloud.points.cols() - cloud.taken);
-        map_.add(cloud.points.middleCols(cloud.taken, count), cloud.level);
+        map_.add(cloud.points.middleCols(cloud.taken, count), stored_->levelFrames()[cloud.submap]);
         cloud.taken += count;
         most -= count;
         if (cloud.taken == cloud.points.cols()) waiting_.pop_front();

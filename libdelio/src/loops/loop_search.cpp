@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/checkpoint.h"
 #include "places.h"
 
 namespace delio::loops {
@@ -74,8 +75,10 @@ double LoopCandidate::moved_m() const {
 }
 
 LoopSearch::LoopSearch(const LoopOptions& options, const ClosureOptions& closure,
-                       std::string folder)
-    : options_(options), closure_(closure), places_(std::make_unique<Places>(std::move(folder))) {}
+                       std::string folder, bool isKept)
+    : options_(options),
+      closure_(closure),
+      places_(std::make_unique<Places>(std::move(folder), isKept)) {}
 
 LoopSearch::~LoopSearch() = default;
 
@@ -86,6 +89,19 @@ void LoopSearch::add(Submap submap, const Eigen::Isometry3d& keyPose) {
     submaps_.push_back(std::move(submap));
     const std::size_t to = submaps_.size() - 1;
     for (std::size_t from = 0; from < to; ++from) compare(from, to, {});
+}
+
+template <class Archive>
+void LoopSearch::serialize(Archive& archive) {
+    archive(submaps_, level_, candidates_, *places_);
+}
+
+void LoopSearch::save(std::ostream& out) const {
+    checkpoint::save(out, {"loops", checkpoint::textOf({&options_, &closure_})}, *this);
+}
+
+void LoopSearch::restore(std::istream& in) {
+    checkpoint::restore(in, {"loops", checkpoint::textOf({&options_, &closure_})}, *this);
 }
 
 const Sketch& LoopSearch::sketch(std::size_t submap) const { return places_->sketch(submap); }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "../core/checkpoint.h"
 #include "build_map.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
@@ -18,6 +19,7 @@ using mrpt::maps::CPointsMapXYZI;
 
 namespace {
 constexpr double kDeg = M_PI / 180;
+constexpr const char *kWhat = "scans for the map", *kOption = "--no-map";
 
 /** The points that are used: those that stand still, then those that move; of either the first one
  *  of each voxel. x y z intensity each. */
@@ -86,8 +88,12 @@ void MapOptions::check(const std::string& section) const {
     requireOrder(section + ".min_range", minRange_m, section + ".max_range", maxRange_m);
 }
 
-MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel, std::string folder)
-    : options_(options), sensorLabel_(std::move(sensorLabel)), folder_(std::move(folder)) {}
+MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel, std::string folder,
+                       bool isKept)
+    : options_(options),
+      sensorLabel_(std::move(sensorLabel)),
+      folder_(std::move(folder)),
+      isKept_(isKept) {}
 
 MapBuilder::~MapBuilder() = default;
 MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
@@ -109,7 +115,9 @@ bool MapBuilder::isFarFromLastView(const Isometry3d& pose, mrpt::Clock::time_poi
 
 void MapBuilder::putAside(const std::vector<float>& points, const CPointsMap* view,
                           StoredScan& scan) {
-    if (!spool_) spool_ = std::make_shared<io::Spool>(folder_, "scans for the map", "--no-map");
+    if (!spool_)
+        spool_ = std::make_shared<io::Spool>(isKept_ ? io::Spool::named(spoolPath(), kWhat, kOption)
+                                                     : io::Spool(folder_, kWhat, kOption));
     scan.points = spool_->append(points);
     if (!view) return;
     const auto packed = scan::RangeImage(finitePoints(*view), options_.removal.cell_deg).packed();
@@ -158,6 +166,26 @@ void MapBuilder::undo() noexcept {
     // What was put aside stays on the disk: a simplemap that was given out may still need it.
     now_ = std::move(before_);
     scans_.erase(scans_.begin() + static_cast<std::ptrdiff_t>(now_.scans), scans_.end());
+    canUndo_ = false;
+}
+
+template <class Archive>
+void MapBuilder::serialize(Archive& archive) {
+    std::uint64_t end = spool_ ? spool_->kept() : 0;
+    bool hasSpool = spool_ != nullptr;
+    archive(scans_, now_, hasSpool, end);
+    if constexpr (Archive::is_loading::value)
+        if (hasSpool)
+            spool_ =
+                std::make_shared<io::Spool>(io::Spool::again(spoolPath(), kWhat, kOption, end));
+}
+
+void MapBuilder::save(std::ostream& out) const {
+    checkpoint::save(out, {"map", checkpoint::textOf({&options_, &options_.removal})}, *this);
+}
+
+void MapBuilder::restore(std::istream& in) {
+    checkpoint::restore(in, {"map", checkpoint::textOf({&options_, &options_.removal})}, *this);
     canUndo_ = false;
 }
 

@@ -63,6 +63,14 @@ void PlaneMap::fit(const Level& level, Cell& cell) const {
                   static_cast<double>(cell.count)};
 }
 
+/** Once more, as when the last points came. */
+void PlaneMap::fitAll() {
+    for (auto& level : levels_)
+        tbb::parallel_for(std::size_t{0}, level.cells.size(), [&](std::size_t i) {
+            fit(level, level.cells[static_cast<std::uint32_t>(i)]);
+        });
+}
+
 void PlaneMap::add(const Eigen::Matrix3Xd& points, Level& level) const {
     std::vector<std::uint32_t> touched;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {

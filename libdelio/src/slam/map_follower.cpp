@@ -1,5 +1,6 @@
 #include "delio/slam/map_follower.h"
 
+#include "../core/checkpoint.h"
 #include "delio/scan/spin_axis.h"
 
 namespace delio {
@@ -9,6 +10,21 @@ void MapFollower::add(const SlamScan& scan) {
     fixes_.push_back(
         tracker_.add(scan.increment, stillPoints(scan), up_.value_or(Eigen::Vector3d::UnitZ())));
 }
+
+namespace {
+/** Of another map, the state is of no use. */
+checkpoint::Label labelOf(const MapTracker& tracker) {
+    const auto& map = tracker.map();
+    return {"place in the map", checkpoint::textOf({&tracker.options(), &tracker.searchOptions()}) +
+                                    std::to_string(map.submaps().size()) + " " +
+                                    std::to_string(map.graph().poses().size()) + " " +
+                                    std::to_string(map.graph().edges().size())};
+}
+}  // namespace
+
+void MapFollower::save(std::ostream& out) const { checkpoint::save(out, labelOf(tracker_), *this); }
+
+void MapFollower::restore(std::istream& in) { checkpoint::restore(in, labelOf(tracker_), *this); }
 
 void MapFollower::undo() noexcept {
     tracker_.undo();

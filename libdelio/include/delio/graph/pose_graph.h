@@ -16,6 +16,12 @@ struct Edge {
     std::size_t from = 0;
     std::size_t to = 0;
     Increment increment;
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(from, to, increment);
+    }
 };
 
 struct PoseGraphOptions : StageOptions {
@@ -83,6 +89,12 @@ class PoseGraph {
     const std::vector<Edge>& edges() const { return edges_; }
     /** Omega of edges()[i], in the order of delio::Increment. */
     const Matrix6& information(std::size_t i) const { return information_[i]; }
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(poses_, edges_, information_, edgesUpTo_);
+    }
 
  private:
     void append(const Edge& edge, const Matrix6& information);

@@ -20,14 +20,27 @@ class LocalMap {
 
     const ScanToMap& scanToMap() const { return map_; }
 
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(isNear_, waiting_, map_);
+        if constexpr (Archive::is_loading::value)
+            for (auto& cloud : waiting_) cloud.points = stored_->points(cloud.submap);
+    }
+
  private:
     void comeNear(const Eigen::Vector3d& place);
     void take(Eigen::Index most);
 
     struct Cloud {
-        Eigen::Matrix3Xf points;
-        Eigen::Isometry3d level;
+        std::size_t submap = 0;
+        Eigen::Matrix3Xf points;  //!< of it
         Eigen::Index taken = 0;
+
+        template <class Archive>
+        void serialize(Archive& archive) {
+            archive(submap, taken);
+        }
     };
     std::shared_ptr<const StoredMap> stored_;
     std::vector<bool> isNear_;  //!< of each submap: it was taken in, or waits

@@ -34,6 +34,8 @@ class PlaceSearch {
  public:
     PlaceSearch(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& options);
 
+    const PlaceSearchOptions& options() const { return options_; }
+
     /** `cloud`: z up, metres. */
     FoundPlace find(const Eigen::Matrix3Xf& cloud);
     /** Among some submaps only. */

@@ -1,4 +1,5 @@
 #pragma once
+#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,6 +42,12 @@ struct LoopCandidate {
     Closure closure;  //!< with the reason why it was not accepted
     bool accepted() const { return closure.reason.empty(); }
     double moved_m() const;  //!< found so far from where it was expected
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(from, to, fromNode, toNode, path_m, reach_m, expected, share, closure);
+    }
 };
 
 /** Looks for places that a drive came back to: of all pairs of submaps that may lie one over the
@@ -50,8 +57,10 @@ struct LoopCandidate {
 class LoopSearch {
  public:
     /** `folder`: where submaps are put aside, in a file without a name; empty: the system's for
-     *  temporary files. */
-    LoopSearch(const LoopOptions& options, const ClosureOptions& closure, std::string folder = "");
+     *  temporary files. With `isKept` in `folder`/submaps.spool, which stays: what save() wrote
+     *  refers to it. */
+    LoopSearch(const LoopOptions& options, const ClosureOptions& closure, std::string folder = "",
+               bool isKept = false);
     ~LoopSearch();
 
     /** The drive's next submap, compared with all before it; pose: of its key node's vehicle.
@@ -70,6 +79,16 @@ class LoopSearch {
     /** Of a submap; from the disk. */
     Eigen::Matrix3Xf points(std::size_t submap) const;
     const LoopOptions& options() const { return options_; }
+
+    /** What was added and found. Error where the submaps are in a file without a name, or it cannot
+     *  be written. */
+    void save(std::ostream& out) const;
+    /** Into one of the same options and folder to which nothing was added. Error where the state is
+     *  cut off, damaged or of other options, or the file of the submaps is. */
+    void restore(std::istream& in);
+
+    template <class Archive>
+    void serialize(Archive& archive);  //!< for these two
 
  private:
     void compare(std::size_t from, std::size_t to, const std::vector<LoopCandidate>& known);

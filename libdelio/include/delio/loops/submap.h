@@ -27,6 +27,12 @@ struct Stretch {
 
     void add(const Increment& increment, double moved_m);
     Stretch operator+(const Stretch& other) const;
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(path_m, variance_m2, variance_rad2);
+    }
 };
 
 /** What was driven in between, whichever came first. */
@@ -39,6 +45,12 @@ struct Submap {
     Stretch driven;                            //!< from the drive's first scan to the key node
     Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
     Eigen::Matrix3Xf points;  //!< one in `spacing`
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(first, key, last, driven, level, points);
+    }
 };
 
 /** The level frames of submaps, with these poses of the graph's nodes. */
@@ -50,6 +62,7 @@ std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,
 class SubmapBuilder {
  public:
     explicit SubmapBuilder(const SubmapOptions& options) : options_(options) {}
+    const SubmapOptions& options() const { return options_; }
 
     /** The next scan: increment since the one before, points in the vehicle's frame and the unit
      *  vector that points up in it. Where it begins another submap, the one that ended. */
@@ -61,14 +74,25 @@ class SubmapBuilder {
     /** The one that is being made, if any. */
     std::optional<Submap> finish();
 
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(parts_, ended_);
+    }
+
  private:
     struct Part {
-        std::size_t node;
+        std::size_t node = 0;
         Eigen::Isometry3d pose;  //!< in the submap's first scan's frame
         Eigen::Matrix3Xf points;
         Eigen::Vector3d up;
         Stretch driven;  //!< to here
         bool showsMore = true;
+
+        template <class Archive>
+        void serialize(Archive& archive) {
+            archive(node, pose, points, up, driven, showsMore);
+        }
     };
     bool isComplete() const;
     /** Where the scan was taken is not known well enough from those before it: a pause. */

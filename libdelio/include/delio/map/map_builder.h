@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,9 +60,10 @@ class MapBuilder {
  public:
     /** @param sensorLabel becomes the label of the simplemap's observations
      *  @param folder where scans are put aside, in a file without a name; empty: the system's
-     *  folder for temporary files */
+     *  folder for temporary files
+     *  @param isKept in `folder`/map.spool instead, which stays: what save() wrote refers to it */
     explicit MapBuilder(const MapOptions& options, std::string sensorLabel = "lidar",
-                        std::string folder = "");
+                        std::string folder = "", bool isKept = false);
     ~MapBuilder();
     MapBuilder(MapBuilder&&) noexcept;
     MapBuilder& operator=(MapBuilder&&) noexcept;
@@ -90,6 +92,15 @@ class MapBuilder {
 
     std::size_t keyframes() const { return now_.keyframes; }
 
+    /** What was added. Error where scans are in a file without a name, or it cannot be written. */
+    void save(std::ostream& out) const;
+    /** Into one of the same options and folder to which nothing was added. Error where the state is
+     *  cut off, damaged or of other options, or the file of the scans is. */
+    void restore(std::istream& in);
+
+    template <class Archive>
+    void serialize(Archive& archive);  //!< for these two
+
     /** The map at the given poses. Throws Error if a scan's poseIndex is outside `poses`, or if one
      *  could not be put aside. */
     BuiltMap build(const std::vector<Eigen::Isometry3d>& poses) const;
@@ -102,10 +113,16 @@ class MapBuilder {
         Eigen::Isometry3d viewPose = Eigen::Isometry3d::Identity();  //!< of the last view
         mrpt::Clock::time_point viewStamp;
         std::string fault;  //!< why a scan could not be put aside
+
+        template <class Archive>
+        void serialize(Archive& archive) {
+            archive(scans, keyframes, views, keyPose, viewPose, viewStamp, fault);
+        }
     };
 
     bool isFarFromLastKeyframe(const Eigen::Isometry3d& pose) const;
     bool isFarFromLastView(const Eigen::Isometry3d& pose, mrpt::Clock::time_point stamp) const;
+    std::string spoolPath() const { return folder_ + "/map.spool"; }
     void putAside(const std::vector<float>& points, const mrpt::maps::CPointsMap* view,
                   StoredScan& scan);
 
@@ -115,5 +132,6 @@ class MapBuilder {
     std::shared_ptr<io::Spool> spool_;  //!< made with the first scan
     State now_, before_;                //!< before the last add()
     bool canUndo_ = false;
+    bool isKept_;
 };
 }  // namespace delio::map

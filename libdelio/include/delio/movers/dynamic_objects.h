@@ -51,6 +51,12 @@ class DynamicObjects {
     /** Forgets all earlier scans. */
     void clear() { views_.clear(); }
 
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(views_);  // of the latest scan nothing is asked any more
+    }
+
  private:
     /** What is kept of a scan: all in its sensor's frame. */
     struct Object {
@@ -59,6 +65,11 @@ class DynamicObjects {
         Eigen::Vector3f place;                    //!< the centre, in the map's frame
         std::optional<Eigen::Vector3f> velocity;  //!< m/s, in the map's frame
         bool isTold = false;                      //!< that it moves
+
+        template <class Archive>
+        void serialize(Archive& archive) {
+            archive(points, centre, size, place, velocity, isTold);
+        }
     };
     using Objects = std::vector<Object>;
     /** That an object moves, as the places show that it left behind. */
@@ -78,6 +89,11 @@ class DynamicObjects {
         Objects objects;  //!< of an earlier scan: by their places' x
 
         Range objectsAbout(float x, float reach) const;
+
+        template <class Archive>
+        void serialize(Archive& archive) {
+            archive(stamp_s, toMap, image, objects);
+        }
     };
     bool came(const Object& object) const;
     std::optional<Track> trackOf(const Object& object) const;

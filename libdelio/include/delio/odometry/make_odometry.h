@@ -1,4 +1,5 @@
 #pragma once
+#include <iosfwd>
 #include <memory>
 #include <string>
 #include <utility>
@@ -29,6 +30,9 @@ struct OdometryOptions {
 /** The odometry that the options choose. Throws Error where two of its options contradict each
  *  other. */
 std::unique_ptr<Odometry> makeOdometry(const OdometryOptions& options);
+
+/** What ScanFeatures::save() wrote. Error where that is cut off, damaged or of another version. */
+std::shared_ptr<const ScanFeatures> readFeatures(std::istream& in);
 
 using StageList = std::vector<std::pair<std::string, StageOptions*>>;
 using ConstStageList = std::vector<std::pair<std::string, const StageOptions*>>;

@@ -19,6 +19,18 @@ class PlaneOdometry : public Odometry {
     explicit PlaneOdometry(const PlaneOdometryOptions& options);
 
     Step process(const Scan& scan) override;
+    void save(std::ostream& out) const override;
+    void restore(std::istream& in) override;
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(scale_);
+        if constexpr (Archive::is_loading::value) takeScale(scale_);
+        archive(upright_, seenScale_, otherScale_, timeline_, prediction_, map_, dynamics_, kernel_,
+                reference_, pose_, unregistered_s_, first_, started_, lost_, doubted_, usualShare_,
+                misses_, skewed_);
+    }
 
  private:
     void takeScale(double scale);

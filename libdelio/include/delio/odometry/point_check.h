@@ -22,7 +22,14 @@ struct PointCheckOptions : public StageOptions {
 struct CheckPoints {
     Eigen::Matrix3Xd points;
     points::PointMap map;
-    Eigen::Matrix3f upright;  //!< turns the sensor's frame such that z is up
+    /** Turns the sensor's frame such that z is up. */
+    Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(points, map, upright);
+    }
 };
 CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
                           const PointCheckOptions& options, const points::PointMapOptions& map);

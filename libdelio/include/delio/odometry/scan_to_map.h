@@ -74,6 +74,12 @@ class ScanToMap {
         return points::shareAt(points_, points, pose, distance);
     }
 
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(planes_, points_, swept_m_);
+    }
+
  private:
     bool believes(const planes::PlaneEstimate& found, const points::PointEstimate& placed) const;
     Eigen::Matrix3d turnCovariance(const Eigen::Matrix3Xd& points,

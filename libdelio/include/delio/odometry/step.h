@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,13 @@ struct Quality {
     /** Unit vectors in the sensor's frame at this scan about which, and along which, the prediction
      *  was kept; all three axes where the scan was predicted, or was the first. */
     Eigen::Matrix3Xd unobservedRotation, unobservedTranslation;
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(matches, residual_m, rotationObservability, translationObservability,
+                unobservedRotation, unobservedTranslation);
+    }
 };
 
 /** The quality of a scan `to` of which both estimates are. */
@@ -34,6 +42,12 @@ struct UsedPoints {
     std::vector<std::uint32_t> indices;  //!< of each in the scan as it came
     /** 1 for each that belongs to a dynamic object; empty where these are not looked for. */
     std::vector<std::uint8_t> dynamic;
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(points, indices, dynamic);
+    }
 };
 
 /** One scan measured against another, beside the chain of steps. */
@@ -50,10 +64,13 @@ class ScanFeatures {
      *  one. Nothing where the two cannot be registered. */
     virtual std::optional<Link> linkTo(const ScanFeatures& earlier,
                                        const Eigen::Isometry3d& guess) const = 0;
+
+    /** All that linkTo() needs; see readFeatures(). Error where it cannot be written. */
+    virtual void save(std::ostream& out) const = 0;
 };
 
-/** A figure under its name, which is a literal of the method. */
-using Named = std::pair<const char*, double>;
+/** A figure under its name. */
+using Named = std::pair<std::string, double>;
 
 /** What an odometry says of one scan; it means the same whatever the method. */
 struct Step {
@@ -72,5 +89,12 @@ struct Step {
     std::vector<Named> times_ms;
     std::vector<Named> details;                    //!< the method's own figures, likewise
     std::shared_ptr<const ScanFeatures> features;  //!< none where the method keeps none
+
+    /** What has to be kept to go on later: see core/checkpoint.h. Without the features. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(increment, predicted, reason, searched, interrupted, quality, used, notFinite,
+                deskewed, times_ms, details);
+    }
 };
 }  // namespace delio

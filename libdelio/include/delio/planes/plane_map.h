@@ -69,6 +69,14 @@ class PlaneMap {
     std::size_t voxels() const;
     std::size_t planes() const;
 
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(up_);
+        for (auto& level : levels_) archive(level.cells);
+        if constexpr (Archive::is_loading::value) fitAll();
+    }
+
  private:
     struct Cell {
         Eigen::Vector3d origin;  //!< the first point: sums are taken from there
@@ -77,6 +85,12 @@ class PlaneMap {
         unsigned count = 0;
         bool isPlane = false, touched = false;
         Plane plane;
+
+        /** Whether it is a plane, and which, follows. */
+        template <class Archive>
+        void serialize(Archive& archive) {
+            archive(origin, sum, squares, count);
+        }
     };
     struct Level {
         double edge;      //!< of its voxels, metres
@@ -85,6 +99,7 @@ class PlaneMap {
     };
     void add(const Eigen::Matrix3Xd& points, Level& level) const;
     void fit(const Level& level, Cell& cell) const;
+    void fitAll();
 
     PlaneMapOptions options_;
     Eigen::Vector3d up_;

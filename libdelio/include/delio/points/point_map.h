@@ -37,6 +37,12 @@ class PointMap {
     /** The nearest point within `reach` metres, which are at most a voxel's edge; none: false. */
     bool nearest(const Eigen::Vector3d& point, double reach, Eigen::Vector3d& found) const;
 
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(cells_, size_);
+    }
+
  private:
     struct Cell {
         static constexpr Eigen::Index kMost = 20;
@@ -58,6 +64,15 @@ class PointMap {
         }
 
         bool nearest(const Eigen::Vector3d& point, float& least, Eigen::Vector3d& found) const;
+
+        template <class Archive>
+        void serialize(Archive& archive) {
+            Eigen::Array<float, Eigen::Dynamic, 3, Eigen::ColMajor, kMost, 3> taken =
+                points.topRows(count);
+            archive(origin, taken);
+            count = taken.rows();
+            points.topRows(count) = taken;
+        }
     };
     PointMapOptions options_;
     scan::VoxelTable<Cell> cells_;

@@ -24,6 +24,12 @@ struct RunRow {
 
     /** Of reading, odometry, pose graph and submaps. */
     double total_ms() const;
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(scan, stamp_s, sensorPose, points, read_ms, report);
+    }
 };
 
 /** What a run was asked for and found: all that a RunFolder writes, but for the map. */

@@ -39,6 +39,12 @@ class RangeImage {
      *  went on by more than `margin` metres; taken where one of them ended within as much. */
     Place at(const Eigen::Vector3f& point, float margin) const;
 
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(perRadian_, ringSpacing_, allRows_, columns_, firstRow_, nearest_, leastAbout_);
+    }
+
  private:
     /** In the whole sphere. */
     int rowOf(const Eigen::Vector3f& point) const;

@@ -93,6 +93,17 @@ class VoxelTable {
     auto begin() const { return values_.begin(); }
     auto end() const { return values_.end(); }
 
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(keys_, values_);
+        if constexpr (Archive::is_loading::value) {
+            index_.clear();
+            index_.reserve(keys_.size());
+            for (const std::uint64_t key : keys_) index_.insert(key);
+        }
+    }
+
  private:
     VoxelIndex index_;
     std::vector<Value> values_;

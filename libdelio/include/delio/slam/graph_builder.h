@@ -16,17 +16,31 @@ class GraphBuilder : public SlamListener {
     const char* name() const override { return "graph"; }
     void add(const SlamScan& scan) override;
     void undo() noexcept override { takeBack(before_); }
+    void save(std::ostream& out) const override;
+    void restore(std::istream& in) override;
 
     /** Optimises the whole graph; while driving, its last nodes were. */
     graph::OptimisationResult optimise() { return graph_.optimise(options_); }
 
     const graph::PoseGraph& graph() const { return graph_; }
 
+    /** What has to be kept to go on later, without the features: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(graph_, recent_);
+    }
+
  private:
     struct Recent {
         std::size_t node = 0;
         std::shared_ptr<const ScanFeatures> features;
         Eigen::Isometry3d sensorPose = Eigen::Isometry3d::Identity();
+
+        /** Without the features. */
+        template <class Archive>
+        void serialize(Archive& archive) {
+            archive(node, sensorPose);
+        }
     };
     /** What it takes to forget a scan. */
     struct State {

@@ -13,13 +13,16 @@ namespace delio {
  *  and finds the same whenever it gets the time. */
 class LoopCloser : public SlamListener {
  public:
-    /** `folder`: where submaps are put aside; empty: the system's for temporary files. */
+    /** `folder`, `isKept`: where submaps are put aside, see LoopSearch. */
     LoopCloser(const loops::SubmapOptions& submaps, const loops::LoopOptions& loops,
-               const loops::ClosureOptions& closures, const std::string& folder = "");
+               const loops::ClosureOptions& closures, const std::string& folder = "",
+               bool isKept = false);
 
     const char* name() const override { return "submaps"; }
     void add(const SlamScan& scan) override;
     void undo() noexcept override;
+    void save(std::ostream& out) const override;
+    void restore(std::istream& in) override;
 
     /** `graph`: of the same drive, a node each scan. Once, after the last scan. Error where submaps
      *  could not be put aside. */
@@ -31,11 +34,26 @@ class LoopCloser : public SlamListener {
     /** Time that the search has taken, beside the drive and after it. */
     double search_ms() const { return search_ms_; }
 
+    /** What has to be kept to go on later, beside the search: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        std::string fault = faultText();
+        archive(builder_, poses_, waiting_, search_ms_, upIsKnown_, up_, fault);
+        if constexpr (Archive::is_loading::value) takeFault(fault);
+    }
+
  private:
     struct Ended {
         loops::Submap submap;
         Eigen::Isometry3d pose;  //!< of its key node
+
+        template <class Archive>
+        void serialize(Archive& archive) {
+            archive(submap, pose);
+        }
     };
+    std::string faultText() const;  //!< empty: none
+    void takeFault(const std::string& text);
     void end(std::optional<loops::Submap> submap);
     void searchNext();
     void search(std::vector<Ended> submaps);

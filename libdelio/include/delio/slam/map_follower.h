@@ -17,10 +17,18 @@ class MapFollower : public SlamListener {
     const char* name() const override { return "localisation"; }
     void add(const SlamScan& scan) override;
     void undo() noexcept override;
+    void save(std::ostream& out) const override;
+    void restore(std::istream& in) override;
 
     /** Of every scan. */
     const std::vector<MapFix>& fixes() const { return fixes_; }
     const StoredMap& map() const { return tracker_.map(); }
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(tracker_, fixes_, up_);
+    }
 
  private:
     MapTracker tracker_;

@@ -1,6 +1,8 @@
 #pragma once
+#include <iosfwd>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "delio/io/trajectory.h"
@@ -12,6 +14,12 @@ namespace delio {
 struct ScanReport {
     Step step;
     std::vector<Named> listeners_ms;  //!< time of each listener, under its name
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(step, listeners_ms);
+    }
 };
 
 /** An odometry and its listeners: scans in, and each listener is told of every step in turn. Poses
@@ -32,7 +40,22 @@ class Slam {
     /** Of the odometry alone. */
     const io::Trajectory& trajectory() const { return trajectory_; }
 
+    /** The drive as far as it has come, with odometry and listeners: written between two scans, it
+     *  is gone on with from there. Error where something of it cannot be written. */
+    void save(std::ostream& out) const;
+    /** Into one with an odometry and listeners that were made alike, attached in the same order,
+     *  and that has seen no scan. Error where the state is cut off, damaged, of other options, of
+     *  other listeners or of another version; then this is of no use. */
+    void restore(std::istream& in);
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(trajectory_, sensorPose_, refused_);
+    }
+
  private:
+    std::string listenerNames() const;
     void tell(const SlamScan& scan, ScanReport& report);
 
     std::unique_ptr<Odometry> odometry_;
