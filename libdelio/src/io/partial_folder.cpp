@@ -51,9 +51,9 @@ fs::path folderOf(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-PartialFolder::PartialFolder(const fs::path& folder, std::string output)
+PartialFolder::PartialFolder(const fs::path& folder, std::string output, const fs::path& place)
     : folder_(folder), output_(std::move(output)) {
-    std::string name = (folder / ".partial-XXXXXX").string();
+    std::string name = ((place.empty() ? folder : place) / ".partial-XXXXXX").string();
     if (!mkdtemp(name.data())) throw Error("cannot write '" + output_ + "': " + strerror(errno));
     path_ = name;
 }
@@ -72,7 +72,7 @@ void PartialFolder::putInPlace(const std::vector<std::string>& names) {
     std::vector<std::string> concerned;
     for (const auto& name : names)
         if (isThere(folder_ / name) || isThere(path_ / name)) concerned.push_back(name);
-    PartialFolder old(folder_, output_);
+    PartialFolder old(folder_, output_, path_.parent_path());
     // A file alone takes the place of the old one in one step.
     if (concerned.size() != 1 || !isThere(path_ / concerned[0]) || isFolder(path_ / concerned[0]))
         for (const auto& name : names) moves.move(folder_ / name, old.path_ / name);

@@ -48,7 +48,7 @@ void Keeper::resume(Run& run) const {
         run.restore(in);
     } catch (const Error& e) {
         throw Error("the run in '" + folder() + "' cannot be gone on with: " + e.what() +
-                    "; begin it anew with --force");
+                    " (--force begins anew)");
     }
 }
 

@@ -15,6 +15,7 @@
 #include "delio/map/page.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
+#include "delio/run/keeper.h"
 #include "scan_row.h"
 
 namespace delio::run {
@@ -133,7 +134,9 @@ std::string RunFolder::write(RunRecord record, const RunMaps& maps,
     std::error_code fault;
     fs::create_directories(folder_, fault);
     if (fault) throw Error("cannot make the folder '" + folder_ + "': " + fault.message());
-    io::PartialFolder partial(folder_, folder_);
+    // Where a run may be gone on with, what a kill leaves goes with the rest of it.
+    const std::string kept = path(Keeper::kFolder);
+    io::PartialFolder partial(folder_, folder_, fs::is_directory(kept, fault) ? kept : "");
     try {
         const RunFolder results(partial.path().string());
         results.writeTables(record);

@@ -10,16 +10,18 @@ namespace delio::io {
  *  behind: nothing reads it, and it may be removed. */
 class PartialFolder {
  public:
-    /** Lies in `folder`, so that what is in it can be renamed into that. `output` is what is being
-     *  written, for messages. Throws Error where it cannot be made. */
-    PartialFolder(const std::filesystem::path& folder, std::string output);
+    /** For what is to come into `folder`. `output` is what is being written, for messages. It lies
+     *  in `place`, a folder of the same file system (empty: in `folder`). Throws Error where it
+     *  cannot be made. */
+    PartialFolder(const std::filesystem::path& folder, std::string output,
+                  const std::filesystem::path& place = {});
     ~PartialFolder();
     PartialFolder(const PartialFolder&) = delete;
     PartialFolder& operator=(const PartialFolder&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
 
-    /** Moves the files and folders `names` into the folder that this lies in, in place of what is
+    /** Moves the files and folders `names` into `folder`, in place of what is
      *  there; a name that is not in here is not there either afterwards. All of it or, where that
      *  fails, nothing is done: Error. The first of `names` marks the whole: the old one goes first
      *  and the new one comes last. So whoever looks in between, or after a kill, finds no file of
