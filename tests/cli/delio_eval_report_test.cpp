@@ -49,7 +49,7 @@ TEST_F(DelioEval, WritesAReportAndKeepsWhatIsThere) {
     EXPECT_EQ(report("bare").exitCode, 0);
     expectFailure(report("ref.txt", "--force"), 1, "is a file");
     const auto unwritable = report("ref.txt/report", "--force");
-    expectFailure(unwritable, 1, "cannot make folder");
+    expectFailure(unwritable, 1, "cannot make the folder");
 }
 
 TEST_F(DelioEval, AReportThatCannotBeMadeChangesNothing) {

@@ -79,7 +79,7 @@ TEST_F(PartialFolder, MessagesNameWhatItWasToBecome) {
 TEST_F(PartialFolder, ALockIsForOneAndLeavesNothing) {
     const std::string file = folder_ / "d.rawlog";
     fs::create_directory(folder_ / "back");
-    for (const std::string output : {file, (folder_ / "back").string()}) {
+    for (const auto& output : {file, (folder_ / "back").string()}) {
         std::optional<io::OutputLock> lock(output);
         EXPECT_THROW(io::OutputLock{output}, Error) << output;
         const io::OutputLock other(folder_ / "e.rawlog");
