@@ -256,7 +256,7 @@ void saveScene(const COpenGLScene& scene, const std::string& path) { io::saveWho
 
 COpenGLScene::Ptr loadScene(const std::string& path) {
     auto scene = COpenGLScene::Create();
-    io::loadWhole(path, "a .3Dscene", *scene);
+    io::loadWhole(path, "a .3Dscene", io::FileOf::Scene, *scene);
     return scene;
 }
 }  // namespace delio::picture
