@@ -1,6 +1,7 @@
 #include "delio/core/error.h"
 
 #include <filesystem>
+#include <ios>
 #include <new>
 
 namespace delio {
@@ -37,7 +38,9 @@ std::string plainMessage(const std::exception& e) {
         return "it takes more memory than there is";
     if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&e))
         return "'" + file->path1().string() + "': " + file->code().message();
-    if (what.compare(0, 8, "yaml-cpp") == 0) return ofYaml(what.substr(0, what.find('\n')));
+    if (dynamic_cast<const std::ios_base::failure*>(&e)) return "it cannot be read";
+    if (what.compare(0, 8, "yaml-cpp") == 0 || what.compare(0, 12, "invalid node") == 0)
+        return ofYaml(what.substr(0, what.find('\n')));
     auto from = what.find(mark);
     from = from == std::string::npos ? 0 : what.find_first_not_of(' ', from + mark.size());
     const std::string message = what.substr(from, what.find('\n', from) - from);

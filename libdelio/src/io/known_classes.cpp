@@ -87,7 +87,8 @@ bool holds(const Names& names, std::string_view name) {
 
 bool isObservation(std::string_view name) {
     constexpr std::string_view kBegin = "mrpt::obs::CObservation";
-    return name.substr(0, kBegin.size()) == kBegin && name != "mrpt::obs::CObservation3DScene";
+    return name.size() > kBegin.size() && name.substr(0, kBegin.size()) == kBegin &&
+           name != "mrpt::obs::CObservation3DScene";
 }
 }  // namespace
 
