@@ -90,7 +90,7 @@ TEST_F(ObjectArchive, NoNumberTakesAllMemory) {
     for (const auto& scan : scans()) {
         const std::string whole = bytesOf({scan, cloudObservation(1)});
         const auto size = bytesOf({scan}).size();
-        for (const std::uint32_t number : {0x3FFFFFFFU, 0x0C00F000U})
+        for (const std::uint32_t number : {0x3FFFFFFFU, 0x30000001U})
             for (std::size_t at = 0; at + sizeof(number) <= size; ++at) {
                 std::string bytes = whole;
                 std::memcpy(&bytes[at], &number, sizeof(number));
