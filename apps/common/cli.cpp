@@ -11,9 +11,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <utility>
 #include <vector>
 
 #include "delio/core/error.h"
+#include "delio/core/printable.h"
 
 namespace delio::cli {
 namespace {
@@ -21,8 +23,32 @@ namespace {
 volatile std::sig_atomic_t interruptRequested = 0;
 
 void say(const std::string& text) {
-    std::cerr << program_invocation_short_name << ": " << text << std::endl;
+    std::cerr << program_invocation_short_name << ": " << printable(text) << std::endl;
 }
+
+/** Lets nothing through to stdout that a terminal takes for a command: names and labels come from
+ *  files of others. */
+class PlainOutput : public std::streambuf {
+ public:
+    PlainOutput() : to_(std::cout.rdbuf(this)) {}
+    ~PlainOutput() override { std::cout.rdbuf(to_); }
+    PlainOutput(const PlainOutput&) = delete;
+    PlainOutput& operator=(const PlainOutput&) = delete;
+
+ protected:
+    int_type overflow(int_type c) override {
+        const bool isControl = (c < ' ' && c != '\n' && c != '\t') || c == '\x7F';
+        const bool isSecond = std::exchange(last_, c) == 0xC2 && c < 0xA0;  // of C2 80 to C2 9F
+        return c == traits_type::eof()
+                   ? 0
+                   : to_->sputc(isControl || isSecond ? '?' : traits_type::to_char_type(c));
+    }
+    int sync() override { return to_->pubsync(); }
+
+ private:
+    std::streambuf* to_;
+    int_type last_ = 0;
+};
 
 /** TCLAP's own help, but a version and a failure in one plain line. */
 class OneLineOutput : public TCLAP::StdOutput {
@@ -55,6 +81,7 @@ std::istream& operator>>(std::istream& in, Count& count) {
 
 int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, TCLAP::SwitchArg& verbose,
         const std::function<int()>& body) {
+    const PlainOutput plain;
     OneLineOutput output;
     cmd.setOutput(&output);
     std::vector<const char*> words(argv, argv + argc);

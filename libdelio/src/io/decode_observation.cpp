@@ -6,6 +6,7 @@
 #include <mrpt/obs/CObservationRotatingScan.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
+#include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "rotating_scan.h"
 #include "velodyne_packets.h"
@@ -29,6 +30,9 @@ void decode(const CObservationVelodyneScan& observation, Scan& scan) {
 void decode(const CObservation3DRangeScan& observation, Scan& scan) {
     auto points = mrpt::maps::CSimplePointsMap::Create();
     if (observation.hasPoints3D) {
+        const auto size = observation.points3D_x.size();
+        if (observation.points3D_y.size() != size || observation.points3D_z.size() != size)
+            throw Error("its points have unlike numbers of coordinates");
         points->resize(observation.points3D_x.size());
         for (std::size_t i = 0; i < observation.points3D_x.size(); ++i)
             points->setPointFast(i, observation.points3D_x[i], observation.points3D_y[i],

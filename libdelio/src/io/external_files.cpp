@@ -4,6 +4,7 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,8 @@
 
 #include "delio/core/error.h"
 #include "gz_input.h"
+#include "memory_budget.h"
+#include "object_archive.h"
 
 namespace delio::io {
 namespace {
@@ -65,53 +68,89 @@ mrpt::maps::CPointsMap::Ptr readKittiPoints(const std::string& file) {
     points->mark_as_modified();
     return points;
 }
+/** Throws Error for a name that leads out of the folder that it is looked for in: a rawlog of
+ *  somebody else's is not to choose what is read. (A link in the folder is its owner's.) */
+void refuseOutside(const fs::path& name) {
+    const bool climbs = std::find(name.begin(), name.end(), "..") != name.end();
+    if (name.empty() || !name.has_filename())
+        throw Error("its points are in another file, but it does not say which");
+    if (name.is_absolute() || climbs)
+        throw Error("its external file '" + name.string() +
+                    "' leads out of the folder of such files: it is not read");
+}
+
 /** Where `name` is in the folders, by its whole name. */
 fs::path found(const fs::path& name, const std::vector<std::string>& folders) {
+    refuseOutside(name);
     std::string tried;
     for (const fs::path folder : folders) {
-        const fs::path file = name.is_absolute() ? name : folder / name;
-        if (fs::exists(file)) return fs::absolute(file);
+        const fs::path file = folder / name;
+        std::error_code ignored;
+        if (fs::is_regular_file(file, ignored)) return fs::absolute(file);
         tried += (tried.empty() ? "'" : ", '") + file.parent_path().string() + "'";
     }
     throw Error("its external file '" + name.string() + "' is in none of the folders tried: " +
                 tried + "; name the right one with --images");
 }
 
+mrpt::maps::CPointsMap::Ptr readCloud(const std::string& file) {
+    GzInput in(file);
+    ObjectArchive archive(in, FileOf::Scans);
+    const auto cloud = std::dynamic_pointer_cast<mrpt::maps::CPointsMap>(archive.next());
+    if (!cloud) throw Error("'" + file + "' holds something else than a cloud");
+    return cloud;
+}
+
 /** Loads it from `file`. */
 void load(CObservationPointCloud& cloud, const fs::path& file) {
     // MRPT does not see that compressed data is damaged or cut off, and KITTI's format has no
     // header: only its size can tell.
-    const bool isKitti = External::formatOf(cloud) == External::ExternalStorageFormat::KittiBinFile;
+    using Format = External::ExternalStorageFormat;
+    const bool isKitti = External::formatOf(cloud) == Format::KittiBinFile;
     const bool isPlain = isKitti && isTakenForGzip(file.string());
     const auto size = isPlain ? fs::file_size(file) : unpackedSize(file.string());
     if (isKitti && size % (4 * sizeof(float)) != 0)
         throw Error("'" + file.string() + "' is cut off: its size is no multiple of 16 bytes");
-    if (isPlain) {
-        cloud.pointcloud = readKittiPoints(file.string());
-        return;
-    }
     External::setFile(cloud, file.string());
-    cloud.load();
+    const MemoryBudget budget(MemoryBudget::ofWholeFile(fs::file_size(file)));
+    if (isPlain)
+        cloud.pointcloud = readKittiPoints(file.string());
+    else if (External::formatOf(cloud) == Format::MRPT_Serialization)
+        cloud.pointcloud = readCloud(file.string());
+    else
+        cloud.load();
 }
 
-std::string loadRanges(CObservation3DRangeScan& scan, const std::vector<std::string>& folders) {
-    std::string from;
+void loadRanges(CObservation3DRangeScan& scan, std::string& from,
+                const std::vector<std::string>& folders) {
+    std::uintmax_t size = 0;
+    const auto check = [&](const std::string& name) {
+        from = found(name, folders).string();
+        unpackedSize(from);  // MRPT does not see that it is damaged
+        size += fs::file_size(from);
+    };
+    if (scan.hasRangeImage && scan.rangeImage_isExternallyStored()) {
+        check(scan.rangeImage_getExternalStorageFile(""));
+        ExternalRanges::setRanges(scan, from);
+        scan.rangeImageOtherLayers.clear();  // these have files of their own, and are not used
+    }
+    if (scan.hasPoints3D && scan.points3D_isExternallyStored()) {
+        check(scan.points3D_getExternalStorageFile());
+        ExternalRanges::setPoints(scan, from);
+    }
+    const MemoryBudget budget(MemoryBudget::ofWholeFile(size));
+    scan.load();
+}
+
+/** Calls `loads`, which sets `from`, and says that `from` is bad where it fails. */
+template <typename Loads>
+std::string loaded(std::string from, Loads loads) {
     try {
-        if (scan.hasRangeImage && scan.rangeImage_isExternallyStored()) {
-            from = found(scan.rangeImage_getExternalStorageFile(""), folders).string();
-            unpackedSize(from);  // MRPT does not see that it is damaged
-            ExternalRanges::setRanges(scan, from);
-        }
-        if (scan.hasPoints3D && scan.points3D_isExternallyStored()) {
-            from = found(scan.points3D_getExternalStorageFile(), folders).string();
-            unpackedSize(from);
-            ExternalRanges::setPoints(scan, from);
-        }
-        scan.load();
+        loads(from);
     } catch (const Error&) {
         throw;
     } catch (const std::exception&) {
-        throw Error("cannot read its points from '" + from + "'");
+        throw Error("cannot read its points" + (from.empty() ? "" : " from '" + from + "'"));
     }
     return from;
 }
@@ -120,20 +159,13 @@ std::string loadRanges(CObservation3DRangeScan& scan, const std::vector<std::str
 std::string loadExternal(mrpt::obs::CObservation& observation,
                          const std::vector<std::string>& folders) {
     if (auto* const ranges = dynamic_cast<CObservation3DRangeScan*>(&observation))
-        return loadRanges(*ranges, folders);
+        return loaded("", [&](std::string& from) { loadRanges(*ranges, from, folders); });
     auto* const cloud = dynamic_cast<CObservationPointCloud*>(&observation);
     if (!cloud || !cloud->isExternallyStored()) {
         observation.load();
         return "";
     }
-    const fs::path file = found(cloud->getExternalStorageFile(), folders);
-    try {
-        load(*cloud, file);
-    } catch (const Error&) {
-        throw;
-    } catch (const std::exception&) {
-        throw Error("cannot read its points from '" + file.string() + "'");
-    }
-    return file.string();
+    return loaded(found(cloud->getExternalStorageFile(), folders).string(),
+                  [&](const std::string& from) { load(*cloud, from); });
 }
 }  // namespace delio::io

@@ -13,8 +13,8 @@
 #include "drive_clock.h"
 #include "external_files.h"
 #include "gz_input.h"
+#include "object_archive.h"
 #include "point_extras.h"
-#include "rawlog_archive.h"
 #include "side_file.h"
 
 namespace delio::io {
@@ -117,13 +117,17 @@ bool RawlogReader::readEntry() {
     if (ended_) return false;
     const auto before = in_->getPosition();
     mrpt::serialization::CSerializable::Ptr object;
+    ObjectArchive archive(*in_, FileOf::Scans);
     try {
-        object = RawlogArchive(*in_).ReadObject();
+        object = archive.next();
     } catch (const std::exception& e) {
         ended_ = true;
         // Nothing was left to read: the end of the rawlog. Otherwise something is only half there,
         // or is damaged and perhaps claims more than there is memory for.
         if (in_->getPosition() == before && before > 0 && in_->endedWell()) return false;
+        if (!archive.refused().empty())
+            throw Error("'" + path_ + "' holds '" + archive.refused() + "' (byte " +
+                        std::to_string(before) + "), which is not read from a rawlog");
         throw Error("'" + path_ + "' " +
                     (before == 0 ? "is not a rawlog, or damaged at its very beginning"
                                  : "is cut off or damaged " +

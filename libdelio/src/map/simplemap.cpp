@@ -4,6 +4,9 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
+#include <filesystem>
+
+#include "../io/external_files.h"
 #include "../io/gz_object.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
@@ -15,12 +18,48 @@ using mrpt::poses::CPose3D;
 
 void saveSimplemap(const CSimpleMap& map, const std::string& path) { io::saveWhole(map, path); }
 
+namespace {
+/** From beside the file, where they are not in it. */
+void loadPoints(mrpt::obs::CObservation& observation, std::size_t keyframe,
+                const std::string& path) {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::path(path).parent_path();
+    const std::string images = (folder / fs::path(path).stem()).string() + "_Images";
+    try {
+        io::loadExternal(observation, {images, (folder / "Images").string()});
+    } catch (const std::exception& e) {
+        throw Error("keyframe " + std::to_string(keyframe) + " of '" + path +
+                    "': " + plainMessage(e));
+    }
+}
+
+/** Of a scan that is no cloud: of a depth camera, or a 2D one. */
+mrpt::maps::CSimplePointsMap pointsOf(const mrpt::obs::CObservation& observation,
+                                      const CPose3D& pose) {
+    mrpt::maps::CSimplePointsMap points;
+    points.insertionOptions.minDistBetweenLaserPoints = 0;
+    try {
+        points.insertObservation(observation, pose);
+    } catch (const std::exception&) {
+        throw Error("an observation of the simplemap, '" + observation.sensorLabel + "' (" +
+                    observation.GetRuntimeClass()->className + "), cannot be understood");
+    }
+    return points;
+}
+}  // namespace
+
 CSimpleMap loadSimplemap(const std::string& path) {
     CSimpleMap map;
-    io::loadWhole(path, "a .simplemap", map);
-    for (std::size_t i = 0; i < map.size(); ++i)
-        if (!map.getAsPair(i).pose || !map.getAsPair(i).sf)
+    io::loadWhole(path, "a .simplemap", io::FileOf::Keyframes, map);
+    for (std::size_t i = 0; i < map.size(); ++i) {
+        const auto keyframe = map.getAsPair(i);
+        if (!keyframe.pose || !keyframe.sf)
             throw Error("'" + path + "' has a keyframe without a pose or without observations");
+        for (const auto& observation : *keyframe.sf) {
+            if (!observation) throw Error("'" + path + "' has a keyframe of no known observation");
+            loadPoints(*observation, i, path);
+        }
+    }
     return map;
 }
 
@@ -49,9 +88,7 @@ CPointsMapXYZI pointsOf(const CSimpleMap& map) {
                     all.insertAnotherMap(scan->pointcloud.get(), pose + scan->sensorPose);
                 scan->unload();
             } else {
-                mrpt::maps::CSimplePointsMap points;
-                points.insertionOptions.minDistBetweenLaserPoints = 0;
-                points.insertObservation(*observation, pose);
+                const auto points = pointsOf(*observation, pose);
                 all.insertAnotherMap(&points, CPose3D());
             }
         }

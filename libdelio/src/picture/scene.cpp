@@ -13,6 +13,7 @@
 #include "../map/ground_height.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
+#include "drawable.h"
 #include "legend.h"
 #include "marks.h"
 #include "round_length.h"
@@ -256,7 +257,12 @@ void saveScene(const COpenGLScene& scene, const std::string& path) { io::saveWho
 
 COpenGLScene::Ptr loadScene(const std::string& path) {
     auto scene = COpenGLScene::Create();
-    io::loadWhole(path, "a .3Dscene", *scene);
+    io::loadWhole(path, "a .3Dscene", io::FileOf::Scene, *scene);
+    try {
+        makeDrawable(*scene);
+    } catch (const Error& e) {
+        throw Error("'" + path + "' " + e.what());
+    }
     return scene;
 }
 }  // namespace delio::picture

@@ -1,4 +1,5 @@
 #pragma once
+#include <exception>
 #include <stdexcept>
 #include <string>
 
@@ -10,12 +11,7 @@ class Error : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/** What an exception says in one line, without the frame and the stack trace that MRPT lays around
- *  it. */
-inline std::string plainMessage(const std::exception& e) {
-    const std::string what = e.what(), mark = "Message:";
-    auto from = what.find(mark);
-    from = from == std::string::npos ? 0 : what.find_first_not_of(' ', from + mark.size());
-    return what.substr(from, what.find('\n', from) - from);
-}
+/** What an exception says in one line: of an Error its own; of any other (of MRPT, yaml-cpp, the
+ *  standard library) the same in words that a user knows, without frame and stack trace. */
+std::string plainMessage(const std::exception& e);
 }  // namespace delio

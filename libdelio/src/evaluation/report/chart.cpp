@@ -15,8 +15,8 @@
 #include <ostream>
 
 #include "delio/core/error.h"
+#include "delio/core/printable.h"
 #include "delio/io/output_file.h"
-#include "printable.h"
 
 namespace delio::evaluation {
 namespace fs = std::filesystem;

@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "delio/core/error.h"
+#include "delio/core/printable.h"
 #include "palette.h"
-#include "printable.h"
 
 namespace delio::evaluation {
 using mrpt::format;

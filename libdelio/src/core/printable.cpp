@@ -1,6 +1,6 @@
-#include "printable.h"
+#include "delio/core/printable.h"
 
-namespace delio::evaluation {
+namespace delio {
 namespace {
 /** Bytes of the character of UTF-8 that begins with `lead`; 0 for none. */
 std::size_t lengthOf(unsigned char lead) {
@@ -29,9 +29,14 @@ std::string printable(const std::string& text) {
     for (std::size_t i = 0; i < text.size();) {
         const auto lead = static_cast<unsigned char>(text[i]);
         const std::size_t length = lengthOf(lead);
-        if (lead < 0x20 || lead == 0x7F || !isCharacter(text, i, length)) {
+        const bool whole = isCharacter(text, i, length);
+        // Those of two bytes begin with C2 80.
+        const bool isControl =
+            lead < 0x20 || lead == 0x7F ||
+            (whole && lead == 0xC2 && static_cast<unsigned char>(text[i + 1]) < 0xA0);
+        if (!whole || isControl) {
             result += '?';
-            ++i;
+            i += whole ? length : 1;
         } else {
             result += text.substr(i, length);
             i += length;
@@ -39,4 +44,4 @@ std::string printable(const std::string& text) {
     }
     return result;
 }
-}  // namespace delio::evaluation
+}  // namespace delio

@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
-namespace delio::evaluation {
+namespace delio {
 /** `text` with '?' for every control character and every byte that is not UTF-8: fit for a line of
- *  a script and for a document. */
+ *  a terminal, of a script and of a document. */
 std::string printable(const std::string& text);
-}  // namespace delio::evaluation
+}  // namespace delio

@@ -1,0 +1,156 @@
+#include "object_archive.h"
+
+#include <mrpt/rtti/CObject.h>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "image_bytes.h"
+#include "memory_budget.h"
+
+namespace delio::io {
+namespace {
+constexpr unsigned kAll = std::numeric_limits<unsigned>::max();
+
+bool endsWith(std::string_view text, std::string_view end) {
+    return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+/** How many of the numbers that follow such an object's begin have to be checked: those for which
+ *  MRPT makes room that it does not ask for as it should. None: those of what it is part of. */
+std::optional<unsigned> countsIn(std::string_view className) {
+    const auto is = [&](std::string_view end) { return endsWith(className, end); };
+    if (is("::CMatrixF") || is("::CMatrixD")) return 2;
+    if (is("::CMatrixB")) return 3;
+    if (is("RangeScan") || is("RotatingScan") || className.find("PointsMap") != className.npos)
+        return kAll;
+    const bool isPart = is("::TCamera") || is("::CImage") || is("::TMapGenericParams") ||
+                        className.find("::CPose") != className.npos;
+    if (isPart) return {};
+    return 0;
+}
+
+std::uint64_t budgetOf(const GzInput& in, FileOf file) {
+    return file == FileOf::Scans ? MemoryBudget::kOfOneScan
+                                 : MemoryBudget::ofWholeFile(in.getTotalBytesCount());
+}
+}  // namespace
+
+ObjectArchive::ObjectArchive(GzInput& in, FileOf file)
+    : in_(in), file_(file), budget_(budgetOf(in, file)) {}
+
+mrpt::serialization::CSerializable::Ptr ObjectArchive::next() {
+    const char here = 0;
+    begin(&here);
+    const MemoryBudget budget(budget_);
+    return ReadObject();
+}
+
+void ObjectArchive::nextInto(mrpt::serialization::CSerializable& object) {
+    const char here = 0;
+    begin(&here);
+    const MemoryBudget budget(budget_);
+    ReadObject(&object);
+}
+
+void ObjectArchive::begin(const char* stack) {
+    stack_ = stack;
+    next_ = Next::Anything;
+    nameSize_ = oldNameSize_ = 0;
+    counts_ = 0;
+}
+
+std::size_t ObjectArchive::read(void* data, std::size_t count) {
+    checkDepth();
+    if (next_ == Next::ImageVersion) {
+        passOverImage(data, count);
+        return count;
+    }
+    if (next_ == Next::ImageIsExternal) {
+        std::memset(data, 0, count);
+        next_ = Next::Anything;
+        return count;
+    }
+    const std::size_t done = in_.Read(data, count);
+    if (done < count || count == 0) return done;
+    checkCount(data, count);
+    foresee(data, count);
+    return done;
+}
+
+void ObjectArchive::checkDepth() const {
+    constexpr std::ptrdiff_t kMost = 1 << 20;
+    const char here = 0;
+    if (stack_ - &here > kMost) throw std::length_error("objects lie too deep in each other");
+}
+
+/** MRPT reads what is part of an object into the object, and how many elements it has into a
+ *  variable of the function that reads: on the stack. */
+void ObjectArchive::checkCount(const void* data, std::size_t bytes) {
+    const std::uint64_t before = std::exchange(lastCount_, 1);
+    const char here = 0;
+    const auto* to = static_cast<const char*>(data);
+    const bool isCount = (bytes == sizeof(std::uint32_t) || bytes == sizeof(std::uint16_t)) &&
+                         std::less<>()(&here, to) && std::less<>()(to, stack_);
+    if (counts_ == 0 || !isCount) return;
+    if (counts_ != kAll) --counts_;
+    std::uint32_t elements = 0;
+    std::memcpy(&elements, data, bytes);
+    // Six numbers of four bytes for a point: none of these asks for more than the budget.
+    constexpr std::uint64_t kOfScan = 20'000'000, kBytes = 6 * sizeof(float);
+    static_assert(kOfScan * kBytes < MemoryBudget::kOfOneScan);
+    const std::uint64_t size = in_.getTotalBytesCount();
+    std::uint64_t most = in_.compressed() ? kOfScan : size - in_.getPosition();
+    if (file_ == FileOf::Scans)
+        most = std::min(most, kOfScan);
+    else if (in_.compressed())
+        most += 2 * size;
+    if (elements > most || elements * before > most)
+        throw std::length_error("it claims more than the file can hold");
+    lastCount_ = elements;
+}
+
+void ObjectArchive::foresee(const void* data, std::size_t count) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    if (nameSize_ == count) foreseeClass({static_cast<const char*>(data), count});
+    // A name's length has its highest bit set; in old files it has not, and three zeros follow.
+    constexpr unsigned kNew = 0x80;
+    const bool isZeros = count == 3 && bytes[0] == 0 && bytes[1] == 0 && bytes[2] == 0;
+    nameSize_ = isZeros ? oldNameSize_ : 0;
+    oldNameSize_ = 0;
+    if (count != 1) return;
+    (bytes[0] & kNew ? nameSize_ : oldNameSize_) = bytes[0] & ~kNew;
+}
+
+void ObjectArchive::foreseeClass(std::string_view name) {
+    // Up to its end for MRPT, which takes it for a C string.
+    const auto* known =
+        mrpt::rtti::findRegisteredClass(std::string(name.substr(0, name.find('\0'))));
+    if (!known) return;  // MRPT says so itself
+    const std::string_view className = known->className;
+    if (!isKnown(className, file_)) {
+        refused_ = className;
+        throw std::runtime_error("it holds " + refused_);
+    }
+    if (className == "mrpt::img::CImage") next_ = Next::ImageVersion;
+    const auto counts = countsIn(className);
+    const bool isIn =
+        counts_ == kAll && endsWith(className.substr(0, className.size() - 1), "::CMatrix");
+    if (counts && !isIn) counts_ = *counts;
+}
+
+void ObjectArchive::passOverImage(void* version, std::size_t count) {
+    if (in_.Read(version, count) != count) throw std::runtime_error("the file ends early");
+    skipImage(in_, *static_cast<const std::uint8_t*>(version));
+    // What MRPT writes of an image where it has no OpenCV: whether it is in another file.
+    constexpr char kOnlyWhere = 100;
+    std::memset(version, 0, count);
+    *static_cast<char*>(version) = kOnlyWhere;
+    next_ = Next::ImageIsExternal;
+}
+}  // namespace delio::io

@@ -1,0 +1,60 @@
+#pragma once
+#include <mrpt/serialization/CArchive.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "gz_input.h"
+#include "known_classes.h"
+
+namespace delio::io {
+/** Reads MRPT objects from a file that may be damaged, or made to do harm. MRPT makes an object of
+ *  any class that a file names, makes room for as many elements as it claims before it reads any
+ *  (and writes to address 0 where a cloud or a matrix gets none), and hands pictures to libjpeg,
+ *  which ends the process where one is damaged. Here
+ *  - classes are those that such a file needs (known_classes.h): another one throws, see refused();
+ *  - clouds, matrices and scans that claim more elements than the rest of the file can hold (of a
+ *    compressed file: than any holds) throw std::length_error; whatever else claims too much gets
+ *    a std::bad_alloc from a MemoryBudget;
+ *  - objects within objects within objects throw where the stack would end;
+ *  - images are passed over and come out empty: nothing here looks at them. */
+class ObjectArchive : public mrpt::serialization::CArchive {
+ public:
+    ObjectArchive(GzInput& in, FileOf file);
+    std::string getArchiveDescription() const override { return "file"; }
+
+    /** The next object. Throws as ReadObject() does, and as said above. */
+    mrpt::serialization::CSerializable::Ptr next();
+    /** The next object, which has to be of the class of this one, into it. */
+    void nextInto(mrpt::serialization::CSerializable& object);
+
+    /** The class that was not read, as MRPT calls it; empty if none was refused. */
+    const std::string& refused() const { return refused_; }
+
+ protected:
+    std::size_t read(void* data, std::size_t count) override;
+    std::size_t write(const void* data, std::size_t count) override {
+        return in_.Write(data, count);
+    }
+
+ private:
+    void begin(const char* stack);
+    void checkDepth() const;
+    void checkCount(const void* data, std::size_t bytes);
+    void foresee(const void* data, std::size_t count);
+    void foreseeClass(std::string_view name);
+    void passOverImage(void* version, std::size_t count);
+
+    GzInput& in_;
+    FileOf file_;
+    std::uint64_t budget_;
+    std::string refused_;
+    const char* stack_ = nullptr;  ///< where it was when the object was begun
+    enum class Next { Anything, ImageVersion, ImageIsExternal } next_ = Next::Anything;
+    std::size_t nameSize_ = 0;     ///< if the next read is as long, it may be a class's name
+    std::size_t oldNameSize_ = 0;  ///< the same, if three zeros come first: files from before 2008
+    unsigned counts_ = 0;          ///< of these many numbers to come that count something
+    std::uint64_t lastCount_ = 1;  ///< the number just before, if it was one: rows of columns
+};
+}  // namespace delio::io
