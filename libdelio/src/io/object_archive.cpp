@@ -1,5 +1,6 @@
 #include "object_archive.h"
 
+#include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/rtti/CObject.h>
 
 #include <algorithm>
@@ -61,6 +62,7 @@ void ObjectArchive::nextInto(mrpt::serialization::CSerializable& object) {
 void ObjectArchive::begin(const char* stack) {
     stack_ = stack;
     next_ = Next::Anything;
+    movement_ = Movement::None;
     nameSize_ = oldNameSize_ = 0;
     counts_ = 0;
 }
@@ -117,6 +119,12 @@ void ObjectArchive::checkCount(const void* data, std::size_t bytes) {
 
 void ObjectArchive::foresee(const void* data, std::size_t count) {
     const auto* bytes = static_cast<const unsigned char*>(data);
+    if (movement_ == Movement::Method && count == sizeof(std::int32_t)) {
+        std::int32_t method = 0;
+        std::memcpy(&method, data, sizeof(method));
+        movement_ = method == mrpt::obs::CActionRobotMovement2D::emOdometry ? Movement::Odometry
+                                                                            : Movement::Pdf;
+    }
     if (nameSize_ == count) foreseeClass({static_cast<const char*>(data), count});
     // A name's length has its highest bit set; in old files it has not, and three zeros follow.
     constexpr unsigned kNew = 0x80;
@@ -137,11 +145,22 @@ void ObjectArchive::foreseeClass(std::string_view name) {
         refused_ = className;
         throw std::runtime_error("it holds " + refused_);
     }
+    checkMovement(className);
     if (className == "mrpt::img::CImage") next_ = Next::ImageVersion;
     const auto counts = countsIn(className);
     const bool isIn =
         counts_ == kAll && endsWith(className.substr(0, className.size() - 1), "::CMatrix");
     if (counts && !isIn) counts_ = *counts;
+}
+
+void ObjectArchive::checkMovement(std::string_view className) {
+    constexpr std::string_view kPdf = "mrpt::poses::CPosePDF";
+    const auto before = std::exchange(movement_, Movement::None);
+    const bool fits = before == Movement::None ||
+                      (before == Movement::Odometry && className == "mrpt::poses::CPose2D") ||
+                      (before == Movement::Pdf && className.substr(0, kPdf.size()) == kPdf);
+    if (!fits) throw std::runtime_error("a movement is of no known kind");
+    if (className == "mrpt::obs::CActionRobotMovement2D") movement_ = Movement::Method;
 }
 
 void ObjectArchive::passOverImage(void* version, std::size_t count) {

@@ -18,6 +18,8 @@ namespace delio::io {
  *    compressed file: than any holds) throw std::length_error; whatever else claims too much gets
  *    a std::bad_alloc from a MemoryBudget;
  *  - objects within objects within objects throw where the stack would end;
+ *  - a movement of another kind of distribution than MRPT expects, which it would use unseen,
+ * throws;
  *  - images are passed over and come out empty: nothing here looks at them. */
 class ObjectArchive : public mrpt::serialization::CArchive {
  public:
@@ -44,6 +46,7 @@ class ObjectArchive : public mrpt::serialization::CArchive {
     void checkCount(const void* data, std::size_t bytes);
     void foresee(const void* data, std::size_t count);
     void foreseeClass(std::string_view name);
+    void checkMovement(std::string_view className);
     void passOverImage(void* version, std::size_t count);
 
     GzInput& in_;
@@ -52,6 +55,8 @@ class ObjectArchive : public mrpt::serialization::CArchive {
     std::string refused_;
     const char* stack_ = nullptr;  ///< where it was when the object was begun
     enum class Next { Anything, ImageVersion, ImageIsExternal } next_ = Next::Anything;
+    /** What comes next of a CActionRobotMovement2D. */
+    enum class Movement { None, Method, Odometry, Pdf } movement_ = Movement::None;
     std::size_t nameSize_ = 0;     ///< if the next read is as long, it may be a class's name
     std::size_t oldNameSize_ = 0;  ///< the same, if three zeros come first: files from before 2008
     unsigned counts_ = 0;          ///< of these many numbers to come that count something

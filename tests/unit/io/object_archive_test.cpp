@@ -5,6 +5,8 @@
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/maps/CWeightedPointsMap.h>
 #include <mrpt/math/CMatrixF.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationImage.h>
@@ -120,6 +122,24 @@ TEST_F(ObjectArchive, AClassThatARawlogDoesNotNeedIsNotMade) {
         ADD_FAILURE() << "read";
     } catch (const Error& e) {
         EXPECT_NE(std::string(e.what()).find("CAssimpModel"), std::string::npos) << e.what();
+    }
+}
+
+/** MRPT takes what is no distribution for one. */
+TEST_F(ObjectArchive, AMovementIsOfTheKindThatItSays) {
+    mrpt::obs::CActionRobotMovement2D movement;
+    movement.computeFromOdometry({1, 0, 0}, {});
+    auto actions = mrpt::obs::CActionCollection::Create();
+    actions->insert(movement);
+    const std::string bytes = bytesOf({actions, cloudObservation(0)});
+    EXPECT_EQ(faultOf(bytes), "");
+    EXPECT_EQ(scans_, 1U);
+    const std::string name = "mrpt::obs::CActionRobotMovement2D";
+    const auto method = bytes.find(name) + name.size() + 1;
+    for (const char other : {1, 2, 100}) {
+        std::string damaged = bytes;
+        damaged[method] = other;
+        EXPECT_NE(faultOf(damaged), "") << int{other};
     }
 }
 
