@@ -13,7 +13,7 @@ using test::stateOf;
 /** Nothing that was ever there, nor will be again. */
 Scan rubbish(std::uint32_t seed) {
     test::Noise noise(seed);
-    Eigen::Matrix3Xf points(3, 4000);
+    Eigen::Matrix3Xf points(3, 1500);
     for (Eigen::Index i = 0; i < points.cols(); ++i)
         points.col(i) = ((4 + 2 * noise.uniform()) * noise.direction()).cast<float>();
     return test::scanOf(points);
@@ -42,16 +42,16 @@ std::vector<Scan> eventfulScans() {
     return scans;
 }
 
-/** `after`: numbers of scans. */
-void expectGoesOn(const std::vector<Scan>& scans, const OdometryOptions& options,
-                  const std::vector<std::size_t>& after) {
+/** `after`: numbers of scans. Gives the steps. */
+std::vector<Step> goneOn(const std::vector<Scan>& scans, const OdometryOptions& options,
+                         const std::vector<std::size_t>& after) {
     const auto never = stepsOf(scans, options);  // stored
     const auto whole = makeOdometry(options);
     std::vector<std::string> steps, states;
     for (std::size_t i = 0; i < scans.size(); ++i) {
         states.push_back(stateOf(*whole));
         steps.push_back(bytesOf(whole->process(scans[i])));
-        ASSERT_TRUE(steps[i] == bytesOf(never[i])) << i;
+        EXPECT_TRUE(steps[i] == bytesOf(never[i])) << i;
     }
     for (const std::size_t count : after) {
         SCOPED_TRACE(count);
@@ -59,9 +59,10 @@ void expectGoesOn(const std::vector<Scan>& scans, const OdometryOptions& options
         test::restore(*again, states[count]);
         EXPECT_TRUE(stateOf(*again) == states[count]);
         for (std::size_t i = count; i < scans.size(); ++i)
-            ASSERT_TRUE(bytesOf(again->process(scans[i])) == steps[i]) << i;
+            EXPECT_TRUE(bytesOf(again->process(scans[i])) == steps[i]) << i;
         EXPECT_TRUE(stateOf(*again) == stateOf(*whole));
     }
+    return never;
 }
 
 std::vector<std::size_t> all(std::size_t count) {
@@ -71,13 +72,12 @@ std::vector<std::size_t> all(std::size_t count) {
 }
 
 TEST(OdometryState, PlanesGoOnFromAnyScan) {
-    expectGoesOn(scansOf(drive(14)), quick("accurate"), all(14));
+    goneOn(scansOf(drive(14)), quick("accurate"), all(14));
 }
 
 TEST(OdometryState, PlanesGoOnWhateverHappens) {
     const auto scans = eventfulScans();
-    const auto options = quick("accurate");
-    const auto steps = stepsOf(scans, options);
+    const auto steps = goneOn(scans, quick("accurate"), {1, 7, 9, 12, 13});
     const auto any = [&](const auto& is) {
         return std::any_of(steps.begin() + 1, steps.end(), is);
     };
@@ -91,19 +91,18 @@ TEST(OdometryState, PlanesGoOnWhateverHappens) {
     EXPECT_TRUE(any([&](const Step& step) {
         return valueOf(step.details, "scale") != valueOf(steps[0].details, "scale");
     }));
-    expectGoesOn(scans, options, {1, 7, 9, 11, 13, 14});
 }
 
 TEST(OdometryState, ThePapersGoesOnFromAnyScan) {
-    expectGoesOn(scansOf(drive(12)), quick("paper", 1), {0, 1, 2, 5, 11});
+    goneOn(scansOf(drive(12)), quick("paper", 1), {0, 1, 2, 5, 11});
 }
 
 TEST(OdometryState, ThePapersGoesOnWhateverHappens) {
-    expectGoesOn(eventfulScans(), quick("paper"), {1, 8, 11});
+    goneOn(eventfulScans(), quick("paper"), {1, 8, 11});
 }
 
 TEST(OdometryState, ThePaperToTheLetterGoesOn) {
-    expectGoesOn(scansOf(drive(12)), quick("paper-literal"), {1, 6});
+    goneOn(scansOf(drive(12)), quick("paper-literal"), {1, 6});
 }
 
 TEST(OdometryState, FeaturesRegisterAsBefore) {
