@@ -9,8 +9,9 @@
 #include <cereal/types/vector.hpp>
 
 #include <Eigen/Geometry>
-#include <iosfwd>
+#include <ostream>
 #include <sstream>
+#include <streambuf>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,12 +66,31 @@ std::string readPart(std::istream& in, const Label& label);
 /** That a part which is sound does not fit to what it is read into. */
 [[noreturn]] void misfit(const Label& label);
 
+/** What a stream writes to as a string; std::ostringstream gives a copy only. */
+class Bytes : public std::streambuf {
+ public:
+    const std::string& text() const { return text_; }
+
+ private:
+    std::streamsize xsputn(const char* from, std::streamsize count) override {
+        text_.append(from, static_cast<std::size_t>(count));
+        return count;
+    }
+    int_type overflow(int_type next) override {
+        if (next != traits_type::eof()) text_.push_back(traits_type::to_char_type(next));
+        return traits_type::not_eof(next);
+    }
+
+    std::string text_;
+};
+
 template <class State>
 void save(std::ostream& out, const Label& label, const State& state) {
-    std::ostringstream bytes;
-    cereal::BinaryOutputArchive archive(bytes);
+    Bytes bytes;
+    std::ostream stream(&bytes);
+    cereal::BinaryOutputArchive archive(stream);
     archive(state);
-    writePart(out, label, bytes.str());
+    writePart(out, label, bytes.text());
 }
 
 /** Error as above; `state` is of no use then. */

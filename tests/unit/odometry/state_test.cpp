@@ -13,14 +13,14 @@ using test::stateOf;
 /** Nothing that was ever there, nor will be again. */
 Scan rubbish(std::uint32_t seed) {
     test::Noise noise(seed);
-    Eigen::Matrix3Xf points(3, 4000);
+    Eigen::Matrix3Xf points(3, 1500);
     for (Eigen::Index i = 0; i < points.cols(); ++i)
         points.col(i) = ((4 + 2 * noise.uniform()) * noise.direction()).cast<float>();
     return test::scanOf(points);
 }
 
-/** Through the yard, behind a car, points with times; an empty scan, a pause, and rubbish until it
- *  is taken for a map. */
+/** Through the yard, behind a car, points with times; a scan half of which is rubbish, an empty
+ * one, a pause, and rubbish until it is taken for a map. */
 std::vector<Scan> eventfulScans() {
     const auto poses = drive(17);
     std::vector<Scan> scans;
@@ -33,6 +33,7 @@ std::vector<Scan> eventfulScans() {
             scans.push_back(test::scanOf(Eigen::Matrix3Xf(3, 0)));
         else
             scans.push_back(i < 10 || i > 12 ? scanAt(poses[i], seed, scene) : rubbish(seed));
+        if (i == 8) scans.back().points->insertAnotherMap(rubbish(seed).points.get(), {});
         auto& scan = scans.back();
         scan.index = i;
         scan.stamp_s = 0.1 * static_cast<double>(i) + (i > 8 ? 30 : 0);
@@ -42,16 +43,16 @@ std::vector<Scan> eventfulScans() {
     return scans;
 }
 
-/** `after`: numbers of scans. */
-void expectGoesOn(const std::vector<Scan>& scans, const OdometryOptions& options,
-                  const std::vector<std::size_t>& after) {
+/** `after`: numbers of scans. Gives the steps. */
+std::vector<Step> goneOn(const std::vector<Scan>& scans, const OdometryOptions& options,
+                         const std::vector<std::size_t>& after) {
     const auto never = stepsOf(scans, options);  // stored
     const auto whole = makeOdometry(options);
     std::vector<std::string> steps, states;
     for (std::size_t i = 0; i < scans.size(); ++i) {
         states.push_back(stateOf(*whole));
         steps.push_back(bytesOf(whole->process(scans[i])));
-        ASSERT_TRUE(steps[i] == bytesOf(never[i])) << i;
+        EXPECT_TRUE(steps[i] == bytesOf(never[i])) << i;
     }
     for (const std::size_t count : after) {
         SCOPED_TRACE(count);
@@ -59,9 +60,10 @@ void expectGoesOn(const std::vector<Scan>& scans, const OdometryOptions& options
         test::restore(*again, states[count]);
         EXPECT_TRUE(stateOf(*again) == states[count]);
         for (std::size_t i = count; i < scans.size(); ++i)
-            ASSERT_TRUE(bytesOf(again->process(scans[i])) == steps[i]) << i;
+            EXPECT_TRUE(bytesOf(again->process(scans[i])) == steps[i]) << i;
         EXPECT_TRUE(stateOf(*again) == stateOf(*whole));
     }
+    return never;
 }
 
 std::vector<std::size_t> all(std::size_t count) {
@@ -71,13 +73,12 @@ std::vector<std::size_t> all(std::size_t count) {
 }
 
 TEST(OdometryState, PlanesGoOnFromAnyScan) {
-    expectGoesOn(scansOf(drive(14)), quick("accurate"), all(14));
+    goneOn(scansOf(drive(14)), quick("accurate"), all(14));
 }
 
 TEST(OdometryState, PlanesGoOnWhateverHappens) {
     const auto scans = eventfulScans();
-    const auto options = quick("accurate");
-    const auto steps = stepsOf(scans, options);
+    const auto steps = goneOn(scans, quick("accurate"), {1, 5, 6, 8, 12, 13});
     const auto any = [&](const auto& is) {
         return std::any_of(steps.begin() + 1, steps.end(), is);
     };
@@ -91,19 +92,18 @@ TEST(OdometryState, PlanesGoOnWhateverHappens) {
     EXPECT_TRUE(any([&](const Step& step) {
         return valueOf(step.details, "scale") != valueOf(steps[0].details, "scale");
     }));
-    expectGoesOn(scans, options, {1, 7, 9, 11, 13, 14});
 }
 
 TEST(OdometryState, ThePapersGoesOnFromAnyScan) {
-    expectGoesOn(scansOf(drive(12)), quick("paper", 1), {0, 1, 2, 5, 11});
+    goneOn(scansOf(drive(12)), quick("paper", 1), {0, 1, 2, 5, 11});
 }
 
 TEST(OdometryState, ThePapersGoesOnWhateverHappens) {
-    expectGoesOn(eventfulScans(), quick("paper"), {1, 8, 11});
+    goneOn(eventfulScans(), quick("paper"), {1, 8, 11});
 }
 
 TEST(OdometryState, ThePaperToTheLetterGoesOn) {
-    expectGoesOn(scansOf(drive(12)), quick("paper-literal"), {1, 6});
+    goneOn(scansOf(drive(12)), quick("paper-literal"), {1, 6});
 }
 
 TEST(OdometryState, FeaturesRegisterAsBefore) {

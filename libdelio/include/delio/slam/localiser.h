@@ -2,6 +2,7 @@
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
+#include <iosfwd>
 #include <memory>
 #include <optional>
 
@@ -35,6 +36,10 @@ class Localiser {
      *  Throws Error for an observation that is no LiDAR scan. */
     std::optional<mrpt::poses::CPose3DPDFGaussian> process(
         const mrpt::obs::CObservation& observation);
+
+    /** See Slam::save() and Slam::restore(); the map has to be the same one. */
+    void save(std::ostream& out) const;
+    void restore(std::istream& in);
 
  private:
     std::shared_ptr<MapFollower> follower_;
