@@ -7,5 +7,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Input input(data, size);
     const std::string json = input.cutText();
     const std::string sensor = json.empty() ? "" : fileOf(json, "d.json");
-    return readScans({fileOf(input.rest(), "d.pcap"), "", "", sensor});
+    return readScans({fileOf(input.rest(), "d.pcap"), "", "", sensor}, delio::io::FileKind::kPcap);
 }

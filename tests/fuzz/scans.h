@@ -1,5 +1,6 @@
 #pragma once
 #include "delio/io/scan_reader.h"
+#include "io/file_kind.h"
 #include "target.h"
 
 namespace delio::fuzz {
@@ -12,5 +13,12 @@ inline int readScans(const io::ScanSource& source) {
         while (reader->next()) reader->fraction();
         io::describe(reader->recording());
     });
+}
+
+/** The same of a file of one kind: what is not taken for it is another target's. */
+inline int readScans(const io::ScanSource& source, io::FileKind kind) {
+    bool is = false;
+    mayRefuse([&] { is = io::kindOf(source.path) == kind; });
+    return is ? readScans(source) : 0;
 }
 }  // namespace delio::fuzz
