@@ -268,6 +268,13 @@ void writeDatabase(const std::filesystem::path& file, const BagContents& content
     sqlite3_close(database);
 }
 
+void changeDatabase(const std::filesystem::path& file, const std::string& sql) {
+    sqlite3* database = nullptr;
+    sqlite3_open(file.c_str(), &database);
+    execute(database, sql);
+    sqlite3_close(database);
+}
+
 void writeMetadata(const std::filesystem::path& folder, const BagContents& contents,
                    const std::vector<std::string>& files) {
     std::ofstream out(folder / "metadata.yaml");

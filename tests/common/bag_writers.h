@@ -73,6 +73,8 @@ void writeMcap(const std::filesystem::path& file, const BagContents& contents,
                const std::string& compression = "", Index index = Index::kWritten,
                std::size_t perChunk = 2);
 void writeDatabase(const std::filesystem::path& file, const BagContents& contents);
+/** Runs `sql` in a database that is there. */
+void changeDatabase(const std::filesystem::path& file, const std::string& sql);
 /** metadata.yaml; the files themselves are the caller's. */
 void writeMetadata(const std::filesystem::path& folder, const BagContents& contents,
                    const std::vector<std::string>& files);

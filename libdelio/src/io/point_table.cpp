@@ -101,9 +101,9 @@ class Values {
     template <typename Raw, typename Number, bool kSwapped>
     std::vector<Number> as(const PointField& field) const {
         std::vector<Number> values(count_);
-        const std::uint8_t* from = data_ + field.offset;
-        for (std::size_t i = 0; i < count_; ++i, from += layout_.step)
-            values[i] = static_cast<Number>(rawAt<Raw, kSwapped>(from));
+        for (std::size_t i = 0; i < count_; ++i)  // no pointer is made to where nothing lies
+            values[i] =
+                static_cast<Number>(rawAt<Raw, kSwapped>(data_ + i * layout_.step + field.offset));
         return values;
     }
 

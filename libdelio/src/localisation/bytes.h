@@ -38,7 +38,8 @@ class ByteWriter {
     std::vector<std::uint8_t> bytes_;
 };
 
-/** Takes them out again; throws std::out_of_range where there is less than asked for. */
+/** Takes them out again; throws std::out_of_range where there is less than asked for, and for a
+ *  pose that is none. */
 class ByteReader {
  public:
     explicit ByteReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
@@ -66,6 +67,12 @@ class ByteReader {
         take(rows.data(), 12 * sizeof(double));
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
         pose.matrix().topRows<3>() = rows;
+        // Written so that a NaN fails as well.
+        constexpr double kFarthest_m = 1e8, kOff = 1e-3;
+        const Eigen::Matrix3d square = pose.linear() * pose.linear().transpose();
+        if (!(pose.translation().cwiseAbs().maxCoeff() <= kFarthest_m) ||
+            !((square - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kOff))
+            throw std::out_of_range("pose");
         return pose;
     }
 

@@ -29,6 +29,15 @@ void requireIniLines(const std::string& text) {
                         "' is neither [section], 'key = value' inside one, nor a # comment");
     }
 }
+
+/** MRPT puts in what $env{NAME} and $eval{FORMULA} stand for, and throws where one has no end. */
+CConfigFileMemory configOf(const std::string& text) {
+    try {
+        return CConfigFileMemory(text);
+    } catch (const std::exception& e) {
+        throw Error("options cannot be understood: " + plainMessage(e));
+    }
+}
 }  // namespace
 
 Options Options::ofProfile(const std::string& name) {
@@ -95,7 +104,7 @@ ConstStageList Options::stages() const {
 
 void Options::load(const std::string& iniText) {
     requireIniLines(iniText);
-    const CConfigFileMemory config(iniText);
+    const CConfigFileMemory config = configOf(iniText);
     std::vector<std::string> sections;
     config.getAllSections(sections);
     const auto known = allStages();
@@ -141,6 +150,6 @@ void Options::write(std::ostream& out) const {
 }
 
 bool Options::sets(const std::string& iniText, const std::string& section, const std::string& key) {
-    return CConfigFileMemory(iniText).keyExists(section, key);
+    return configOf(iniText).keyExists(section, key);
 }
 }  // namespace delio

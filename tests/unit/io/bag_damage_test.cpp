@@ -138,6 +138,19 @@ TEST(BagDamage, ChecksumOfAChunkIsHeld) {
     expectHolds(outcome.fault, {"checksum", "after 3 scans"});
 }
 
+TEST(BagDamage, DatabasesThatComputeAreRefused) {
+    for (const char* const sql :
+         {"ALTER TABLE messages RENAME TO m; CREATE VIEW messages AS SELECT * FROM m",
+          "ALTER TABLE topics ADD COLUMN more AS (zeroblob(9))", "DROP TABLE topics"}) {
+        const test::TemporaryFolder folder;
+        test::writeDatabase(folder / "d.db3", drive(2, Kind::kCdr));
+        test::changeDatabase(folder / "d.db3", sql);
+        const auto fault =
+            readAll(io::openRos2Database, {(folder / "d.db3").string(), "", "", ""}).fault;
+        EXPECT_NE(fault.find("no ROS 2 database"), std::string::npos) << sql << ": " << fault;
+    }
+}
+
 TEST(BagDamage, RecorderThatWasEndedLeavesItsLastChunkOpen) {
     const test::TemporaryFolder folder;
     const auto bag = folder / "d.bag.active";

@@ -155,6 +155,11 @@ TEST(PacketsOuster, WrongDescriptionsNameTheKey) {
         EXPECT_NE(faultOf(json.dump()).find(key), std::string::npos);
     }
     auto json = OusterToy().json();
+    for (const char* const key : {"beam_altitude_angles", "beam_azimuth_angles"})
+        json[key] = std::vector<double>(100000);
+    json["data_format"].erase("pixels_per_column");
+    EXPECT_NE(faultOf(json.dump()).find("beam_altitude_angles are too many"), std::string::npos);
+    json = OusterToy().json();
     json["data_format"]["udp_profile_lidar"] = "RNG99";
     EXPECT_NE(faultOf(json.dump()).find("RNG99"), std::string::npos);
     json = OusterToy().json();

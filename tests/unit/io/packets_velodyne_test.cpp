@@ -5,8 +5,10 @@
 #include "io/packets/packet_decoder.h"
 #include "io/packets/velodyne_clock.h"
 #include "io/packets/velodyne_models.h"
+#include "memory_limit.h"
 #include "pcap_writer.h"
 #include "spinner.h"
+#include "test_data.h"
 
 namespace {
 using namespace delio;
@@ -168,6 +170,22 @@ TEST(PacketsVelodyne, OtherSensorsAreErrors) {
     // Every HDL-64E has a calibration of its own.
     EXPECT_NE(faultOf(packetsOf(hdl64(1), 1)).find("calibration of a Velodyne HDL-64E"),
               std::string::npos);
+}
+
+TEST(PacketsVelodyne, CalibrationsThatClaimTooMuchAreRefused) {
+    const test::TemporaryFolder folder;
+    const std::string file = (folder / "sensor.yaml").string();
+    std::string nested;
+    for (int i = 0; i < 200000; ++i) nested += "- ";
+    for (const std::string& text :
+         {nested, std::string(200000, '['), std::string("num_lasers: 400000000\nlasers: []\n"),
+          std::string("num_lasers: -1\n"), std::string("lasers\n")}) {
+        test::writeText(file, text);
+        const test::MemoryLimit limit(500);
+        EXPECT_NE(faultOf(packetsOf(vlp16(), 1), file).find("is not a Velodyne's calibration"),
+                  std::string::npos)
+            << text.substr(0, 40);
+    }
 }
 
 TEST(PacketsVelodyne, ClocksThatAreNotSetOrStand) {

@@ -67,6 +67,11 @@ void expectTurn(const Scan& scan, double from_s, double tolerance_s = 1e-6) {
 }
 }  // namespace
 
+TEST(PointTable, NothingIsNoPoints) {
+    PointTable table;
+    EXPECT_EQ(table.scan(Records().layout, nullptr, 0, 0, 1, kStamp_s).points->size(), 0U);
+}
+
 TEST(PointTable, CoordinatesIntensityAndRings) {
     Records records;
     records.add<std::uint8_t>("intensity", NumberKind::kUint8, [](double) { return 51; });

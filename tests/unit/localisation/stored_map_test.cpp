@@ -135,6 +135,14 @@ TEST_F(StoredMapFile, WhateverIsTurnedIsSaid) {
     }
 }
 
+TEST_F(StoredMapFile, PosesThatAreNoneAreSaid) {
+    MapContent content = drive_.content;
+    content.submaps.front().level(0, 0) = NAN;
+    StoredMap::save(content, path_);
+    EXPECT_NE(faultOf(test::readText(path_)).find("its index cannot be understood"),
+              std::string::npos);
+}
+
 TEST_F(StoredMapFile, AnotherVersionIsNamed) {
     std::string bytes = test::readText(path_);
     bytes[8] = 7;

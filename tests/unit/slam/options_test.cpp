@@ -131,6 +131,15 @@ TEST(Profile, EveryKeyIsWrittenUnderAComment) {
     }
 }
 
+TEST(Options, TextThatMrptCannotReadIsRefusedInOneLine) {
+    try {
+        Options().load("# as $env{HOME\n[scan]\nmax_range = 80\n");
+        FAIL() << "was read";
+    } catch (const delio::Error& e) {
+        EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+    }
+}
+
 TEST(Profile, ADriveTellsItsCorrectionAndWhetherItIsSkewed) {
     for (const std::string method : {"planes", "paper"}) {
         delio::io::DriveMeta meta;

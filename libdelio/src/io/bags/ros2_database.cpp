@@ -2,12 +2,15 @@
 
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "delio/core/error.h"
 
 namespace delio::io {
+namespace fs = std::filesystem;
+
 namespace {
 const std::string kMagic("SQLite format 3\0", 16);
 const std::string kZstd = "\x28\xB5\x2F\xFD";
@@ -37,7 +40,7 @@ void checkHeader(const std::string& path) {
     // sqlite3 takes what is missing of its last page for zeros. A page size of 1 is 65536; the
     // number of pages is right if it is of the same change as the file.
     const std::uint64_t page = numberAt(header, 16, 2), pages = numberAt(header, 28, 4);
-    const std::uint64_t bytes = std::filesystem::file_size(path);
+    const std::uint64_t bytes = fs::file_size(path);
     const std::uint64_t least = pages * (page == 1 ? 65536 : page);
     if (numberAt(header, 24, 4) == numberAt(header, 92, 4) && bytes < least)
         throw Error("is cut off at byte " + std::to_string(bytes) + " of " + std::to_string(least));
@@ -90,7 +93,26 @@ Ros2Database::Ros2Database(const std::string& path) : path_(path) {
     const int code =
         sqlite3_open_v2(path.c_str(), &handle_.database, SQLITE_OPEN_READONLY, nullptr);
     if (code != SQLITE_OK) fault(handle_.database);
+    distrust();
     list();
+}
+
+void Ros2Database::distrust() {
+    // Views and computed columns run programs of the file's own, which need not end.
+    sqlite3_db_config(handle_.database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    Query computed;
+    computed.prepare(handle_.database,
+                     "SELECT (SELECT COUNT(*) FROM sqlite_master WHERE type = 'table' AND name IN "
+                     "('topics', 'messages') AND sql NOT LIKE 'CREATE VIRTUAL%'), (SELECT COUNT(*) "
+                     "FROM pragma_table_xinfo('topics') WHERE hidden <> 0) + (SELECT COUNT(*) "
+                     "FROM pragma_table_xinfo('messages') WHERE hidden <> 0)");
+    computed.step();
+    if (computed.integer(0) != 2 || computed.integer(1) != 0)
+        throw Error("has no tables 'topics' and 'messages', so it is no ROS 2 database");
+    // Nothing in it is longer than the file.
+    constexpr std::uintmax_t kLeast = 1 << 20, kMost = 1 << 30;
+    const auto bytes = std::clamp<std::uintmax_t>(fs::file_size(path_), kLeast, kMost);
+    sqlite3_limit(handle_.database, SQLITE_LIMIT_LENGTH, static_cast<int>(bytes));
 }
 
 void Ros2Database::list() {

@@ -46,6 +46,7 @@ class Ros2Database : public MessageSource {
         sqlite3* database = nullptr;
     };
 
+    void distrust();
     void list();
     void start();
 

@@ -11,6 +11,7 @@ namespace delio::io {
 namespace {
 using Json = nlohmann::json;
 constexpr double kMetresPerMm = 1e-3;
+constexpr std::size_t kMostRows = 1024;
 const char* const kLegacy = "LEGACY";
 
 std::optional<OusterLayout> layoutOf(const std::string& profile) {
@@ -114,6 +115,7 @@ void readBeams(const Reader& reader, OusterInfo& info) {
     info.elevations = anglesOf(reader, "beam_altitude_angles");
     info.azimuths = anglesOf(reader, "beam_azimuth_angles");
     if (info.elevations.empty()) reader.refuse("beam_altitude_angles", "are none");
+    if (info.elevations.size() > kMostRows) reader.refuse("beam_altitude_angles", "are too many");
     if (info.azimuths.size() != info.elevations.size())
         reader.refuse("beam_azimuth_angles", "are not as many as beam_altitude_angles");
     info.beamOut_m = kMetresPerMm * reader.find<double>("lidar_origin_to_beam_origin_mm")
@@ -153,7 +155,7 @@ OusterInfo readOusterInfo(const std::string& json, const std::string& name) {
     readBeams(reader, info);
     info.rows = info.elevations.size();
     if (reader.find<Json>("pixels_per_column") &&
-        countOf(reader, "pixels_per_column", 1024) != info.rows)
+        countOf(reader, "pixels_per_column", kMostRows) != info.rows)
         reader.refuse("beam_altitude_angles", "are not as many as pixels_per_column says");
     readColumns(reader, info);
     const auto profile = reader.find<std::string>("udp_profile_lidar").value_or(kLegacy);

@@ -1,5 +1,7 @@
 #include "velodyne_models.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -57,6 +59,13 @@ VelodyneCalibration usualCalibration(const std::string& name) {
     return VelodyneCalibration::LoadDefaultCalibration(name == "VLP-16" ? "VLP16" : "HDL32");
 }
 
+/** MRPT's reader of YAML has no bounds of its own: what is nested deep ends the stack, and room is
+ *  made for as many lasers as are claimed. */
+bool mayBeCalibration(const std::string& yaml) {
+    constexpr unsigned kMost = 1024;
+    return YAML::LoadFile(yaml)["num_lasers"].as<unsigned>() <= kMost;
+}
+
 VelodyneCalibration readCalibration(const std::string& file) {
     if (!std::filesystem::is_regular_file(file))
         throw Error("there is no calibration '" + file + "'");
@@ -65,9 +74,9 @@ VelodyneCalibration readCalibration(const std::string& file) {
     try {
         const std::string kind = std::filesystem::path(file).extension().string();
         // MRPT 2.5.8 takes the "text" of a YAML for its file's name, and so cannot read one either.
-        read = kind == ".xml"
-                   ? calibration.loadFromXMLFile(file)
-                   : calibration.loadFromYAMLText(file) || calibration.loadFromYAMLFile(file);
+        read = kind == ".xml" ? calibration.loadFromXMLFile(file)
+                              : mayBeCalibration(file) && (calibration.loadFromYAMLText(file) ||
+                                                           calibration.loadFromYAMLFile(file));
     } catch (const std::exception&) {
         read = false;
     }

@@ -1,0 +1,118 @@
+#include "../../unit/io/bag_files.h"
+#include "fast_spinner.h"
+#include "ouster_packets.h"
+#include "seeds.h"
+
+namespace delio::fuzz {
+namespace {
+void bags() {
+    using Kind = test::WireWriter::Kind;
+    const auto ros1 = bag_test::drive(2), cdr = bag_test::drive(2, Kind::kCdr);
+    for (const char* packing : {"none", "bz2", "lz4"})
+        test::writeRos1Bag(seed("ros1_bag", packing), ros1, packing);
+    test::writeRos1Bag(seed("ros1_bag", "never"), ros1, "none", test::Index::kNever);
+    for (const char* packing : {"", "lz4", "zstd"})
+        test::writeMcap(seed("mcap", std::string("cdr") + packing), cdr, packing);
+    test::writeMcap(seed("mcap", "plain"), ros1, "", test::Index::kWritten, 0);
+    test::writeMcap(seed("mcap", "never"), cdr, "", test::Index::kNever);
+    test::writeDatabase(seed("database", "cdr"), cdr);
+    const test::TemporaryFolder folder;
+    test::writeMetadata(folder.path(), cdr, {"bag_0.mcap"});
+    writeText(seed("bag_folder", "metadata"), readText(folder / "metadata.yaml"));
+}
+
+void messages() {
+    using Kind = test::WireWriter::Kind;
+    const auto packet = velodynePacket();
+    for (const auto& [digit, kind] : {std::pair{"0", Kind::kRos1}, {"1", Kind::kCdr}}) {
+        const std::string name = digit;
+        writeText(seed("messages", "cloud" + name), "0" + name + test::cloudMessage({}, kind));
+        test::WireWriter scan(kind), beams(kind);
+        scan.header(1000).number(std::uint32_t{1}).time(1000);
+        scan.bytes({packet.begin(), packet.end()});
+        writeText(seed("messages", "velodyne" + name), "1" + name + scan.message());
+        beams.byteArray(std::string(64 + 16 * 20, '\1'));
+        writeText(seed("messages", "ouster" + name), "2" + name + beams.message());
+    }
+    test::CloudSpec rows;
+    rows.rows = 2;
+    rows.padding = 3;
+    rows.bigEndian = true;
+    writeText(seed("messages", "rows"), "01" + test::cloudMessage(rows, Kind::kCdrBigEndian));
+}
+
+/** An Ouster of 16 rows whose turn is of four packets. */
+std::string ousterJson(const std::string& profile) {
+    auto json = test::OusterToy{profile}.json();
+    json["data_format"]["columns_per_frame"] = 16;
+    json["data_format"]["columns_per_packet"] = 4;
+    json["lidar_mode"] = "512x10";
+    return json.dump();
+}
+
+test::Bytes ousterPacket(const std::string& profile, std::uint16_t frame, std::uint16_t first) {
+    const test::OusterToy toy{profile};
+    const std::size_t head = toy.legacy() ? 0 : 32, columnHead = toy.legacy() ? 16 : 12;
+    const std::size_t column = columnHead + 16 * toy.pixel() + (toy.legacy() ? 4 : 0);
+    test::Bytes bytes(2 * head + 4 * column);
+    if (!toy.legacy()) test::putAt(bytes, 2, frame);
+    for (std::uint16_t c = 0; c < 4; ++c) {
+        const std::size_t at = head + c * column;
+        test::putAt(bytes, at, toy.start_ns + (16ULL * frame + first + c) * 1000000);
+        test::putAt(bytes, at + 8, static_cast<std::uint16_t>(first + c));
+        test::putAt(bytes, at + 10, toy.legacy() ? frame : std::uint16_t{1});
+        if (toy.legacy()) test::putAt(bytes, at + column - 4, 0xFFFFFFFFU);
+        for (std::size_t row = 0; row < 16; ++row)
+            toy.putPixel(bytes, at + columnHead + row * toy.pixel());
+    }
+    return bytes;
+}
+
+void packets() {
+    const auto velodyne = velodynePacket();
+    const std::string turn(velodyne.begin(), velodyne.end());
+    writeText(seed("velodyne", "vlp16"), "0" + kNul + "d" + turn + "d" + turn + "d" + turn);
+    writeText(seed("velodyne", "yaml"),
+              "1lasers:\n- {azimuth: 0, dist_correction: 0, dist_correction_x: 0, "
+              "dist_correction_y: 0, focal_distance: 0, focal_slope: 0, horiz_offset_correction: "
+              "0, laser_id: 0, min_intensity: 0, max_intensity: 255, rot_correction: 0, "
+              "vert_correction: 0, vert_offset_correction: 0}\nnum_lasers: 1\n" +
+                  kNul + "d" + turn);
+    writeText(seed("velodyne", "xml"),
+              "2<?xml version=\"1.0\"?><boost_serialization><DB><enabled_>"
+              "</enabled_></DB></boost_serialization>" +
+                  kNul + "d" + turn);
+    test::PcapWriter pcap;
+    for (int i = 0; i < 3; ++i) pcap.add(velodyne, 1000 + 0.1 * i);
+    behind(kNul, seed("pcap", "velodyne"),
+           [&](const fs::path& file) { pcap.write(file.string()); });
+    for (const std::string profile :
+         {"LEGACY", "RNG19_RFL8_SIG16_NIR16", "RNG15_RFL8_NIR8", "RNG19_RFL8_SIG16_NIR16_DUAL"}) {
+        const std::string json = ousterJson(profile);
+        std::string bytes;
+        test::PcapWriter ouster;
+        for (std::uint16_t i = 0; i < 6; ++i) {
+            const auto packet = ousterPacket(profile, static_cast<std::uint16_t>(i / 4),
+                                             static_cast<std::uint16_t>(i % 4 * 4));
+            bytes.append(packet.begin(), packet.end());
+            ouster.add(packet, 1000 + 0.1 * i);
+        }
+        writeText(seed("ouster", profile), json + kNul + bytes);
+        behind(json + kNul, seed("pcap", profile),
+               [&](const fs::path& file) { ouster.write(file.string()); });
+    }
+    test::PcapWriter fragments;
+    fragments.mtu = 576;
+    fragments.add(velodyne, 1000);
+    behind(kNul, seed("pcap", "fragments"),
+           [&](const fs::path& file) { fragments.write(file.string()); });
+}
+
+}  // namespace
+
+void seedBags() {
+    bags();
+    messages();
+    packets();
+}
+}  // namespace delio::fuzz

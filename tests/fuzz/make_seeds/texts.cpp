@@ -1,0 +1,70 @@
+#include <sstream>
+
+#include "delio/io/drive_meta.h"
+#include "delio/io/g2o.h"
+#include "delio/io/scan_table.h"
+#include "delio/run/localisation_table.h"
+#include "delio/run/loop_table.h"
+#include "delio/run/summary.h"
+#include "delio/slam/options.h"
+#include "seeds.h"
+
+namespace delio::fuzz {
+namespace {
+void texts() {
+    io::saveG2o(smallGraph(), seed("g2o", "graph").string());
+    const std::string row = "1 0 0 0 0 1 0 0 0 0 1 0\n", tum = "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n";
+    writeText(seed("poses", "kitti"), "0" + row + "1 0 0 2 0 1 0 0 0 0 1 0\n");
+    writeText(seed("poses", "tum"), "0# t x y z\n" + tum);
+    writeText(seed("poses", "times"), "10\n0.1\n2e-1\n");
+    writeText(seed("poses", "calib"), "2P0: " + row + "Tr: " + row);
+    behind("3", seed("poses", "meta"), [](const fs::path& file) {
+        io::writeDriveMeta({}, file.string() + ".rawlog");
+        fs::rename(file.string() + ".meta.yaml", file);
+    });
+    writeText(seed("poses", "compared"), "4" + row + row + kNul + row + row);
+    writeText(seed("poses", "compared_tum"), "4" + tum + kNul + tum);
+    writeText(seed("kitti", "calib"), "0Tr: " + row);
+    writeText(seed("kitti", "times"), "10\n0.1\n");
+    writeText(seed("kitti", "poses"), "2" + row + row);
+    writeText(seed("kitti", "scan"), "3" + std::string(48, 'A'));
+    writeText(seed("kitti", "velo"), "4R: 1 0 0 0 1 0 0 0 1\nT: 0 0 0\n");
+    writeText(seed("kitti", "cam"), "5R_rect_00: 1 0 0 0 1 0 0 0 1\n");
+    writeText(seed("kitti", "imu"), "6R: 1 0 0 0 1 0 0 0 1\nT: 0 0 0\n");
+    writeText(seed("kitti", "stamps"), "72011-09-26 13:02:25.951199337\n");
+    writeText(seed("kitti", "oxts"), "849 8 110 0 0 0 0 0\n");
+    for (const auto& name : Options::profileNames())
+        writeText(seed("options", name), "0" + readText(test::profileFolder() / (name + ".ini")));
+    std::ostringstream all;
+    Options().write(all);
+    writeText(seed("options", "all"), "0" + all.str());
+    writeText(seed("options", "words"),
+              "1scan.max_range=80\nodometry.method=paper\nmap.voxel=0.2\ngraph.window=2\n");
+}
+
+void tables() {
+    io::ScanRow row;
+    row.values = {{"points", "12"}};
+    behind("0", seed("tables", "scans"),
+           [&](const fs::path& file) { io::writeScanTable({row}, file.string()); });
+    behind("1", seed("tables", "loops"), [](const fs::path& file) {
+        run::writeLoopTable({loops::LoopCandidate{}}, file.string());
+    });
+    behind("2", seed("tables", "localisation"), [](const fs::path& file) {
+        run::writeLocalisationTable({run::RunRow{}}, {MapFix{}}, file.string());
+    });
+    run::Summary summary;
+    summary.version = "0.1.0";
+    summary.ms_per_scan_of_stages = {{"scan", 1}};
+    summary.warnings = {"a warning"};
+    summary.metrics = {{"t_percent", 1}};
+    behind("3", seed("tables", "summary"),
+           [&](const fs::path& file) { run::writeSummary(summary, file.string()); });
+}
+}  // namespace
+
+void seedTexts() {
+    texts();
+    tables();
+}
+}  // namespace delio::fuzz

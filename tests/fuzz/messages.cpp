@@ -1,0 +1,34 @@
+#include <array>
+
+#include "io/bags/scan_maker.h"
+#include "target.h"
+
+using namespace delio;
+
+namespace {
+const char* const kJson = R"({"beam_altitude_angles": [1, 0], "beam_azimuth_angles": [0, 0],
+    "lidar_mode": "512x10", "udp_profile_lidar": "RNG15_RFL8_NIR8"})";
+
+std::unique_ptr<io::ScanMaker> makerOf(std::size_t kind) {
+    if (kind == 0) return io::makeCloudMaker();
+    if (kind == 1) return io::makePacketMaker(io::ScanType::kVelodyne, io::velodyneDecoder(""));
+    return io::makePacketMaker(io::ScanType::kOuster, io::ousterDecoder(kJson, "sensor.json"));
+}
+}  // namespace
+
+/** A ROS message: a cloud, or packets of a Velodyne or an Ouster, as ROS 1 or as CDR. */
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const std::array<const char*, 3> kTypes{
+        "sensor_msgs/PointCloud2", "velodyne_msgs/VelodyneScan", "ouster_ros/PacketMsg"};
+    fuzz::Input input(data, size);
+    const auto kind = input.pick(kTypes.size());
+    const auto encoding = input.pick(2) == 0 ? io::Encoding::kRos1 : io::Encoding::kCdr;
+    return fuzz::mayRefuse([&] {
+        const auto maker = makerOf(kind);
+        const auto* bytes = reinterpret_cast<const std::uint8_t*>(input.rest().data());
+        maker->add({"/points", kTypes[kind], encoding, 1.7e9, {bytes, input.rest().size()}});
+        maker->finish();
+        while (maker->take()) {
+        }
+    });
+}
