@@ -136,10 +136,10 @@ TEST_F(ObjectArchive, AMovementIsOfTheKindThatItSays) {
     EXPECT_EQ(scans_, 1U);
     const std::string name = "mrpt::obs::CActionRobotMovement2D";
     const auto method = bytes.find(name) + name.size() + 1;
-    for (const char other : {1, 2, 100}) {
+    for (const char other : {'\1', '\2', 'd'}) {
         std::string damaged = bytes;
         damaged[method] = other;
-        EXPECT_NE(faultOf(damaged), "") << int{other};
+        EXPECT_NE(faultOf(damaged), "") << other;
     }
 }
 
