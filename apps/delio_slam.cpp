@@ -49,6 +49,16 @@ void warnOfOthers(const io::ScanReader& reader,
         warn("scans of sensor '" + other + "' were not used; see --sensor-label");
 }
 
+/** A run that cannot be gone on with later goes on now. */
+void keep(run::Keeper& keeper, run::Run& run, bool isLast) {
+    try {
+        keeper.add(run);
+        if (isLast) keeper.keep(run);
+    } catch (const std::exception& e) {
+        run.warn("the run could not be gone on with later: " + plainMessage(e));
+    }
+}
+
 /** Scans into the run until the end, the wanted count, an interrupt or a fault in the rawlog. With
  *  more than one thread each is read while the one before is registered: `read_ms` is what is
  *  waited for. */
@@ -64,14 +74,14 @@ void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double 
             if (done != count) next = std::async(policy, [&] { return read(reader, passedOver); });
             const auto& row = run.process(*now.scan, read_ms);
             if (line.verbose.getValue()) cli::inform(describe(row));
-            keeper.add(run);
+            const bool isStopped = cli::interrupted();
+            keep(keeper, run, isStopped);
             progress.update(done, now.fraction);
-            if (cli::interrupted() || done == count) break;
+            if (isStopped || done == count) break;
             Stopwatch watch;
             now = next.get();
             read_ms = watch.lap_ms();
         }
-        if (cli::interrupted()) keeper.keep(run);
     } catch (const std::exception& e) {
         run.fail(plainMessage(e));
     }
@@ -169,7 +179,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     if (!cli::interrupted()) keeper.remove();
     if (!fault.empty()) throw Error(fault);
     if (cli::interrupted()) {
-        cli::inform("interrupted; --resume goes on from there");
+        if (keeper.hasState()) cli::inform("interrupted; --resume goes on from there");
         return {cli::kExitInterrupted, run.record().extended, false};
     }
     if (view && view->isOpen()) cli::inform("done; close the window to end");

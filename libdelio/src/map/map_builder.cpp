@@ -3,6 +3,7 @@
 #include <mrpt/maps/CPointsMapXYZI.h>
 
 #include <chrono>
+#include <filesystem>
 #include <utility>
 
 #include "../core/checkpoint.h"
@@ -145,6 +146,7 @@ bool MapBuilder::add(std::size_t poseIndex, const Isometry3d& approximatePose,
         putAside(points.floats, isView ? &sensorPoints : nullptr, scan);
     } catch (const Error& e) {
         now_.fault = e.what();
+        giveUp();
         return false;
     }
     scans_.push_back(scan);
@@ -161,9 +163,17 @@ bool MapBuilder::add(std::size_t poseIndex, const Isometry3d& approximatePose,
     return scan.isKeyframe;
 }
 
+/** There will be no map: what was put aside for it leaves its room to the other results. */
+void MapBuilder::giveUp() {
+    spool_.reset();
+    std::error_code ignored;
+    if (isKept_) std::filesystem::resize_file(spoolPath(), 0, ignored);
+}
+
 void MapBuilder::undo() noexcept {
     if (!canUndo_) return;
     // What was put aside stays on the disk: a simplemap that was given out may still need it.
+    before_.fault = std::move(now_.fault);
     now_ = std::move(before_);
     scans_.erase(scans_.begin() + static_cast<std::ptrdiff_t>(now_.scans), scans_.end());
     canUndo_ = false;

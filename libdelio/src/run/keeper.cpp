@@ -7,6 +7,7 @@
 #include "core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/io/output_file.h"
+#include "delio/run/run_folder.h"
 #include "row_files.h"
 
 namespace delio::run {
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 constexpr std::chrono::seconds kInterval{1};
 
-void writeState(const std::string& path, const std::string& state) {
+void replaceState(const std::string& path, const std::string& state) {
     io::replaceFile(path, [&](const std::string& temporary) {
         std::ofstream out(temporary, std::ios::binary);
         out.write(state.data(), static_cast<std::streamsize>(state.size()));
@@ -52,30 +53,58 @@ void Keeper::resume(Run& run) const {
     }
 }
 
-void Keeper::add(const Run& run) {
+void Keeper::addRows(const Run& run) {
     if (!files_) files_ = std::make_unique<RowFiles>(folder_);
     const auto& rows = run.record().rows;
     for (; rows_ < rows.size(); ++rows_) files_->add(rows[rows_], run.odometry().poses[rows_]);
     const auto now = Clock::now();
-    if (now >= flushAt_) {
-        files_->flush();
-        flushAt_ = now + kInterval;
-    }
-    const bool isFree = !writing_.valid() ||
-                        writing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    if (now >= keepAt_ && isFree) keep(run);
+    if (now < flushAt_) return;
+    files_->flush();
+    flushAt_ = now + kInterval;
 }
 
-void Keeper::keep(const Run& run) {
+void Keeper::writeState(const Run& run) {
     if (writing_.valid()) writing_.get();
     const auto begin = Clock::now();
     std::ostringstream state;
     checkpoint::writePart(state, {"drive", drive_}, "");
     run.save(state);
     constexpr int kShare = 20;
-    const auto end = Clock::now();
-    keepAt_ = begin + std::max<Clock::duration>(kInterval, kShare * (end - begin));
-    writing_ = std::async(std::launch::async, writeState, state_.string(), state.str());
+    keepAt_ = begin + std::max<Clock::duration>(kInterval, kShare * (Clock::now() - begin));
+    writing_ = std::async(std::launch::async, replaceState, state_.string(), state.str());
+}
+
+template <typename Work>
+void Keeper::unlessGivenUp(const Work& work) {
+    if (givenUp_) return;
+    try {
+        work();
+    } catch (...) {
+        givenUp_ = true;
+        files_.reset();
+        for (const char* name : {"state", RunFolder::kScans, RunFolder::kOdometry}) {
+            std::error_code ignored;
+            fs::remove(folder_ / name, ignored);
+        }
+        throw;
+    }
+}
+
+void Keeper::add(const Run& run) {
+    unlessGivenUp([&] {
+        addRows(run);
+        const bool isFree = !writing_.valid() ||
+                            writing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+        if (Clock::now() >= keepAt_ && isFree) writeState(run);
+    });
+}
+
+void Keeper::keep(const Run& run) {
+    unlessGivenUp([&] {
+        files_->flush();
+        writeState(run);
+        writing_.get();
+    });
 }
 
 void Keeper::remove() {

@@ -122,6 +122,7 @@ class MapBuilder {
 
     bool isFarFromLastKeyframe(const Eigen::Isometry3d& pose) const;
     bool isFarFromLastView(const Eigen::Isometry3d& pose, mrpt::Clock::time_point stamp) const;
+    void giveUp();
     std::string spoolPath() const { return folder_ + "/map.spool"; }
     void putAside(const std::vector<float>& points, const mrpt::maps::CPointsMap* view,
                   StoredScan& scan);

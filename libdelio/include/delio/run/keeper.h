@@ -35,9 +35,10 @@ class Keeper {
      *  damaged, or of another run. */
     void resume(Run& run) const;
 
-    /** After each scan. Error where the disk is full. */
+    /** After each scan. Error, once, where the disk is full: then nothing is kept any more, and
+     * what was leaves its room to the results. */
     void add(const Run& run);
-    /** The state as it is now. Error where it cannot be written. */
+    /** After add(): the state as it is now. Error as there. */
     void keep(const Run& run);
     /** The run is over: there is nothing to go on with. */
     void remove();
@@ -45,10 +46,16 @@ class Keeper {
  private:
     using Clock = std::chrono::steady_clock;
 
+    void addRows(const Run& run);
+    void writeState(const Run& run);
+    template <typename Work>
+    void unlessGivenUp(const Work& work);
+
     std::filesystem::path folder_, state_;
     std::string drive_;
     std::unique_ptr<RowFiles> files_;
     std::size_t rows_ = 0;  //!< in these
+    bool givenUp_ = false;
     Clock::time_point flushAt_ = Clock::now(), keepAt_ = Clock::now();
     std::future<void> writing_;  //!< of the state
 };
