@@ -161,6 +161,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     const bool resumes = line.resume.getValue() && keeper.hasState();
     Reading first;
     if (!resumes) first = firstOf(line, input, *reader);
+    const double read_ms = watch.lap_ms();
     if (cli::interrupted()) return {cli::kExitInterrupted};
     settings.sensorLabel = reader->label();
     settings.drive = io::nameOfDrive(input);
@@ -174,7 +175,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
                       line.truthFrame.getValue() == "cam0");
     const auto view = liveViewFor(line, options, run);
     if (resumes) first = resume(line, *reader, keeper, run);
-    process(line, std::move(first), *reader, watch.lap_ms(), run, keeper);
+    process(line, std::move(first), *reader, read_ms, run, keeper);
     const std::string fault = finish(input, folder, run);
     if (!cli::interrupted()) keeper.remove();
     if (!fault.empty()) throw Error(fault);
