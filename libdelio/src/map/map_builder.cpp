@@ -173,7 +173,7 @@ void MapBuilder::giveUp() {
 void MapBuilder::undo() noexcept {
     if (!canUndo_) return;
     // What was put aside stays on the disk: a simplemap that was given out may still need it.
-    before_.fault = std::move(now_.fault);
+    if (!spool_ && before_.scans > 0) before_.fault = now_.fault;  // what was given up is gone
     now_ = std::move(before_);
     scans_.erase(scans_.begin() + static_cast<std::ptrdiff_t>(now_.scans), scans_.end());
     canUndo_ = false;
