@@ -121,16 +121,26 @@ void load(CObservationPointCloud& cloud, const fs::path& file) {
         cloud.load();
 }
 
+/** MRPT takes the size of a range image from its file without a look whether that is there. */
+void checkRangeImage(const std::string& file, std::uint64_t bytes) {
+    if (fs::path(file).extension() == ".txt") return;
+    std::array<std::uint32_t, 2> size{};  // rows and columns
+    GzInput(file).Read(size.data(), sizeof(size));
+    if (std::uint64_t{2} * size[0] * size[1] != bytes - sizeof(size) || bytes < sizeof(size))
+        throw Error("'" + file + "' is damaged: it has not as many ranges as it claims");
+}
+
 void loadRanges(CObservation3DRangeScan& scan, std::string& from,
                 const std::vector<std::string>& folders) {
     std::uintmax_t size = 0;
     const auto check = [&](const std::string& name) {
         from = found(name, folders).string();
-        unpackedSize(from);  // MRPT does not see that it is damaged
         size += fs::file_size(from);
+        return unpackedSize(from);  // MRPT does not see that it is damaged
     };
     if (scan.hasRangeImage && scan.rangeImage_isExternallyStored()) {
-        check(scan.rangeImage_getExternalStorageFile(""));
+        const auto bytes = check(scan.rangeImage_getExternalStorageFile(""));
+        checkRangeImage(from, bytes);
         ExternalRanges::setRanges(scan, from);
         scan.rangeImageOtherLayers.clear();  // these have files of their own, and are not used
     }

@@ -67,11 +67,11 @@ class ByteReader {
         take(rows.data(), 12 * sizeof(double));
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
         pose.matrix().topRows<3>() = rows;
-        // Written so that a NaN fails as well.
+        // Eigen's maxCoeff() may pass over a NaN.
         constexpr double kFarthest_m = 1e8, kOff = 1e-3;
         const Eigen::Matrix3d square = pose.linear() * pose.linear().transpose();
-        if (!(pose.translation().cwiseAbs().maxCoeff() <= kFarthest_m) ||
-            !((square - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kOff))
+        if (!pose.matrix().allFinite() || pose.translation().cwiseAbs().maxCoeff() > kFarthest_m ||
+            (square - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kOff)
             throw std::out_of_range("pose");
         return pose;
     }
