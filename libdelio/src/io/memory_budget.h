@@ -15,12 +15,12 @@ class MemoryBudget {
     MemoryBudget& operator=(const MemoryBudget&) = delete;
 
     /** For one object of a stream of them: far more than a scan takes. */
-    static constexpr std::uint64_t kOfOneScan = 500ULL << 20;
+    static constexpr std::uint64_t kOfOneScan = 256ULL << 20;
 
     /** For all of a file of this size, compressed or not: MRPT's objects take a few times the bytes
      *  that they are written with. */
     static constexpr std::uint64_t ofWholeFile(std::uint64_t size) {
-        return kOfOneScan + 64 * size;
+        return (128ULL << 20) + 64 * size;
     }
 };
 }  // namespace delio::io

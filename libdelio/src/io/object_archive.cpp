@@ -104,7 +104,7 @@ void ObjectArchive::checkCount(const void* data, std::size_t bytes) {
     std::uint32_t elements = 0;
     std::memcpy(&elements, data, bytes);
     // Six numbers of four bytes for a point: none of these asks for more than the budget.
-    constexpr std::uint64_t kOfScan = 20'000'000, kBytes = 6 * sizeof(float);
+    constexpr std::uint64_t kOfScan = 10'000'000, kBytes = 6 * sizeof(float);
     static_assert(kOfScan * kBytes < MemoryBudget::kOfOneScan);
     const std::uint64_t size = in_.getTotalBytesCount();
     std::uint64_t most = in_.compressed() ? kOfScan : size - in_.getPosition();
