@@ -176,6 +176,10 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     const auto view = liveViewFor(line, options, run);
     if (resumes) first = resume(line, *reader, keeper, run);
     process(line, std::move(first), *reader, read_ms, run, keeper);
+    if (run.record().rows.empty()) {  // not even the first one: there is nothing to write
+        keeper.remove();
+        throw Error(run.record().fault);
+    }
     const std::string fault = finish(input, folder, run);
     if (!cli::interrupted()) keeper.remove();
     if (!fault.empty()) throw Error(fault);

@@ -30,11 +30,15 @@ void replaceState(const std::string& path, const std::string& state) {
 Keeper::Keeper(const std::string& results, std::string drive)
     : folder_(fs::path(results) / kFolder), state_(folder_ / "state"), drive_(std::move(drive)) {}
 
-Keeper::~Keeper() = default;
+Keeper::~Keeper() {
+    if (writing_.valid()) writing_.wait();
+    if (begun_ && !hasState()) remove();
+}
 
 bool Keeper::hasState() const { return fs::exists(state_); }
 
-void Keeper::begin() const {
+void Keeper::begin() {
+    begun_ = true;
     std::error_code fault;
     fs::remove_all(folder_, fault);
     if (!fault) fs::create_directories(folder_, fault);

@@ -21,7 +21,10 @@ class Keeper {
     /** @param results the folder of the run's results
      *  @param drive what the scans are of, in a line: another run's are not gone on with */
     Keeper(const std::string& results, std::string drive);
+    /** Takes away what was begun where there is no state yet. */
     ~Keeper();
+    Keeper(const Keeper&) = delete;
+    Keeper& operator=(const Keeper&) = delete;
 
     /** Where the run, too, puts aside what it goes on with: RunSettings::folder. */
     std::string folder() const { return folder_.string(); }
@@ -30,7 +33,7 @@ class Keeper {
 
     /** Before a run is made that does not go on with another: nothing of that stays. Error where
      *  there can be no folder. */
-    void begin() const;
+    void begin();
     /** Into a run of the same options and settings that has seen no scan. Error where the state is
      *  damaged, or of another run. */
     void resume(Run& run) const;
@@ -55,7 +58,7 @@ class Keeper {
     std::string drive_;
     std::unique_ptr<RowFiles> files_;
     std::size_t rows_ = 0;  //!< in these
-    bool givenUp_ = false;
+    bool begun_ = false, givenUp_ = false;
     Clock::time_point flushAt_ = Clock::now(), keepAt_ = Clock::now();
     std::future<void> writing_;  //!< of the state
 };
