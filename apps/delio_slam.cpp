@@ -22,6 +22,7 @@
 #include "initial_pose.h"
 #include "live_view.h"
 #include "output_folder.h"
+#include "overlap.h"
 #include "run_table.h"
 #include "several_drives.h"
 #include "slam_command_line.h"
@@ -205,6 +206,9 @@ int optimiseGraph(SlamCommandLine& line, const std::string& input,
 
 /** Nothing that is read may be overwritten. */
 void checkFolders(SlamCommandLine& line) {
+    auto read = line.input.getValue();
+    for (auto* file : {&line.truth, &line.sensorInfo}) read.push_back(file->getValue());
+    cli::refuseOverlap(read, run::RunFolder(line.output.getValue()).files());
     if (!line.map.isSet()) return;
     const fs::path map = run::storedMapIn(line.map.getValue());
     std::error_code ignored;

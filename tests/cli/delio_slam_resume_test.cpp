@@ -166,4 +166,15 @@ TEST_F(Resume, OldResultsStayWhereNewOnesCannotBeWritten) {
     EXPECT_EQ(readText(out_ / "summary.yaml"), summary);
     EXPECT_EQ(readText(out_ / "trajectory_kitti.txt"), trajectory);
 }
+
+TEST_F(Resume, WhatIsReadIsNotReplaced) {
+    const auto before = test::namesIn(whole_);
+    for (const char* input : {"posegraph.g2o", "map.ply"})
+        expectFailure(runTool("delio-slam", {"-i", whole_ / input, "-o", whole_, "--force"}), 1,
+                      {input, "choose another name"});
+    expectFailure(runTool("delio-slam", {"-i", drive_, "-o", whole_, "--force", "--ground-truth",
+                                         whole_ / "trajectory_kitti.txt"}),
+                  1, {"trajectory_kitti.txt", "choose another name"});
+    EXPECT_EQ(test::namesIn(whole_), before);
+}
 }  // namespace

@@ -79,6 +79,12 @@ std::string RunFolder::path(const char* name) const { return (fs::path(folder_) 
 
 bool RunFolder::has(const char* name) const { return fs::exists(path(name)); }
 
+std::vector<std::string> RunFolder::files() const {
+    std::vector<std::string> files;
+    for (const char* name : kAll) files.push_back(path(name));
+    return files;
+}
+
 graph::PoseGraph RunFolder::graph() const { return io::loadG2o(path(kGraph)); }
 
 Options RunFolder::options() const {

@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "delio/io/scan_table.h"
 #include "delio/run/localisation_table.h"
@@ -55,6 +56,8 @@ class RunFolder {
     /** Of one of the names above. */
     std::string path(const char* name) const;
     bool has(const char* name) const;
+    /** Paths of all that write() replaces or takes away. */
+    std::vector<std::string> files() const;
 
     /** Writes all that the record has (making the folder where it is not there); files of an
      * earlier run that this one does not have are removed. Returns what is
