@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -130,8 +131,17 @@ void checkRangeImage(const std::string& file, std::uint64_t bytes) {
         throw Error("'" + file + "' is damaged: it has not as many ranges as it claims");
 }
 
+/** MRPT reads any byte of a file into a bool. */
+void makeTrueOrFalse(bool& flag) {
+    unsigned char byte = 0;
+    std::memcpy(&byte, &flag, 1);
+    flag = byte != 0;
+}
+
 void loadRanges(CObservation3DRangeScan& scan, std::string& from,
                 const std::vector<std::string>& folders) {
+    for (bool* flag : {&scan.hasPoints3D, &scan.hasRangeImage, &scan.range_is_depth})
+        makeTrueOrFalse(*flag);
     std::uintmax_t size = 0;
     const auto check = [&](const std::string& name) {
         from = found(name, folders).string();
