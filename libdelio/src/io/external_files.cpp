@@ -34,6 +34,16 @@ struct External : CObservationPointCloud {
 
 /** The same of a depth camera's scan. */
 struct ExternalRanges : CObservation3DRangeScan {
+    /** All that a file has. */
+    static std::array<bool*, 7> flagsOf(CObservation3DRangeScan& scan) {
+        return {&scan.hasPoints3D,
+                &scan.hasRangeImage,
+                &scan.range_is_depth,
+                &scan.hasIntensityImage,
+                &scan.hasConfidenceImage,
+                &(scan.*(&ExternalRanges::m_points3D_external_stored)),
+                &(scan.*(&ExternalRanges::m_rangeImage_external_stored))};
+    }
     static void setPoints(CObservation3DRangeScan& scan, const std::string& file) {
         scan.*(&ExternalRanges::m_points3D_external_file) = file;
     }
@@ -140,8 +150,7 @@ void makeTrueOrFalse(bool& flag) {
 
 void loadRanges(CObservation3DRangeScan& scan, std::string& from,
                 const std::vector<std::string>& folders) {
-    for (bool* flag : {&scan.hasPoints3D, &scan.hasRangeImage, &scan.range_is_depth})
-        makeTrueOrFalse(*flag);
+    for (bool* flag : ExternalRanges::flagsOf(scan)) makeTrueOrFalse(*flag);
     std::uintmax_t size = 0;
     const auto check = [&](const std::string& name) {
         from = found(name, folders).string();
