@@ -7,6 +7,20 @@ namespace {
 using namespace delio;
 using test::ToyRun;
 
+/** A listener of somebody else's that fails on the third scan. */
+template <typename Fault>
+class Thrower : public SlamListener {
+ public:
+    const char* name() const override { return "thrower"; }
+    void add(const SlamScan& scan) override {
+        if (scan.node == 2) throw Fault();
+    }
+    void undo() noexcept override {}
+};
+struct OutOfOrder : std::runtime_error {
+    OutOfOrder() : std::runtime_error("out of order") {}
+};
+
 TEST_F(ToyRun, NotesEachScan) {
     run::Run run(Options(), {});
     for (const auto& scan : scans()) {
@@ -120,5 +134,27 @@ TEST_F(ToyRun, TimesThatDoNotRise) {
     EXPECT_EQ(run.record().warnings.size(), 1U);
     EXPECT_TRUE(run.record().final.stamps_s.empty());
     EXPECT_EQ(run.record().odometry.stamps_s.size(), kScans);
+}
+
+TEST_F(ToyRun, AListenerThatThrowsLeavesWhatWasDoneBefore) {
+    for (const auto& listener : std::vector<std::shared_ptr<SlamListener>>{
+             std::make_shared<Thrower<OutOfOrder>>(), std::make_shared<Thrower<std::bad_alloc>>()}) {
+        run::Run run(Options(), {});
+        run.attach(listener);
+        std::string fault;
+        try {
+            process(run);
+        } catch (const std::exception& e) {
+            fault = plainMessage(e);
+        }
+        ASSERT_NE(fault, "");
+        run.fail(fault);
+        run.finish(false);
+        EXPECT_EQ(run::RunFolder(out_).write(run.record(), run.maps(), {}), fault);
+        const run::RunFolder results(out_);
+        EXPECT_EQ(results.scans().scans.size(), 2U);
+        EXPECT_EQ(io::readTrajectory(results.path(run::RunFolder::kTrajectory)).poses.size(), 2U);
+        EXPECT_TRUE(std::filesystem::exists(results.path(run::RunFolder::kPly)));
+    }
 }
 }  // namespace
