@@ -120,7 +120,7 @@ loops::Sketch getSketch(ByteReader& bytes) {
     const Eigen::VectorXd azimuths =
         Eigen::Map<const Eigen::VectorXf>(weights.data(), static_cast<Eigen::Index>(weights.size()))
             .cast<double>();
-    auto cells = getCentres(bytes);
+    const auto cells = getCentres(bytes);
     auto bands = bytes.getAll<std::uint8_t>();
     auto grounds = getCentres(bytes);
     auto heights = bytes.getAll<double>();
@@ -129,8 +129,7 @@ loops::Sketch getSketch(ByteReader& bytes) {
         heights.size() != static_cast<std::size_t>(grounds.cols()))
         throw std::out_of_range("sketch");
     return {loops::Azimuths::ofWeights(azimuths),
-            loops::HeightImage(std::move(cells), std::move(bands), std::move(grounds),
-                               std::move(heights))};
+            loops::HeightImage(cells, std::move(bands), std::move(grounds), std::move(heights))};
 }
 }  // namespace
 

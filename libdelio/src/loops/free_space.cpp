@@ -14,7 +14,7 @@ std::uint64_t cellAt(double x, double y) {
 }  // namespace
 
 FreeSpace::FreeSpace(const HeightImage& image, const Eigen::Matrix3Xf& points) {
-    const auto& cells = image.cells();
+    const auto cells = image.cells();
     for (Eigen::Index i = 0; i < cells.cols(); ++i)
         standing_.insert(cellAt(cells(0, i), cells(1, i)));
     constexpr std::array<double, 3> kBeside{-kCell_m, 0, kCell_m};
@@ -32,10 +32,10 @@ FreeSpace::FreeSpace(const HeightImage& image, const Eigen::Matrix3Xf& points) {
 double FreeSpace::builtOn(const HeightImage& other, const Eigen::Isometry3d& pose) const {
     constexpr std::uint8_t kUpright = 2 | 4;  // 1 to 2 m, and 2 to 4 m
     double bare = 0, seen = 0;
-    for (Eigen::Index i = 0; i < other.cells().cols(); ++i) {
+    const auto cells = other.cells();
+    for (Eigen::Index i = 0; i < cells.cols(); ++i) {
         if ((other.bands()[static_cast<std::size_t>(i)] & kUpright) != kUpright) continue;
-        const Eigen::Vector3d at =
-            pose * Eigen::Vector3d(other.cells()(0, i), other.cells()(1, i), 0);
+        const Eigen::Vector3d at = pose * Eigen::Vector3d(cells(0, i), cells(1, i), 0);
         const auto cell = cellAt(at.x(), at.y());
         const bool isBare = bare_.find(cell) != scan::VoxelIndex::kNone;
         bare += isBare;

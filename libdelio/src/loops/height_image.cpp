@@ -39,7 +39,7 @@ unsigned totalOf(const std::vector<std::uint8_t>& bands) {
 class Raster {
  public:
     Raster(const HeightImage& image, Eigen::Index margin) {
-        const auto& cells = image.cells();
+        const auto cells = image.cells();
         if (cells.cols() == 0) return;
         const Eigen::Vector2d low = cells.rowwise().minCoeff(), high = cells.rowwise().maxCoeff();
         x0_ = indexOf(low.x()) - margin;
@@ -134,6 +134,9 @@ double lowest(std::vector<float>& heights) {
     return static_cast<double>(*tenth);
 }
 
+Eigen::Matrix<std::int16_t, 2, Eigen::Dynamic> halvesOf(const Eigen::Matrix2Xd& centres) {
+    return (centres * 2 / HeightImage::kCell_m).array().round().cast<std::int16_t>();
+}
 }  // namespace
 
 HeightImage::HeightImage(const Eigen::Matrix3Xf& points) {
@@ -169,14 +172,16 @@ HeightImage::HeightImage(const Eigen::Matrix3Xf& points) {
         }
         bands_[number] = static_cast<std::uint8_t>(bands_[number] | band);
     }
-    cells_.resize(2, static_cast<Eigen::Index>(centres.size()));
+    Eigen::Matrix2Xd all(2, static_cast<Eigen::Index>(centres.size()));
     for (std::size_t i = 0; i < centres.size(); ++i)
-        cells_.col(static_cast<Eigen::Index>(i)) = centres[i];
+        all.col(static_cast<Eigen::Index>(i)) = centres[i];
+    halves_ = halvesOf(all);
+    bands_.shrink_to_fit();
 }
 
-HeightImage::HeightImage(Eigen::Matrix2Xd cells, std::vector<std::uint8_t> bands,
+HeightImage::HeightImage(const Eigen::Matrix2Xd& cells, std::vector<std::uint8_t> bands,
                          Eigen::Matrix2Xd grounds, std::vector<double> heights)
-    : cells_(std::move(cells)),
+    : halves_(halvesOf(cells)),
       grounds_(std::move(grounds)),
       bands_(std::move(bands)),
       heights_(std::move(heights)) {

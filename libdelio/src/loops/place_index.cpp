@@ -27,7 +27,7 @@ struct PlaceIndex::Turned {
 
 PlaceIndex::Raster PlaceIndex::rasterOf(const HeightImage& image, double yaw, int margin) {
     Raster raster;
-    if (image.cells().cols() == 0) return raster;
+    if (image.bands().empty()) return raster;
     const Eigen::Matrix2Xi cells =
         (Eigen::Rotation2Dd(yaw).toRotationMatrix() * image.cells() / kLarge_m)
             .array()

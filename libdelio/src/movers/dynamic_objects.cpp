@@ -1,6 +1,7 @@
 #include "delio/movers/dynamic_objects.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -122,24 +123,31 @@ void DynamicObjects::unmask(const Track& track) {
     }
 }
 
-std::vector<std::uint8_t> DynamicObjects::detect(const Eigen::Matrix3Xf& points,
-                                                 const Eigen::Matrix3Xf& all,
-                                                 const Eigen::Isometry3d& pose, double stamp_s) {
-    while (!views_.empty() && stamp_s - views_.back().stamp_s > options_.memory_s)
-        views_.pop_back();
-    latest_ = {stamp_s, pose.cast<float>(), scan::RangeImage(all, options_.cell_deg), {}};
-    const auto segments = segmentsOf(points, segmentOptions_);
-    for (const auto& segment : segments) {
-        Object object{Eigen::Matrix3Xf(3, segment.points.size()),
-                      segment.box.center(),
-                      segment.box.sizes(),
-                      latest_.toMap * segment.box.center(),
-                      {},
-                      false};
+DynamicObjects::Sight DynamicObjects::see(const Eigen::Matrix3Xf& points,
+                                          const Eigen::Matrix3Xf& all) const {
+    Sight sight;
+    sight.points_ = static_cast<std::size_t>(points.cols());
+    tbb::parallel_invoke([&] { sight.image_ = scan::RangeImage(all, options_.cell_deg); },
+                         [&] { sight.segments_ = segmentsOf(points, segmentOptions_); });
+    for (const auto& segment : sight.segments_) {
+        Object object;
+        object.points.resize(3, static_cast<Eigen::Index>(segment.points.size()));
         for (std::size_t i = 0; i < segment.points.size(); ++i)
             object.points.col(static_cast<Eigen::Index>(i)) = points.col(segment.points[i]);
-        latest_.objects.push_back(std::move(object));
+        object.centre = segment.box.center();
+        object.size = segment.box.sizes();
+        sight.objects_.push_back(std::move(object));
     }
+    return sight;
+}
+
+std::vector<std::uint8_t> DynamicObjects::detect(Sight sight, const Eigen::Isometry3d& pose,
+                                                 double stamp_s) {
+    while (!views_.empty() && stamp_s - views_.back().stamp_s > options_.memory_s)
+        views_.pop_back();
+    latest_ = {stamp_s, pose.cast<float>(), std::move(sight.image_), std::move(sight.objects_)};
+    for (auto& object : latest_.objects) object.place = latest_.toMap * object.centre;
+    const auto& segments = sight.segments_;
     std::vector<std::optional<Track>> tracks(segments.size());
     std::vector<std::uint8_t> moving(segments.size());
     tbb::parallel_for(std::size_t{0}, segments.size(), [&](std::size_t i) {
@@ -152,7 +160,7 @@ std::vector<std::uint8_t> DynamicObjects::detect(const Eigen::Matrix3Xf& points,
     unmasked_.resize(3, 0);
     for (const auto& track : tracks)
         if (track) unmask(*track);
-    std::vector<std::uint8_t> result(static_cast<std::size_t>(points.cols()));
+    std::vector<std::uint8_t> result(sight.points_);
     for (std::size_t i = 0; i < segments.size(); ++i)
         for (const Eigen::Index point : segments[i].points)
             result[static_cast<std::size_t>(point)] = moving[i];

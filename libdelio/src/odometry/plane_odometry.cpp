@@ -1,5 +1,7 @@
 #include "delio/odometry/plane_odometry.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <string_view>
 
@@ -81,9 +83,10 @@ scan::VoxelNumbers PlaneOdometry::thinAll(ScanView& view) const {
 
 /** Takes what moves out of the thinned scan, whose pose is known by points. */
 void PlaneOdometry::leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
+                                           movers::DynamicObjects::Sight sight,
                                            const Eigen::Isometry3d& pose, ScanView& view) {
-    const auto dynamic = dynamics_.detect(upright_ * view.fine, upright_ * view.points,
-                                          pose * turnedBack(upright_), timeline_.sinceStart_s());
+    const auto dynamic =
+        dynamics_.detect(std::move(sight), pose * turnedBack(upright_), timeline_.sinceStart_s());
     map_.erase(dynamics_.unmasked());
     for (std::size_t i = 0; i < view.dynamic.size(); ++i)
         view.dynamic[i] = dynamic[static_cast<std::size_t>(voxels.ofPoint[i])];
@@ -200,13 +203,24 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
         return undistorted(cloud, Motion::of(motion, interval.duration_s));
     });
     const auto voxels = timed(timeOf(step, "thinning"), [&] { return thinAll(view); });
-    const auto [placed, searched] = timed(timeOf(step, "points"), [&] {
-        return placeScan(map_, view, expectation(predicted, since_s, interval.believed), options_);
+    const bool looking = options_.dynamics.enabled && !lost_;
+    movers::DynamicObjects::Sight sight;
+    Placement placement;
+    timed(timeOf(step, "points"), [&] {
+        const auto expected = expectation(predicted, since_s, interval.believed);
+        tbb::parallel_invoke([&] { placement = placeScan(map_, view, expected, options_); },
+                             [&] {
+                                 if (looking)
+                                     sight = dynamics_.see(upright_ * view.fine,
+                                                           upright_ * view.points);
+                             });
     });
-    step.searched = searched;
-    const bool detecting = options_.dynamics.enabled && !lost_ && placed.valid;
+    const PointEstimate& placed = placement.estimate;
+    step.searched = placement.searched;
+    const bool detecting = looking && placed.valid;
     if (detecting)
-        timed(timeOf(step, "dynamic"), [&] { leaveOutDynamicObjects(voxels, placed.pose, view); });
+        timed(timeOf(step, "dynamic"),
+              [&] { leaveOutDynamicObjects(voxels, std::move(sight), placed.pose, view); });
     const auto estimate = timed(timeOf(step, "planes"), [&] {
         if (!placed.valid)
             return planes::predictedEstimate(predicted, options_.registration,

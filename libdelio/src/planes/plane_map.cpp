@@ -37,7 +37,7 @@ PlaneMap::PlaneMap(const PlaneMapOptions& options, const Eigen::Vector3d& up)
     constexpr double kLevel = 0.9;  // 26 deg: what a sensor's axis and the ground are off together
     double edge = options_.voxel_size;
     for (unsigned i = 0; i < options_.levels + options_.ground_levels; ++i, edge *= 2)
-        levels_.push_back({edge, i < options_.levels ? 0 : kLevel, {}});
+        levels_.push_back({i, edge, i < options_.levels ? 0 : kLevel, {}, {}, {}});
 }
 
 double Plane::varianceAt(const Eigen::Vector3d& point) const {
@@ -46,77 +46,129 @@ double Plane::varianceAt(const Eigen::Vector3d& point) const {
            (1 + (1 + d[1] * d[1] / variances[1] + d[2] * d[2] / variances[2]) / count);
 }
 
-void PlaneMap::fit(const Level& level, Cell& cell) const {
+void PlaneMap::Sums::add(const Eigen::Vector3d& point) {
+    if (count == 0) origin = point;
+    const Eigen::Vector3d d = point - origin;
+    sum += d;
+    squares.head<3>() += d.cwiseProduct(d);
+    squares.tail<3>() += d.cwiseProduct(Eigen::Vector3d(d.y(), d.z(), d.x()));
+    ++count;
+}
+
+/** Its origin stays: what is far is forgotten by it. */
+void PlaneMap::Sums::clear() {
+    sum.setZero();
+    squares.setZero();
+    count = 0;
+}
+
+Eigen::Matrix3d PlaneMap::Sums::scatter() const {
+    Eigen::Matrix3d all;
+    all << squares[0], squares[3], squares[5],  //
+        squares[3], squares[1], squares[4],     //
+        squares[5], squares[4], squares[2];
+    return all;
+}
+
+void PlaneMap::Level::clear() {
+    cells.clear();
+    isPlane.clear();
+    planes.clear();
+}
+
+void PlaneMap::fit(Level& level, std::uint32_t number) const {
+    Sums& cell = level.cells[number];
     cell.touched = false;
     if (cell.count < options_.min_points) return;
     const Eigen::Vector3d mean = cell.sum / cell.count;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> pca;
-    pca.computeDirect(cell.squares / cell.count - mean * mean.transpose());
+    pca.computeDirect(cell.scatter() / cell.count - mean * mean.transpose());
     // Never thinner than rounding allows.
     const Eigen::Vector3d variances = pca.eigenvalues().cwiseMax(1e-9);
     const double least = options_.min_breadth * level.edge;
-    cell.isPlane = std::sqrt(variances[0]) < options_.max_thickness &&
-                   variances[0] < options_.max_flatness * variances[1] &&
-                   variances[1] > least * least &&
-                   std::abs(pca.eigenvectors().col(0).dot(up_)) >= level.steepest;
-    cell.plane = {cell.origin + mean, variances, pca.eigenvectors(),
-                  static_cast<double>(cell.count)};
+    level.isPlane[number] = std::sqrt(variances[0]) < options_.max_thickness &&
+                            variances[0] < options_.max_flatness * variances[1] &&
+                            variances[1] > least * least &&
+                            std::abs(pca.eigenvectors().col(0).dot(up_)) >= level.steepest;
+    level.planes[number] = {cell.origin + mean, pca.eigenvectors(), variances,
+                            static_cast<double>(cell.count)};
 }
 
 /** Once more, as when the last points came. */
 void PlaneMap::fitAll() {
-    for (auto& level : levels_)
-        tbb::parallel_for(std::size_t{0}, level.cells.size(), [&](std::size_t i) {
-            fit(level, level.cells[static_cast<std::uint32_t>(i)]);
-        });
+    for (auto& level : levels_) {
+        level.isPlane.assign(level.cells.size(), 0);
+        level.planes.resize(level.cells.size());
+        tbb::parallel_for(std::size_t{0}, level.cells.size(),
+                          [&](std::size_t i) { fit(level, static_cast<std::uint32_t>(i)); });
+    }
 }
 
-void PlaneMap::add(const Eigen::Matrix3Xd& points, Level& level) const {
+void PlaneMap::add(const Eigen::Matrix3Xd& points, const std::vector<std::uint64_t>& voxels,
+                   Level& level) const {
+    constexpr std::size_t kAhead = 16;
+    std::vector<std::uint32_t> numbers(voxels.size());
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+        if (i + kAhead < voxels.size())
+            level.cells.prefetch(scan::coarserKey(voxels[i + kAhead], level.number));
+        // Many points lie in the voxel of the one before.
+        const std::uint64_t key = scan::coarserKey(voxels[i], level.number);
+        const bool isSame = i > 0 && key == scan::coarserKey(voxels[i - 1], level.number);
+        numbers[i] = isSame ? numbers[i - 1] : level.cells.insert(key);
+    }
     std::vector<std::uint32_t> touched;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const Eigen::Vector3d point = points.col(i);
-        const std::uint32_t number = level.cells.insert(scan::voxelKey(point, level.edge));
-        Cell& cell = level.cells[number];
-        if (cell.count == 0) cell.origin = point;
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+        if (i + kAhead < voxels.size()) level.cells.prefetchValue(numbers[i + kAhead]);
+        Sums& cell = level.cells[numbers[i]];
         if (cell.count >= options_.max_points) continue;
-        const Eigen::Vector3d d = point - cell.origin;
-        cell.sum += d;
-        cell.squares += d * d.transpose();
-        ++cell.count;
-        if (!cell.touched) touched.push_back(number);
+        cell.add(points.col(static_cast<Eigen::Index>(i)));
+        if (!cell.touched) touched.push_back(numbers[i]);
         cell.touched = true;
     }
+    level.isPlane.resize(level.cells.size());
+    level.planes.resize(level.cells.size());
     tbb::parallel_for(std::size_t{0}, touched.size(),
-                      [&](std::size_t i) { fit(level, level.cells[touched[i]]); });
+                      [&](std::size_t i) { fit(level, touched[i]); });
 }
 
 void PlaneMap::add(const Eigen::Matrix3Xd& points) {
+    std::vector<std::uint64_t> voxels(static_cast<std::size_t>(points.cols()));
+    tbb::parallel_for(std::size_t{0}, voxels.size(), [&](std::size_t i) {
+        voxels[i] = voxelAt(points.col(static_cast<Eigen::Index>(i)));
+    });
     tbb::parallel_for(std::size_t{0}, levels_.size(),
-                      [&](std::size_t i) { add(points, levels_[i]); });
+                      [&](std::size_t i) { add(points, voxels, levels_[i]); });
 }
 
 void PlaneMap::erase(const Eigen::Matrix3Xd& points) {
-    for (std::size_t i = 0; i < options_.levels; ++i)
-        for (Eigen::Index k = 0; k < points.cols(); ++k) {
-            Cell* cell = levels_[i].cells.find(
-                scan::voxelKey(Eigen::Vector3d(points.col(k)), levels_[i].edge));
-            if (!cell) continue;
-            cell->sum.setZero();
-            cell->squares.setZero();
-            cell->count = 0;  // its origin stays: what is far is forgotten by it
-            cell->isPlane = false;
+    for (Eigen::Index k = 0; k < points.cols(); ++k) {
+        const std::uint64_t voxel = voxelAt(points.col(k));
+        for (std::size_t i = 0; i < options_.levels; ++i) {
+            auto& [number, edge, steepest, cells, isPlane, planes] = levels_[i];
+            const std::uint32_t cell = cells.numberOf(scan::coarserKey(voxel, number));
+            if (cell == scan::VoxelIndex::kNone) continue;
+            cells[cell].clear();
+            isPlane[cell] = 0;
         }
+    }
 }
 
 void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
-    for (auto& level : levels_)
-        level.cells.eraseIf(
-            [&](const Cell& cell) { return (cell.origin - centre).norm() > options_.radius; });
+    for (auto& level : levels_) {
+        const auto kept = level.cells.eraseIf(
+            [&](const Sums& cell) { return (cell.origin - centre).norm() > options_.radius; });
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            level.isPlane[i] = level.isPlane[kept[i]];
+            level.planes[i] = level.planes[kept[i]];
+        }
+        level.isPlane.resize(kept.size());
+        level.planes.resize(kept.size());
+    }
 }
 
 void PlaneMap::clear(const Eigen::Vector3d& up) {
     up_ = up;
-    for (auto& level : levels_) level.cells.clear();
+    for (auto& level : levels_) level.clear();
 }
 
 std::size_t PlaneMap::voxels() const {
@@ -128,15 +180,18 @@ std::size_t PlaneMap::voxels() const {
 std::size_t PlaneMap::planes() const {
     std::ptrdiff_t count = 0;
     for (const auto& level : levels_)
-        count += std::count_if(level.cells.begin(), level.cells.end(),
-                               [](const Cell& cell) { return cell.isPlane; });
+        count += std::count(level.isPlane.begin(), level.isPlane.end(), std::uint8_t{1});
     return static_cast<std::size_t>(count);
 }
 
-const Plane* PlaneMap::at(const Eigen::Vector3d& point) const {
+std::uint64_t PlaneMap::voxelAt(const Eigen::Vector3d& point) const {
+    return scan::voxelKey(point, levels_.front().edge);
+}
+
+const Plane* PlaneMap::inVoxel(std::uint64_t voxel) const {
     for (const auto& level : levels_) {
-        const Cell* cell = level.cells.find(scan::voxelKey(point, level.edge));
-        if (cell && cell->isPlane) return &cell->plane;
+        const std::uint32_t cell = level.cells.numberOf(scan::coarserKey(voxel, level.number));
+        if (cell != scan::VoxelIndex::kNone && level.isPlane[cell]) return &level.planes[cell];
     }
     return nullptr;
 }

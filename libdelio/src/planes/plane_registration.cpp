@@ -1,7 +1,5 @@
 #include "delio/planes/plane_registration.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -49,13 +47,13 @@ bool isAmong(const std::vector<Eigen::Isometry3d>& poses, const Eigen::Isometry3
 }
 
 /** With one kernel, until both stand still. False where they do not. */
-bool iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& known, double kernel,
+bool iterate(Matcher& matcher, const Prior& known, double kernel,
              const PlaneRegistrationOptions& options, Iterate& now) {
     auto& [pose, matches, iterations] = now;
     std::vector<Eigen::Isometry3d> passed;
     for (unsigned i = 0; i < options.max_iterations; ++i) {
         ++iterations;
-        matches = findCorrespondences(map, points, pose, kernel, options.point_sigma);
+        matches = matcher.at(pose, kernel);
         if (matches.size() < options.min_matches) return false;
         const Prior prior = known.times(varianceFactor(matches, pose, options.independent_share));
         const auto turn = rotationFromPlanes(matches, pose, prior);
@@ -68,26 +66,6 @@ bool iterate(const PlaneMap& map, const Eigen::Matrix3Xd& points, const Prior& k
         passed.push_back(pose);
     }
     return false;
-}
-
-/** How well those points that fall into voxels with a plane lie on it, 0 to 1. What is seen for the
- *  first time does not count. */
-double shareOnPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
-                     const Eigen::Isometry3d& pose, double kernel) {
-    Eigen::VectorXd fits = Eigen::VectorXd::Zero(points.cols());  // 0: no plane there
-    tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
-        const Eigen::Vector3d placed = pose * points.col(i);
-        const Plane* plane = map.at(placed);
-        if (!plane) return;
-        const double r = plane->normal().dot(placed - plane->mean) / kernel;
-        fits[i] = 1 / (1 + r * r);
-    });
-    double sum = 0, count = 0;
-    for (const double fit : fits) {
-        sum += fit;
-        count += fit > 0;
-    }
-    return count > 0 ? sum / count : 0;
 }
 
 /** Unit axes along which `information` is no better than what was known before. */
@@ -214,11 +192,12 @@ Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions
 PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
                                const Prior& prior, double kernel,
                                const PlaneRegistrationOptions& options) {
+    Matcher matcher(map, points, options.point_sigma);
     Iterate now{prior.pose, {}};
     bool converged = false;
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        converged = iterate(map, points, prior, width, options, now);
+        converged = iterate(matcher, prior, width, options, now);
         if (width <= options.last_kernel) break;
     }
     if (now.matches.size() < options.min_matches) return predictedEstimate(prior.pose, options);
@@ -226,7 +205,7 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
     settle(now.matches, now.pose, prior, options, estimate);
     estimate.rotation.iterations = now.iterations;
     estimate.rotation.converged = converged;
-    estimate.share = shareOnPlanes(map, points, now.pose, options.last_kernel);
+    estimate.share = matcher.shareAt(now.pose, options.last_kernel);
     return estimate;
 }
 }  // namespace delio::planes

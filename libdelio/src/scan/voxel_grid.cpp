@@ -21,14 +21,11 @@ VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
     VoxelNumbers result;
     result.ofPoint.reserve(static_cast<std::size_t>(points.cols()));
     // Most points lie in the voxel of the one before: a sensor gives neighbours after each other.
-    std::uint64_t latestKey = 0;
-    for (const std::uint64_t key : keys) {
-        if (!result.ofPoint.empty() && key == latestKey) {
-            result.ofPoint.push_back(result.ofPoint.back());
-            continue;
-        }
-        result.ofPoint.push_back(numbers.insert(key));
-        latestKey = key;
+    constexpr std::size_t kAhead = 16;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        if (i + kAhead < keys.size()) numbers.prefetch(keys[i + kAhead]);
+        const bool isSame = i > 0 && keys[i] == keys[i - 1];
+        result.ofPoint.push_back(isSame ? result.ofPoint.back() : numbers.insert(keys[i]));
     }
     result.voxels = static_cast<Eigen::Index>(numbers.size());
     return result;

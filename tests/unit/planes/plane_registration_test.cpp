@@ -179,6 +179,30 @@ PlaneMap mapOf(const test::Scene& scene, test::Noise& noise) {
     return map;
 }
 
+TEST(Matcher, FindsTheSameAsOneThatKnowsNoEarlierPose) {
+    test::Noise noise;
+    const PlaneMap map = mapOf(test::yard(), noise);
+    const Eigen::Matrix3Xd points =
+        scan::voxelCentroids(pointsSeenFrom(test::yard(), Eigen::Isometry3d::Identity(), noise),
+                             0.5)
+            .cast<double>();
+    constexpr double kKernel = 0.2, kPointSigma = 0.02;
+    planes::Matcher matcher(map, points, kPointSigma);
+    for (const double x : {0.0, 0.001, 0.05, 1.0, 0.3, 0.0}) {
+        const Eigen::Isometry3d pose = poseAt(x, -x / 2, 0, x / 10, 0, 0);
+        planes::Matcher anew(map, points, kPointSigma);
+        const auto found = matcher.at(pose, kKernel), wanted = anew.at(pose, kKernel);
+        ASSERT_EQ(found.size(), wanted.size());
+        EXPECT_GT(found.size(), 100U);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_EQ(found[i].point, wanted[i].point);
+            EXPECT_EQ(found[i].mean, wanted[i].mean);
+            EXPECT_EQ(found[i].weight, wanted[i].weight);
+        }
+        EXPECT_EQ(matcher.shareAt(pose, kKernel), anew.shareAt(pose, kKernel));
+    }
+}
+
 TEST(PlaneRegistration, FindsAScanInTheMap) {
     test::Noise noise;
     const PlaneMap map = mapOf(test::yard(), noise);

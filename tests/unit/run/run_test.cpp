@@ -137,8 +137,9 @@ TEST_F(ToyRun, TimesThatDoNotRise) {
 }
 
 TEST_F(ToyRun, AListenerThatThrowsLeavesWhatWasDoneBefore) {
-    for (const auto& listener : std::vector<std::shared_ptr<SlamListener>>{
-             std::make_shared<Thrower<OutOfOrder>>(), std::make_shared<Thrower<std::bad_alloc>>()}) {
+    for (const auto& listener :
+         std::vector<std::shared_ptr<SlamListener>>{std::make_shared<Thrower<OutOfOrder>>(),
+                                                    std::make_shared<Thrower<std::bad_alloc>>()}) {
         run::Run run(Options(), {});
         run.attach(listener);
         std::string fault;

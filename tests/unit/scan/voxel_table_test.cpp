@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "delio/scan/voxel_grid.h"
+#include "ring_scan.h"
 
 namespace delio::scan {
 namespace {
@@ -43,7 +46,11 @@ TEST(VoxelTable, KeepsTheRestWhenSomeAreErased) {
     forCube([&](std::uint64_t key) { table[table.insert(key)] = key; });
     const auto all = table.size();
     const auto isOdd = [](std::uint64_t key) { return key % 2 == 1; };
-    table.eraseIf(isOdd);
+    const std::uint64_t second = voxelKey(0, 0, 2);
+    const auto before = table.numberOf(second);
+    const auto staying = table.eraseIf(isOdd);
+    EXPECT_EQ(staying.size(), table.size());
+    EXPECT_EQ(staying[table.numberOf(second)], before);
     EXPECT_EQ(table.size(), all / 2);
     forCube([&](std::uint64_t key) {
         const auto* found = table.find(key);
@@ -62,6 +69,18 @@ TEST(VoxelTable, KeepsTheRestWhenSomeAreErased) {
 TEST(VoxelKey, IsTheSameByNumbersAndByPoint) {
     EXPECT_EQ(voxelKey({-0.1, 0.1, 1.2}, 0.5), voxelKey(-1, 0, 2));
     EXPECT_EQ(voxelKey({-0.5, 0.5, -1.2}, 0.5), voxelKey(-1, 1, -3));
+}
+
+TEST(VoxelKey, OfALargerVoxelFollows) {
+    test::Noise noise;
+    for (int i = 0; i < 1000; ++i) {
+        const Eigen::Vector3d a = 20 * noise.normals(), b = a + noise.normals();
+        for (unsigned level = 0; level < 6; ++level) {
+            const double large = 0.5 * std::pow(2, level);
+            EXPECT_EQ(coarserKey(voxelKey(a, 0.5), level) == coarserKey(voxelKey(b, 0.5), level),
+                      voxelKey(a, large) == voxelKey(b, large));
+        }
+    }
 }
 }  // namespace
 }  // namespace delio::scan

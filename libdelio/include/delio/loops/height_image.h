@@ -14,11 +14,11 @@ class HeightImage {
 
     explicit HeightImage(const Eigen::Matrix3Xf& points);
     /** Of what cells(), bands(), grounds() and heights() of another one gave. */
-    HeightImage(Eigen::Matrix2Xd cells, std::vector<std::uint8_t> bands, Eigen::Matrix2Xd grounds,
-                std::vector<double> heights);
+    HeightImage(const Eigen::Matrix2Xd& cells, std::vector<std::uint8_t> bands,
+                Eigen::Matrix2Xd grounds, std::vector<double> heights);
 
     /** Where something stands; x and y of the cell's centre, in metres. */
-    const Eigen::Matrix2Xd& cells() const { return cells_; }
+    Eigen::Matrix2Xd cells() const { return kCell_m / 2 * halves_.cast<double>(); }
     const std::vector<std::uint8_t>& bands() const { return bands_; }
     /** Height of the ground about that place, metres; NaN where none was seen. */
     double groundAt(double x, double y) const;
@@ -28,7 +28,9 @@ class HeightImage {
     const std::vector<double>& heights() const { return heights_; }
 
  private:
-    Eigen::Matrix2Xd cells_, grounds_;
+    /** What cells() gives, in halves of a cell: a long drive has thousands of images. */
+    Eigen::Matrix<std::int16_t, 2, Eigen::Dynamic> halves_;
+    Eigen::Matrix2Xd grounds_;
     std::vector<std::uint8_t> bands_;
     std::vector<double> heights_;
     scan::VoxelIndex groundIndex_;

@@ -34,11 +34,14 @@ class DynamicObjects {
     DynamicObjects(const DynamicObjectsOptions& options, const SegmentOptions& segments)
         : options_(options), segmentOptions_(segments) {}
 
-    /** Which of `points` belong to dynamic objects: 1 or 0 each. `all`: the whole scan, of which
-     * `points` is a thinned view (metres, sensor's frame); `pose`: sensor to map, good to a part of
-     * the margin. */
-    std::vector<std::uint8_t> detect(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xf& all,
-                                     const Eigen::Isometry3d& pose, double stamp_s);
+    /** What a scan shows while its pose is not known. */
+    class Sight;
+    /** `points`: a thinned view of `all` (metres, sensor's frame). */
+    Sight see(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xf& all) const;
+
+    /** Which of the points that see() was given belong to dynamic objects: 1 or 0 each. `pose`:
+     *  sensor to map, good to a part of the margin. */
+    std::vector<std::uint8_t> detect(Sight sight, const Eigen::Isometry3d& pose, double stamp_s);
 
     /** Where the objects that detect() told last to move were in earlier scans in which they were
      *  not told to: metres, the map's frame. */
@@ -62,9 +65,9 @@ class DynamicObjects {
     struct Object {
         Eigen::Matrix3Xf points;
         Eigen::Vector3f centre, size;
-        Eigen::Vector3f place;                    //!< the centre, in the map's frame
-        std::optional<Eigen::Vector3f> velocity;  //!< m/s, in the map's frame
-        bool isTold = false;                      //!< that it moves
+        Eigen::Vector3f place = Eigen::Vector3f::Zero();  //!< the centre, in the map's frame
+        std::optional<Eigen::Vector3f> velocity;          //!< m/s, in the map's frame
+        bool isTold = false;                              //!< that it moves
 
         template <class Archive>
         void serialize(Archive& archive) {
@@ -107,5 +110,14 @@ class DynamicObjects {
     View latest_;
     std::deque<View> views_;  //!< earlier scans, latest first
     Eigen::Matrix3Xf unmasked_;
+};
+
+class DynamicObjects::Sight {
+ private:
+    friend class DynamicObjects;
+    std::size_t points_ = 0;
+    scan::RangeImage image_;
+    std::vector<Segment> segments_;
+    Objects objects_;  //!< of the segments
 };
 }  // namespace delio::movers

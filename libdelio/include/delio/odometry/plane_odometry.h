@@ -38,7 +38,8 @@ class PlaneOdometry : public Odometry {
     void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
     void processNext(const scan::PointCloud& cloud, const Interval& interval, Step& step);
     scan::VoxelNumbers thinAll(ScanView& view) const;
-    void leaveOutDynamicObjects(const scan::VoxelNumbers& voxels, const Eigen::Isometry3d& pose,
+    void leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
+                                movers::DynamicObjects::Sight sight, const Eigen::Isometry3d& pose,
                                 ScanView& view);
     Expectation expectation(const Eigen::Isometry3d& predicted, double since_s,
                             bool believed) const;

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "delio/planes/plane_map.h"
@@ -20,9 +21,33 @@ struct Correspondence {
 };
 using Correspondences = std::vector<Correspondence>;
 
-/** Points next to a plane of the map at `pose` (sensor to map), with robust weights (Geman-McClure
- *  of width `kernel`, metres) over the variance of plane and point. In the order of the points. */
-Correspondences findCorrespondences(const PlaneMap& map, const Eigen::Matrix3Xd& points,
-                                    const Eigen::Isometry3d& pose, double kernel,
-                                    double point_sigma);
+/** Finds them for one scan, over and over: most points stay in their voxels from one pose to the
+ *  next. */
+class Matcher {
+ public:
+    /** Map and points (metres, the sensor's frame) stay as they are while it lives. `point_sigma`:
+     *  of a measured point, metres. */
+    Matcher(const PlaneMap& map, const Eigen::Matrix3Xd& points, double point_sigma);
+
+    /** Points next to a plane of the map at `pose` (sensor to map), with robust weights
+     *  (Geman-McClure of width `kernel`, metres) over the variance of plane and point. In the order
+     *  of the points. */
+    Correspondences at(const Eigen::Isometry3d& pose, double kernel);
+
+    /** How well those points that fall into voxels with a plane lie on it at `pose`, 0 to 1. What
+     *  is seen for the first time does not count. */
+    double shareAt(const Eigen::Isometry3d& pose, double kernel);
+
+ private:
+    const Plane* planeAbout(std::size_t point, const Eigen::Vector3d& placed);
+
+    const PlaneMap& map_;
+    const Eigen::Matrix3Xd& points_;
+    double point_sigma_;
+    struct Place {
+        std::uint64_t voxel = ~std::uint64_t{0};  //!< that no point is in
+        const Plane* plane = nullptr;
+    };
+    std::vector<Place> latest_;  //!< of the points
+};
 }  // namespace delio::planes

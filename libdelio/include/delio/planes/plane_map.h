@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "delio/core/stage_options.h"
@@ -25,8 +26,8 @@ struct PlaneMapOptions : public StageOptions {
 /** The surface in one voxel. Metres, the map's frame. */
 struct Plane {
     Eigen::Vector3d mean;
-    Eigen::Vector3d variances;  //!< of the points, along the axes, rising
     Eigen::Matrix3d axes;       //!< columns; the first is the normal, of either sign
+    Eigen::Vector3d variances;  //!< of the points, along the axes, rising
     double count;               //!< of points
 
     Eigen::Vector3d normal() const { return axes.col(0); }
@@ -60,7 +61,11 @@ class PlaneMap {
 
     /** The plane of the smallest voxel about `point` that has one, or none. Valid until the map
      *  changes. */
-    const Plane* at(const Eigen::Vector3d& point) const;
+    const Plane* at(const Eigen::Vector3d& point) const { return inVoxel(voxelAt(point)); }
+
+    /** Which of the smallest voxels a point is in, and what at() gives for all points in it. */
+    std::uint64_t voxelAt(const Eigen::Vector3d& point) const;
+    const Plane* inVoxel(std::uint64_t voxel) const;
 
     /** Drops everything, for a map in which `up` is up. */
     void clear(const Eigen::Vector3d& up);
@@ -78,27 +83,38 @@ class PlaneMap {
     }
 
  private:
-    struct Cell {
+    /** Of the points in a voxel. */
+    struct Sums {
         Eigen::Vector3d origin;  //!< the first point: sums are taken from there
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+        /** xx, yy, zz, xy, yz, zx. */
+        Eigen::Matrix<double, 6, 1> squares = Eigen::Matrix<double, 6, 1>::Zero();
         unsigned count = 0;
-        bool isPlane = false, touched = false;
-        Plane plane;
+        bool touched = false;
 
-        /** Whether it is a plane, and which, follows. */
+        void add(const Eigen::Vector3d& point);
+        void clear();
+        Eigen::Matrix3d scatter() const;
+
         template <class Archive>
         void serialize(Archive& archive) {
             archive(origin, sum, squares, count);
         }
     };
+    /** Voxels of one size. What is asked most, whether there is a plane, lies closely packed. */
     struct Level {
+        unsigned number;
         double edge;      //!< of its voxels, metres
         double steepest;  //!< least that its planes' normals look up, cosine
-        scan::VoxelTable<Cell> cells;
+        scan::VoxelTable<Sums> cells;
+        std::vector<std::uint8_t> isPlane;  //!< of the cells
+        std::vector<Plane> planes;          //!< likewise
+
+        void clear();
     };
-    void add(const Eigen::Matrix3Xd& points, Level& level) const;
-    void fit(const Level& level, Cell& cell) const;
+    void add(const Eigen::Matrix3Xd& points, const std::vector<std::uint64_t>& voxels,
+             Level& level) const;
+    void fit(Level& level, std::uint32_t number) const;
     void fitAll();
 
     PlaneMapOptions options_;

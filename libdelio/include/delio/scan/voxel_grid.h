@@ -15,6 +15,12 @@ inline std::uint64_t voxelKey(std::int64_t x, std::int64_t y, std::int64_t z) {
     };
     return part(x) << 42 | part(y) << 21 | part(z);
 }
+/** From a voxel's key that of the one, 2^levels times as large, that it is a part of; the same
+ *  number as no other of these has. */
+inline std::uint64_t coarserKey(std::uint64_t key, unsigned levels) {
+    constexpr std::uint64_t kOnes = std::uint64_t{1} << 42 | 1 << 21 | 1;
+    return key & ~(kOnes * ((std::uint64_t{1} << levels) - 1));
+}
 /** Rounded down: without SSE 4.1 std::floor is a call. */
 inline std::int64_t floorOf(double value) {
     const auto truncated = static_cast<std::int64_t>(value);

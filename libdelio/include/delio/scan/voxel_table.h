@@ -20,6 +20,9 @@ class VoxelIndex {
     /** The key's number: that of a new key is the size before. */
     std::uint32_t insert(std::uint64_t key);
 
+    /** The key will be asked for soon: memory is slow, and many keys can be waited for at once. */
+    void prefetch(std::uint64_t key) const { __builtin_prefetch(&slots_[firstSlotOf(key)]); }
+
     void clear() { *this = VoxelIndex(); }
     void reserve(std::size_t keys);
 
@@ -28,10 +31,13 @@ class VoxelIndex {
         std::uint64_t key = 0;
         std::uint32_t number = kNone;
     };
+    std::size_t firstSlotOf(std::uint64_t key) const {
+        constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;  // spreads neighbours
+        return (key * kGolden) >> shift_;
+    }
     /** Where the key is, or the free slot where it would be. There always is a free one. */
     std::size_t slotOf(std::uint64_t key) const {
-        constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;  // spreads neighbours
-        std::size_t slot = (key * kGolden) >> shift_;
+        std::size_t slot = firstSlotOf(key);
         while (slots_[slot].number != kNone && slots_[slot].key != key)
             slot = (slot + 1) & (slots_.size() - 1);
         return slot;
@@ -49,6 +55,9 @@ template <typename Value>
 class VoxelTable {
  public:
     std::size_t size() const { return values_.size(); }
+
+    /** The number of the key's value; VoxelIndex::kNone where there is none. */
+    std::uint32_t numberOf(std::uint64_t key) const { return index_.find(key); }
 
     /** Null where there is none. */
     const Value* find(std::uint64_t key) const {
@@ -73,19 +82,27 @@ class VoxelTable {
 
     Value& operator[](std::uint32_t number) { return values_[number]; }
 
+    /** Soon insert(key) is called, or the number's value wanted. */
+    void prefetch(std::uint64_t key) const { index_.prefetch(key); }
+    void prefetchValue(std::uint32_t number) const { __builtin_prefetch(&values_[number]); }
+
+    /** Gives the numbers, rising, of those that stay: they are numbered anew in this order. */
     template <typename Predicate>
-    void eraseIf(const Predicate& isGone) {
+    std::vector<std::uint32_t> eraseIf(const Predicate& isGone) {
+        std::vector<std::uint32_t> staying;
         std::size_t kept = 0;
         index_.clear();
         index_.reserve(values_.size());
         for (std::size_t i = 0; i < values_.size(); ++i) {
             if (isGone(values_[i])) continue;
             index_.insert(keys_[i]);
+            staying.push_back(static_cast<std::uint32_t>(i));
             if (kept != i) values_[kept] = std::move(values_[i]);
             keys_[kept++] = keys_[i];
         }
         values_.resize(kept);
         keys_.resize(kept);
+        return staying;
     }
 
     void clear() { *this = VoxelTable(); }
