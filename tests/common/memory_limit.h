@@ -23,9 +23,9 @@ class MemoryLimit {
     MemoryLimit(const MemoryLimit&) = delete;
     MemoryLimit& operator=(const MemoryLimit&) = delete;
 
-    /** Not under the address sanitizer, which ends the process instead. */
+    /** Not under the address and thread sanitizers, which end the process instead. */
     static constexpr bool works() {
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
         return false;
 #else
         return true;

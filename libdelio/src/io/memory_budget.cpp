@@ -9,7 +9,7 @@
 
 namespace delio::io {
 namespace {
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kWorks = false;
 #else
 constexpr bool kWorks = true;

@@ -6,7 +6,7 @@ namespace delio::io {
  *  std::bad_alloc. For what MRPT reads: it makes room for what a file claims in hundreds of places
  *  before it looks whether the file has it. The limit is the process's own (RLIMIT_DATA), so one
  *  object at a time is read under it, and others wait. It does nothing under the address
- *  sanitizer, which ends the process instead. */
+ *  and thread sanitizers, which end the process instead. */
 class MemoryBudget {
  public:
     explicit MemoryBudget(std::uint64_t bytes);
