@@ -9,8 +9,11 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -79,8 +82,30 @@ std::istream& operator>>(std::istream& in, Count& count) {
     return in;
 }
 
+namespace {
+/** Where an exception reaches nobody: in a thread of TBB's that has no memory for its own needs, or
+ *  where there is none to tell of another one. Takes none itself. */
+[[noreturn]] void endInOneLine() noexcept {
+    const auto end = [](const char* why) {
+        std::fprintf(stderr, "%s: %s\n", program_invocation_short_name, why);
+        std::_Exit(kExitFailedRun);
+    };
+    try {
+        if (const auto fault = std::current_exception()) std::rethrow_exception(fault);
+    } catch (const std::bad_alloc&) {
+        end("it takes more memory than there is");
+    } catch (const std::exception& e) {
+        end(e.what());
+    } catch (...) {
+    }
+    end("ended by an error of its own");
+    std::abort();
+}
+}  // namespace
+
 int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, TCLAP::SwitchArg& verbose,
         const std::function<int()>& body) {
+    std::set_terminate(endInOneLine);
     const PlainOutput plain;
     OneLineOutput output;
     cmd.setOutput(&output);

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 #include <utility>
 
 #include "delio/core/error.h"
@@ -59,8 +60,12 @@ PartialFolder::PartialFolder(const fs::path& folder, std::string output, const f
 }
 
 PartialFolder::~PartialFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
+    try {
+        std::error_code ignored;
+        if (!path_.empty()) fs::remove_all(path_, ignored);
+    } catch (const std::bad_alloc&) {
+        // It stays: even to remove a folder takes memory.
+    }
 }
 
 void PartialFolder::putInPlace(const std::vector<std::string>& names) {

@@ -31,8 +31,13 @@ Keeper::Keeper(const std::string& results, std::string drive)
     : folder_(fs::path(results) / kFolder), state_(folder_ / "state"), drive_(std::move(drive)) {}
 
 Keeper::~Keeper() {
-    if (writing_.valid()) writing_.wait();
-    if (begun_ && !hasState()) remove();
+    try {
+        if (writing_.valid()) writing_.wait();
+        if (begun_ && !hasState()) remove();
+    } catch (const std::exception&) {
+        // Even to remove a folder takes memory: it stays, and hasState() says that it holds
+        // nothing.
+    }
 }
 
 bool Keeper::hasState() const { return fs::exists(state_); }
