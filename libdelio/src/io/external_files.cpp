@@ -62,13 +62,17 @@ bool isTakenForGzip(const std::string& file) {
     return in && begin[0] == 0x1F && begin[1] == 0x8B && begin[2] != kDeflate;
 }
 
-/** KITTI's format, uncompressed: x, y, z and intensity of each point. */
-mrpt::maps::CPointsMap::Ptr readKittiPoints(const std::string& file) {
-    std::vector<float> floats(fs::file_size(file) / sizeof(float));
-    std::ifstream in(file, std::ios::binary);
-    in.read(reinterpret_cast<char*>(floats.data()),
-            static_cast<std::streamsize>(floats.size() * sizeof(float)));
-    if (!in) throw std::runtime_error("the file ends early");
+/** KITTI's format: x, y, z and intensity of each point, `size` bytes in all. (MRPT adds point by
+ *  point, and ends the program where there is no memory even to tell of that.) */
+mrpt::maps::CPointsMap::Ptr readKittiPoints(const std::string& file, std::uint64_t size) {
+    std::vector<float> floats(size / sizeof(float));
+    if (isTakenForGzip(file)) {
+        std::ifstream in(file, std::ios::binary);
+        in.read(reinterpret_cast<char*>(floats.data()), static_cast<std::streamsize>(size));
+        if (!in) throw std::runtime_error("the file ends early");
+    } else if (GzInput(file).Read(floats.data(), size) != size) {
+        throw std::runtime_error("the file ends early");
+    }
     auto points = mrpt::maps::CPointsMapXYZI::Create();
     points->resize(floats.size() / 4);
     for (std::size_t i = 0; i < points->size(); ++i) {
@@ -79,6 +83,7 @@ mrpt::maps::CPointsMap::Ptr readKittiPoints(const std::string& file) {
     points->mark_as_modified();
     return points;
 }
+
 /** Throws Error for a name that leads out of the folder that it is looked for in: a rawlog of
  *  somebody else's is not to choose what is read. (A link in the folder is its owner's.) */
 void refuseOutside(const fs::path& name) {
@@ -118,14 +123,14 @@ void load(CObservationPointCloud& cloud, const fs::path& file) {
     // header: only its size can tell.
     using Format = External::ExternalStorageFormat;
     const bool isKitti = External::formatOf(cloud) == Format::KittiBinFile;
-    const bool isPlain = isKitti && isTakenForGzip(file.string());
-    const auto size = isPlain ? fs::file_size(file) : unpackedSize(file.string());
+    const auto size = isKitti && isTakenForGzip(file.string()) ? fs::file_size(file)
+                                                               : unpackedSize(file.string());
     if (isKitti && size % (4 * sizeof(float)) != 0)
         throw Error("'" + file.string() + "' is cut off: its size is no multiple of 16 bytes");
     External::setFile(cloud, file.string());
     const MemoryBudget budget(MemoryBudget::ofWholeFile(fs::file_size(file)));
-    if (isPlain)
-        cloud.pointcloud = readKittiPoints(file.string());
+    if (isKitti)
+        cloud.pointcloud = readKittiPoints(file.string(), size);
     else if (External::formatOf(cloud) == Format::MRPT_Serialization)
         cloud.pointcloud = readCloud(file.string());
     else
