@@ -11,8 +11,8 @@
  * they asked for is there, and write to it. What a program is made of goes before what libraries
  * have; it stands here, among what every program takes. */
 void* mrpt::aligned_malloc(std::size_t size, std::size_t alignment) {
-    void* const memory = std::aligned_alloc(alignment, size);
-    if (!memory && size > 0) throw std::bad_alloc();
+    void* memory = nullptr;
+    if (posix_memalign(&memory, alignment, size) != 0) throw std::bad_alloc();
     return memory;
 }
 
