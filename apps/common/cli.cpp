@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -87,7 +88,8 @@ namespace {
  *  where there is none to tell of another one. Takes none itself. */
 [[noreturn]] void endInOneLine() noexcept {
     const auto end = [](const char* why) {
-        std::fprintf(stderr, "%s: %s\n", program_invocation_short_name, why);
+        std::fprintf(stderr, "%s: %.*s\n", program_invocation_short_name,
+                     static_cast<int>(std::strcspn(why, "\n")), why);
         std::_Exit(kExitFailedRun);
     };
     try {

@@ -62,8 +62,7 @@ TEST(LargeFiles, BagHasItsIndexBehindFourGigabytes) {
     // Two records of a kind that is passed over, before the first chunk.
     const std::size_t start = 13 + 4096 + 8;
     constexpr std::uint32_t kHole = kLarge / 2;
-    std::string passedOver("\x04\0\0\0\x04\0\0\0op=\x04", 12);
-    passedOver[0] = 8;
+    std::string passedOver("\x08\0\0\0\x04\0\0\0op=\x04", 12);
     passedOver += std::string(reinterpret_cast<const char*>(&kHole), sizeof(kHole));
     index += 2 * (passedOver.size() + kHole);
     std::string begin = whole.substr(0, start);
