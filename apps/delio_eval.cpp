@@ -80,15 +80,7 @@ std::vector<ReportRow> rowsOf(const std::vector<evaluation::Comparison>& compari
 
 /** What the user asks for. */
 struct CommandLine {
-    TCLAP::CmdLine cmd{
-        "Scores trajectories against a reference: KITTI's translation error (percent) and rotation "
-        "error (deg/100 m), both means over segments; APE (RMSE in metres after rigid alignment, "
-        "no scale); RPE (RMSE over --delta poses, metres and degrees). '-' stands for a figure "
-        "that the drive is too short for. Poses of TUM files are matched by time (within 0.02 s), "
-        "all others by row. For two folders, every NN.txt in both is one sequence, and a row 'avg' "
-        "follows: the plain mean of the sequences' errors, as in papers on KITTI, with the sums of "
-        "lengths and segments.",
-        ' ', kVersion};
+    TCLAP::CmdLine cmd{"errors of trajectories against a reference", ' ', kVersion};
     TCLAP::ValueArg<std::string> reference{
         "r",  "ref", "Reference: a pose file (KITTI or TUM), or a folder of them (NN.txt)",
         true, "",    "REF.txt|DIR",
@@ -97,7 +89,7 @@ struct CommandLine {
         "e",
         "est",
         "Estimate: a pose file, a folder that delio-slam has written, or, if --ref is a folder, a "
-        "folder of pose files or of such folders; may be given again",
+        "folder of pose files or of such folders",
         true,
         "[NAME=]EST.txt|DIR",
         cmd};
@@ -111,31 +103,22 @@ struct CommandLine {
         "calib.txt",
         cmd};
     LengthsConstraint lengthsConstraint;
-    TCLAP::ValueArg<std::string> lengths{
-        "l",
-        "lengths",
-        "Lengths of KITTI's segments in metres (default 100,200,...,800)",
-        false,
-        textOf(evaluation::kittiLengths_m()),
-        &lengthsConstraint,
-        cmd};
+    TCLAP::ValueArg<std::string> lengths{"l",
+                                         "lengths",
+                                         "Lengths of KITTI's segments in metres",
+                                         false,
+                                         textOf(evaluation::kittiLengths_m()),
+                                         &lengthsConstraint,
+                                         cmd};
     DeltaConstraint deltaConstraint;
-    TCLAP::ValueArg<int> delta{
-        "d", "delta", "Poses that RPE spans (default 1)", false, 1, &deltaConstraint, cmd};
+    TCLAP::ValueArg<int> delta{"d", "delta", "Poses that RPE spans", false, 1, &deltaConstraint,
+                               cmd};
     std::vector<std::string> formats{"table", "tsv"};
     TCLAP::ValuesConstraint<std::string> formatsConstraint{formats};
-    TCLAP::ValueArg<std::string> format{"f",   "format", "Form of the results (default table)",
-                                        false, "table",  &formatsConstraint,
-                                        cmd};
+    TCLAP::ValueArg<std::string> format{
+        "f", "format", "Form of the results", false, "table", &formatsConstraint, cmd};
     TCLAP::ValueArg<std::string> output{
-        "o",
-        "output",
-        "Folder for the report: report.html (one page, pictures inside), plots/ (SVG, PNG, data, "
-        "gnuplot scripts), metrics.tsv, lengths.tsv; needs gnuplot",
-        false,
-        "",
-        "REPORT_DIR",
-        cmd};
+        "o", "output", "Folder for the report; needs gnuplot", false, "", "REPORT_DIR", cmd};
     TCLAP::SwitchArg sameFrame{"", "same-frame",
                                "Reference and estimate are in one frame (a drive that was "
                                "localised in a stored map, and a reference in that map): say how "
@@ -214,9 +197,31 @@ int evaluate(CommandLine& line) {
     if (!std::cout.flush()) throw Error("cannot write the results to stdout");
     return cli::kExitSuccess;
 }
+
+cli::HelpText help() {
+    cli::HelpText help;
+    help.about =
+        "KITTI's translation error (percent) and rotation "
+        "error (deg/100 m), both means over segments; APE (RMSE in metres after rigid alignment, "
+        "no scale); RPE (RMSE over --delta poses, metres and degrees). '-' stands for a figure "
+        "that the drive is too short for. Poses of TUM files are matched by time (within 0.02 s), "
+        "all others by row. For two folders, every NN.txt in both is one sequence, and a row 'avg' "
+        "follows: the plain mean of the sequences' errors, as in papers on KITTI, with the sums of "
+        "lengths and segments.";
+    help.writes = {{"standard output", "a row of errors an estimate and sequence"},
+                   {"report.html", "with -o: one page, pictures inside"},
+                   {"plots/", "with -o: SVG, PNG, data, gnuplot scripts"},
+                   {"metrics.tsv, lengths.tsv", "with -o: the errors, and by length of segments"}};
+    help.examples = {{{"delio-eval -r dataset/poses/07.txt -e 07-results -o 07-report",
+                       "A drive of KITTI, with a report"},
+                      {"delio-eval -r dataset/poses -e ours=results -e theirs=others -f tsv",
+                       "Two estimates of several sequences"}}};
+    help.interrupted = "what was there stays as it was";
+    return help;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
     CommandLine line;
-    return cli::run(line.cmd, argc, argv, line.verbose, [&] { return evaluate(line); });
+    return cli::run(line.cmd, help(), argc, argv, line.verbose, [&] { return evaluate(line); });
 }

@@ -13,6 +13,7 @@
 #include "delio/slam/options.h"
 #include "delio/surfaces/surfaces.h"
 #include "delio/version.h"
+#include "option_sections.h"
 #include "overlap.h"
 
 namespace {
@@ -144,23 +145,43 @@ PaperOdometryOptions optionsFor(const std::string& profile, const io::ScanReader
     options.check();
     return options.paper;
 }
+
+cli::HelpText help() {
+    cli::HelpText help;
+    help.about = "Four scans that follow each other are shown.";
+    help.sections = cli::optionSections(stagesOf(Options::ofProfile("paper")));
+    help.sections.erase(help.sections.begin());  // the choice of an odometry: there is none
+    help.writes = {{"normals_sphere", "the pattern of the normals on the sphere, of each scan"},
+                   {"outlier_removal", "the same of the first scan, after each round"},
+                   {"line_cloud", "the lines of the first scan"},
+                   {"line_matches_before", "matched lines of two scans before registration"},
+                   {"line_matches_after", "and after it; each as .png and as .3Dscene"}};
+    help.examples = {{{"delio-figures -i 07.rawlog -o figures --scan 100", "Of scans 100 to 103"},
+                      {"delio-figures -i 07.rawlog -o few --set outlier_removal.rounds=1",
+                       "With one round of outlier removal"}}};
+    help.interrupted = "what was there stays as it was";
+    return help;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
-    TCLAP::CmdLine cmd("delio-figures: pictures of the stages, made of scans of a recording", ' ',
+    TCLAP::CmdLine cmd("the paper's pictures of the stages, made of scans of a recording", ' ',
                        kVersion);
     using Text = TCLAP::ValueArg<std::string>;
     Text input("i", "input", "Recording to read: see delio-slam", true, "", "IN", cmd);
     Text output("o", "output", "Folder for the figures", true, "", "OUTDIR", cmd);
     TCLAP::ValueArg<cli::Count> scan("", "scan", "First of the scans that are shown, from 0", false,
                                      {}, "N", cmd);
-    Text profile("", "profile", "accurate, paper or paper-literal", false, "paper", "NAME", cmd);
-    TCLAP::MultiArg<std::string> set("", "set", "One option; may be repeated", false,
-                                     "section.key=value", cmd);
+    Text profile("", "profile", "What all options are that are not set", false, "paper",
+                 cli::profileChoice(), cmd);
+    TCLAP::MultiArg<std::string> set("", "set",
+                                     "One option of a section below; delio-slam --profile paper "
+                                     "--print-config prints all of them",
+                                     false, "section.key=value", cmd);
     TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
     TCLAP::SwitchArg verbose("", "verbose", "All the text of errors", cmd);
 
-    return cli::run(cmd, argc, argv, verbose, [&] {
+    return cli::run(cmd, help(), argc, argv, verbose, [&] {
         checkFiles(input.getValue(), output.getValue(), force.getValue());
         const auto reader = io::openScans(input.getValue());
         PaperOdometryOptions options;

@@ -106,9 +106,7 @@ struct Arguments {
 };
 
 Arguments::Arguments()
-    : cmd("Writes a map as another kind of file, all of it or a part, in its own frame or another "
-          "one.",
-          ' ', kVersion),
+    : cmd("a map as another kind of file, a part of it, in another frame", ' ', kVersion),
       input("i", "input", "Map to read: the folder of a delio-slam run, or a file", true, "",
             "FOLDER|FILE.delio|FILE.ply|FILE.pcd|FILE.simplemap", cmd),
       output("o", "output",
@@ -116,19 +114,15 @@ Arguments::Arguments()
              "", "OUT.ply|.pcd|.3Dscene|.html|.gridmap|.yaml", cmd),
       crop("", "crop", "Keep what lies in this box, metres in the frame of OUT", false, "", &boxes,
            cmd),
-      spacing("", "spacing", "Keep one point in so many metres (default 0: all)", false, 0,
-              &spacings, cmd),
-      colourBy("", "color-by", "What the colours say (default height)", false, "height", &values,
-               cmd),
-      colormap("", "colormap", "Colours of the points (default turbo)", false, "turbo", &colormaps,
-               cmd),
-      resolution("", "resolution", "Cells of a grid (default 0.1)", false, 0.1, &lengths, cmd),
+      spacing("", "spacing", "Keep one point in so many metres; 0: all", false, 0, &spacings, cmd),
+      colourBy("", "color-by", "What the colours say", false, "height", &values, cmd),
+      colormap("", "colormap", "Colours of the points", false, "turbo", &colormaps, cmd),
+      resolution("", "resolution", "Cells of a grid", false, 0.1, &lengths, cmd),
       height("", "height",
              "Of what a grid is for: what is higher above the ground, or below 0.3 m, is not in "
-             "the way (default 2)",
+             "the way",
              false, 2, &lengths, cmd),
-      frame("", "frame",
-            "map: as it is (default); ground: level, z = 0 on the ground under the first pose",
+      frame("", "frame", "map: as it is; ground: level, z = 0 on the ground under the first pose",
             false, "map", &frames, cmd),
       georeference("", "georeference",
                    "East, north, up in metres from the first pose, which is at this latitude and "
@@ -235,11 +229,27 @@ void convert(Arguments& asked) {
     write(map, output, asked.options(), outFromMap, place);
     say("wrote " + std::to_string(map.points.size()) + " points as '" + output + "'");
 }
+
+cli::HelpText help() {
+    cli::HelpText help;
+    help.writes = {
+        {"OUT",
+         "the map: points (.ply, .pcd), a scene of MRPT's (.3Dscene), a page for a browser "
+         "(.html), a grid of MRPT's (.gridmap) or ROS's (.yaml, with its image, .pgm)"},
+        {"OUT.frame.yaml",
+         "with --frame ground or --georeference: where the map's frame is in that of OUT"}};
+    help.examples = {
+        {{"delio-map -i 07-results -o 07.pcd --frame ground --spacing 0.5",
+          "Level, on the ground, thinned out"},
+         {"delio-map -i 07-results -o 07.yaml --resolution 0.2", "A grid for ROS's map_server"}}};
+    help.interrupted = "what was there stays as it was";
+    return help;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
     Arguments asked;
-    return cli::run(asked.cmd, argc, argv, asked.verbose, [&] {
+    return cli::run(asked.cmd, help(), argc, argv, asked.verbose, [&] {
         const std::string fault = asked.fault();
         if (!fault.empty()) {
             cli::inform(fault + "; see --help");

@@ -73,7 +73,7 @@ void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double 
             // A fault in a scan that is not wanted is none: the last one is not read beyond.
             std::future<Reading> next;
             if (done != count) next = std::async(policy, [&] { return read(reader, passedOver); });
-            const auto& row = run.process(*now.scan, read_ms);
+            const auto row = run.process(*now.scan, read_ms);
             if (line.verbose.getValue()) cli::inform(describe(row));
             const bool isStopped = cli::interrupted();
             keep(keeper, run, isStopped);
@@ -146,6 +146,7 @@ std::string finish(const std::string& input, const std::string& folder, run::Run
         run.fail("no scan of '" + input +
                  "' could be used: " + record.rows.front().report.step.reason);
     run.finish(record.fault.empty() && !cli::interrupted());
+    malloc_trim(0);  // pictures take a lot
     const std::string fault = run::RunFolder(folder).write(
         record, anyUsed ? run.maps() : run::RunMaps{}, picture::illustrate);
     printTable(record, folder, std::cout);
@@ -261,8 +262,8 @@ int main(int argc, char** argv) {
     const bool runs = std::none_of(
         argv, argv + argc, [](const char* word) { return std::string(word) == "--print-config"; });
     SlamCommandLine line(runs);
-    const int exitCode =
-        cli::run(line.cmd, argc, argv, line.verbose, [&] { return slam(line, argc, argv); });
+    const int exitCode = cli::run(line.cmd, slamHelp(), argc, argv, line.verbose,
+                                  [&] { return slam(line, argc, argv); });
     if (line.gui.getValue()) {
         // All is written. MRPT 2.5.8's window thread crashes now and then when the program's end
         // takes its objects away from under it, so they stay.

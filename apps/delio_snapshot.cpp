@@ -129,19 +129,19 @@ struct Arguments {
 };
 
 Arguments::Arguments()
-    : cmd("Renders a picture of a map or scene; no display is needed.", ' ', delio::kVersion),
+    : cmd("a picture of a map or a scene, without a display", ' ', delio::kVersion),
       input("i", "input", "Map or scene to show", true, "",
             "FILE.3Dscene|FILE.simplemap|FILE.delio|FILE.ply|FILE.pcd", cmd),
       output("o", "output", "Picture to write", true, "", "OUT.png", cmd),
-      size("", "size", "Pixels (default 1920x1080)", false, "1920x1080", &sizes, cmd),
+      size("", "size", "Of the picture", false, "1920x1080", &sizes, cmd),
       azimuth("", "azimuth",
               "Where the camera stands: 0 on the side of +x, 90 of +y (default: "
               "such that the longer side lies across the picture)",
               false, 0, &degrees, cmd),
-      elevation("", "elevation",
-                "Of the camera above the horizon; 90 looks straight down "
-                "(default 55, with --ortho 90)",
-                false, 55, &elevations, cmd),
+      elevation(
+          "", "elevation",
+          "Of the camera above the horizon; 90, which --ortho begins with, looks straight down",
+          false, 55, &elevations, cmd),
       zoom("", "zoom", "Metres across the picture (default: everything)", false, 0, &metres, cmd),
       ortho("", "ortho", "Parallel projection with a scale bar, from above", cmd),
       pointSize("", "point-size",
@@ -150,16 +150,16 @@ Arguments::Arguments()
                 false, 0, &pixels, cmd),
       shading("", "shading",
               "How much points are darkened beside nearer ones, so that edges and "
-              "shapes show (default 1; 0: not at all)",
+              "shapes show; 0: not at all",
               false, 1, &strengths, cmd),
-      colormap("", "colormap", "Colours of the points (default turbo)", false, "turbo", &colormaps,
-               cmd),
-      colourBy("", "color-by", "What the colours say (default height)", false, "height", &values,
-               cmd),
+      colormap("", "colormap", "Colours of the points", false, "turbo", &colormaps, cmd),
+      colourBy("", "color-by", "What the colours say", false, "height", &values, cmd),
       background("", "background", "Colour behind (default: the scene's)", false, "", &colours,
                  cmd),
-      frames("", "orbit", "Write N pictures around the content: OUT_000.png ...", false, {}, "N",
-             cmd),
+      frames(
+          "", "orbit",
+          "Write N pictures around the content, 1 to 1000: OUT_000.png ...; default: one, OUT.png",
+          false, {}, "N", cmd),
       force("", "force", "Overwrite an existing picture", cmd),
       verbose("", "verbose", "Say more about what is done and what went wrong", cmd) {}
 
@@ -224,11 +224,23 @@ void render(Arguments& asked) {
     save(*scene, asked.view(), asked.output.getValue(), files);
     for (const auto& file : files) say("wrote '" + file + "'");
 }
+
+delio::cli::HelpText help() {
+    delio::cli::HelpText help;
+    help.writes = {{"OUT.png", "the picture"},
+                   {"OUT_000.png ...", "with --orbit: each from another side"}};
+    help.examples = {
+        {{"delio-snapshot -i 07-results/map.3Dscene -o 07.png --azimuth 30", "From the side"},
+         {"delio-snapshot -i 07.ply -o top.png --ortho --color-by intensity",
+          "From above, with a scale bar"}}};
+    help.interrupted = "what was there stays as it was";
+    return help;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
     Arguments asked;
-    return delio::cli::run(asked.cmd, argc, argv, asked.verbose, [&] {
+    return delio::cli::run(asked.cmd, help(), argc, argv, asked.verbose, [&] {
         const unsigned count = asked.frames.getValue();
         if (asked.frames.isSet() && (count < 1 || count > 1000)) {
             delio::cli::inform("--orbit takes 1 to 1000 pictures; see --help");

@@ -1,11 +1,13 @@
 #include "slam_command_line.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 
 #include "delio/core/error.h"
+#include "delio/run/run_folder.h"
 #include "initial_pose.h"
 
 namespace delio {
@@ -21,6 +23,49 @@ std::string textOf(const std::string& path) {
     return text.str();
 }
 }  // namespace
+
+cli::HelpText slamHelp() {
+    using Folder = run::RunFolder;
+    cli::HelpText help;
+    help.about =
+        "True poses are found where KITTI keeps them. The same input gives the same bytes for any "
+        "--threads.";
+    help.sections = cli::optionSections(Options::ofProfile("accurate").stages());
+    const auto isThere = [&](const cli::HelpText::Row& row) {
+        return std::any_of(help.sections.begin(), help.sections.end(),
+                           [&](const auto& other) { return other.name == row.name; });
+    };
+    for (auto& row : cli::optionSections(Options::ofProfile("paper").stages()))
+        if (!isThere(row)) help.sections.push_back({row.name, "profile paper: " + row.meaning});
+    const auto both = [](const std::string& one, const std::string& other) {
+        return one + ", " + other;
+    };
+    help.writes = {
+        {Folder::kTrajectory, "final poses, 12 numbers a line"},
+        {both(Folder::kOdometry, Folder::kOdometryCam0), "poses before the pose graph"},
+        {Folder::kCam0, "final poses in KITTI's cam0 frame"},
+        {Folder::kTum, "final poses as t x y z qx qy qz qw"},
+        {both(Folder::kGraph, Folder::kMrptGraph), "the pose graph"},
+        {both(Folder::kPly, Folder::kScene), "the map: points, scene for SceneViewer3D"},
+        {Folder::kMapPage, "the map as a page for a browser"},
+        {Folder::kStoredMap, "the map to come back to, for --map"},
+        {Folder::kSimplemap, "keyframes with their points, for MRPT's programs"},
+        {both(Folder::kMapPicture, Folder::kTrajectoryPicture), "pictures"},
+        {Folder::kRemovalPicture, "what moved and was taken out of the map"},
+        {Folder::kDynamicPly, "its points, with --keep-dynamic"},
+        {Folder::kScans, "a row a scan: times, quality, why it was predicted"},
+        {Folder::kLoops, "a row a pair of places that was compared"},
+        {Folder::kLocalisation, "with --map: where in that map each scan was"},
+        {Folder::kJoints, "with --extend: the edges between the two maps"},
+        {Folder::kSummary, "the run in numbers"},
+        {Folder::kConfig, "every option that had an effect, for -c"},
+    };
+    help.examples = {{{"delio-slam -i dataset/sequences/07 -o 07-results", "A sequence of KITTI"},
+                      {"delio-slam -i b.bag -o b --sensor-label /points --map 07-results",
+                       "Where in that map was another drive"}}};
+    help.interrupted = "what was done is written, --resume goes on from there";
+    return help;
+}
 
 Options optionsFor(SlamCommandLine& line, const std::optional<io::DriveMeta>& meta) {
     Options options = Options::forDrive(line.profile.getValue(), meta);

@@ -10,6 +10,7 @@
 #include "delio/io/scan_reader.h"
 #include "delio/run/run.h"
 #include "delio/version.h"
+#include "option_sections.h"
 
 namespace delio {
 /** What delio-slam is asked for. */
@@ -28,16 +29,24 @@ struct SlamCommandLine {
               runs, "IN", cmd),
           output("o", "output", "Folder for the results", runs, "", "OUTDIR", cmd) {}
 
-    TCLAP::CmdLine cmd{"delio-slam: LiDAR odometry, pose graph and map of a recording", ' ',
-                       kVersion};
+    TCLAP::CmdLine cmd{"LiDAR odometry, pose graph and map of a recording", ' ', kVersion};
     TCLAP::MultiArg<std::string> input;
     Text output;
-    Text profile{"", "profile", "accurate, paper or paper-literal", false, "accurate", "NAME", cmd};
+    Text profile{"",    "profile",  "What all options are that are not set",
+                 false, "accurate", cli::profileChoice(),
+                 cmd};
     Text config{"c",          "config", "Options that differ from the profile's", false, "",
                 "CONFIG.ini", cmd};
     TCLAP::MultiArg<std::string> set{
-        "", "set", "One option; may be repeated", false, "section.key=value", cmd};
-    Switch printConfig{"", "print-config", "Print all options with their meanings, and end", cmd};
+        "",
+        "set",
+        "One option of a section below; --print-config prints all of them",
+        false,
+        "section.key=value",
+        cmd};
+    Switch printConfig{
+        "", "print-config",
+        "Print all options with their meanings, and end; takes neither --input nor --output", cmd};
     Number start{"", "start", "First scan, from 0", false, {}, "N", cmd};
     Number count{"", "count", "How many scans to use at most; 0: all", false, {}, "N", cmd};
     Number every{"", "every", "Use every N-th scan only", false, {1}, "N", cmd};
@@ -99,6 +108,9 @@ struct SlamCommandLine {
     Switch force{"", "force", "Overwrite what exists", cmd};
     Switch verbose{"", "verbose", "A line for each scan, and all the text of errors", cmd};
 };
+
+/** The rest of its --help. */
+cli::HelpText slamHelp();
 
 /** From the weakest to the strongest: the profile, what the drive says of itself, -c, --set. Throws
  *  Error where one of them is not understood. */

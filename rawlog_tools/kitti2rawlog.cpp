@@ -39,8 +39,7 @@ std::string joined(const std::vector<std::string>& rows) {
     return text;
 }
 struct Arguments {
-    TCLAP::CmdLine cmd{"kitti2rawlog: a KITTI odometry sequence or raw drive as an MRPT rawlog",
-                       ' ', kVersion};
+    TCLAP::CmdLine cmd{"a KITTI odometry sequence or raw drive as an MRPT rawlog", ' ', kVersion};
     TCLAP::ValueArg<std::string> input{
         "i", "input", "Folder of the sequence or of the raw drive", true, "", "SEQUENCE_DIR", cmd};
     TCLAP::ValueArg<std::string> output{"o",          "output", "Rawlog to write", true, "",
@@ -111,9 +110,23 @@ int convert(Arguments& args) {
     cli::inform("wrote " + std::to_string(writer.scans()) + " scans to '" + output + "'");
     return cli::kExitSuccess;
 }
+
+cli::HelpText help() {
+    cli::HelpText help;
+    help.writes = {{"OUT.rawlog", "a CObservationPointCloud a scan"},
+                   {"OUT_Images/", "their points, x y z intensity as float32 (not with --embed)"},
+                   {"OUT.times.txt, OUT.calib.txt, OUT.poses.txt", "what KITTI has of them"},
+                   {"OUT.meta.yaml", "the sensor, and what was done to the points"}};
+    help.examples = {{{"kitti2rawlog -i dataset/sequences/07 -o 07.rawlog --link",
+                       "A sequence, without a copy of its points"},
+                      {"kitti2rawlog -i 2011_09_26_drive_0005_sync -o 5.rawlog --count 60",
+                       "The begin of a raw drive"}}};
+    help.interrupted = "nothing is written";
+    return help;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
     Arguments args;
-    return cli::run(args.cmd, argc, argv, args.verbose, [&] { return convert(args); });
+    return cli::run(args.cmd, help(), argc, argv, args.verbose, [&] { return convert(args); });
 }

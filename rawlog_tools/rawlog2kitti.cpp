@@ -40,8 +40,7 @@ void write(const io::PartialFolder& partial, const fs::path& target, const std::
 }
 
 struct Arguments {
-    TCLAP::CmdLine cmd{"rawlog2kitti: the LiDAR scans of a rawlog as a KITTI odometry sequence",
-                       ' ', kVersion};
+    TCLAP::CmdLine cmd{"the LiDAR scans of a rawlog as a KITTI odometry sequence", ' ', kVersion};
     TCLAP::ValueArg<std::string> input{"i", "input", "Rawlog to read", true, "", "IN.rawlog", cmd};
     TCLAP::ValueArg<std::string> output{"o", "output", "Folder to make", true, "", "SEQUENCE_DIR",
                                         cmd};
@@ -159,9 +158,21 @@ int convert(Arguments& args) {
     sequence.finish(args.input.getValue());
     return cli::kExitSuccess;
 }
+
+cli::HelpText help() {
+    cli::HelpText help;
+    help.writes = {{"velodyne/NNNNNN.bin", "points of a scan, x y z intensity as float32"},
+                   {"times.txt", "seconds, a row a scan"},
+                   {"calib.txt, poses.txt", "those beside the rawlog, where there are any"}};
+    help.examples = {
+        {{"rawlog2kitti -i 07.rawlog -o sequences/07", "A drive"},
+         {"rawlog2kitti -i two.rawlog -o sequences/08 --sensor-label rear", "One of two sensors"}}};
+    help.interrupted = "nothing is written";
+    return help;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
     Arguments args;
-    return cli::run(args.cmd, argc, argv, args.verbose, [&] { return convert(args); });
+    return cli::run(args.cmd, help(), argc, argv, args.verbose, [&] { return convert(args); });
 }

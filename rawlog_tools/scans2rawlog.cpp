@@ -21,12 +21,16 @@ using Text = TCLAP::ValueArg<std::string>;
 using Number = TCLAP::ValueArg<cli::Count>;
 
 struct Arguments {
-    TCLAP::CmdLine cmd{
-        "scans2rawlog: a recording of a LiDAR (KITTI or other folder, ROS bag, mcap, "
-        "pcap, rawlog) as an MRPT rawlog with its side files",
-        ' ', kVersion};
-    Text input{"i",  "input", "Recording to read; \"-\": a rawlog or pcap from a pipe", true, "",
-               "IN", cmd};
+    TCLAP::CmdLine cmd{"a recording of a LiDAR as an MRPT rawlog with its side files", ' ',
+                       kVersion};
+    Text input{"i",
+               "input",
+               "Recording to read: rawlog, KITTI folder, folder of clouds, ROS bag, mcap, pcap, or "
+               "\"-\" for a rawlog or pcap from a pipe",
+               true,
+               "",
+               "IN",
+               cmd};
     Text output{"o", "output", "Rawlog to write", true, "", "OUT.rawlog", cmd};
     Text sensor{"", "sensor-label", "Sensor to take: see delio-slam", false, "", "L", cmd};
     Text sensorInfo{
@@ -165,9 +169,25 @@ int convert(Arguments& args) {
     cli::inform("wrote " + std::to_string(scans) + " scans to '" + output + "'");
     return cli::kExitSuccess;
 }
+
+cli::HelpText help() {
+    cli::HelpText help;
+    help.writes = {{"OUT.rawlog", "a CObservationPointCloud a scan"},
+                   {"OUT_Images/",
+                    "their points, x y z intensity as float32 (not with --embed); their rings and "
+                    "times, where they have any"},
+                   {"OUT.times.txt", "seconds, a row a scan"},
+                   {"OUT.calib.txt, OUT.poses.txt", "where the recording has them"},
+                   {"OUT.meta.yaml", "the sensor, and what was done to the points"}};
+    help.examples = {{{"scans2rawlog -i drive.mcap -o drive.rawlog", "A ROS bag for RawLogViewer"},
+                      {"scans2rawlog -i drive.pcap -o drive.rawlog --sensor-info sensor.json",
+                       "Packets of an Ouster"}}};
+    help.interrupted = "nothing is written";
+    return help;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
     Arguments args;
-    return cli::run(args.cmd, argc, argv, args.verbose, [&] { return convert(args); });
+    return cli::run(args.cmd, help(), argc, argv, args.verbose, [&] { return convert(args); });
 }

@@ -24,17 +24,21 @@ std::optional<SensorModel> findSensor(const std::string& option) {
     return std::nullopt;
 }
 
-std::string listed(const std::vector<std::string>& names) {
+std::string listed(const std::vector<std::string>& names, const std::string& separator = ", ") {
     std::string list;
-    for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
+    for (const auto& name : names) list += (list.empty() ? "" : separator) + name;
     return list;
 }
 
-std::string sensorOptions() {
+std::string choiceOf(const std::vector<std::string>& names) { return listed(names, "|"); }
+
+std::vector<std::string> sensorNames() {
     std::vector<std::string> names;
     for (const auto& model : sensorModels()) names.push_back(model.option);
-    return listed(names);
+    return names;
 }
+
+std::string sensorOptions() { return listed(sensorNames()); }
 
 std::string sceneOptions() { return listed(sceneNames()); }
 
@@ -57,12 +61,11 @@ bool isOneOf(const std::vector<std::string>& names, const std::string& name) {
 
 /** The command line. */
 struct Arguments {
-    TCLAP::CmdLine cmd{"synth2rawlog: a drive through a made-up world, with ground truth", ' ',
-                       kVersion};
+    TCLAP::CmdLine cmd{"a drive through a made-up world, with ground truth", ' ', kVersion};
     TCLAP::ValueArg<std::string> output{"o",          "output", "Rawlog to write", true, "",
                                         "OUT.rawlog", cmd};
-    TCLAP::ValueArg<std::string> scene{"",     "scene", "Scene: " + sceneOptions(), true, "",
-                                       "NAME", cmd};
+    TCLAP::ValueArg<std::string> scene{
+        "", "scene", "World to drive through", true, "", choiceOf(sceneNames()), cmd};
     TCLAP::ValueArg<int> scans{"", "scans", "Number of scans, ten a second", true, 0, "N", cmd};
     TCLAP::ValueArg<int> seed{"", "seed", "Another seed, another drive", false, 1, "S", cmd};
     TCLAP::ValueArg<int> driveSeed{
@@ -91,22 +94,20 @@ struct Arguments {
     TCLAP::ValueArg<std::string> motion{
         "",
         "motion",
-        "Motion: " + listed(kMotions) +
-            ". handheld: carried at walking speed, 1.3 m/s at most (along --trajectory at the "
-            "speed of its poses), and swinging by 15 deg at 1.5 Hz about each axis",
+        "handheld: carried at walking speed, 1.3 m/s at most (along --trajectory at the "
+        "speed of its poses), and swinging by 15 deg at 1.5 Hz about each axis",
         false,
-        "vehicle",
-        "NAME",
+        kMotions.front(),
+        choiceOf(kMotions),
         cmd};
     TCLAP::ValueArg<std::string> start{
         "",
         "start",
-        "How the drive begins: " + listed(kStarts) +
-            "; default: as the seed has it. rest: standing, up to its speed within 2 s; moving: "
-            "where it is fast for the first time. For a vehicle without --trajectory",
+        "How the drive begins; default: as the seed has it. rest: standing, up to its speed within "
+        "2 s; moving: where it is fast for the first time. For a vehicle without --trajectory",
         false,
         "",
-        "NAME",
+        choiceOf(kStarts),
         cmd};
     TCLAP::ValueArg<std::string> mount{
         "",
@@ -119,7 +120,7 @@ struct Arguments {
         "ROLL,PITCH,YAW",
         cmd};
     TCLAP::ValueArg<std::string> sensor{
-        "", "sensor", "Sensor: " + sensorOptions(), false, "hdl64e", "NAME", cmd};
+        "", "sensor", "Sensor", false, "hdl64e", choiceOf(sensorNames()), cmd};
     TCLAP::ValueArg<double> noise{
         "", "noise", "Range noise, standard deviation in metres", false, 0.01, "M", cmd};
     TCLAP::ValueArg<double> ringBias{
@@ -148,9 +149,9 @@ struct Arguments {
     TCLAP::ValueArg<double> empty{"",  "empty-rate", "Share of scans without points", false, 0,
                                   "R", cmd};
     TCLAP::SwitchArg embed{"", "embed", "Keep the points in the rawlog, not in OUT_Images/", cmd};
-    TCLAP::ValueArg<int> threads{"", "threads", "Threads; 0: one per core", false, 0, "N", cmd};
+    TCLAP::ValueArg<int> threads{"", "threads", "Threads to use; 0: all", false, 0, "N", cmd};
     TCLAP::SwitchArg force{"", "force", "Overwrite what exists", cmd};
-    TCLAP::SwitchArg verbose{"", "verbose", "Say more", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "All the text of errors", cmd};
 };
 
 /** A distance that has to be 0 or more. */
@@ -259,9 +260,28 @@ int makeDrive(Arguments& args) {
                   std::to_string(count) + " scans; so does the drive");
     return DriveWriter(request, *world, drive).write();
 }
+
+cli::HelpText help() {
+    cli::HelpText help;
+    help.writes = {
+        {"OUT.rawlog", "a CObservationPointCloud a scan"},
+        {"OUT_Images/",
+         "their points, x y z intensity as float32 (not with --embed); .ring, .time, .label: a "
+         "value a point"},
+        {"OUT.times.txt, OUT.calib.txt, OUT.poses.txt", "as KITTI's; the poses are exact"},
+        {"OUT.origin.txt", "where cam0 begins in the world"},
+        {"OUT.faults.tsv", "scans that were lost, repeated or empty"},
+        {"OUT.meta.yaml", "the sensor, and what was done to the points"}};
+    help.examples = {{{"synth2rawlog -o town.rawlog --scene urban --scans 100 --movers 20",
+                       "A town with traffic"},
+                      {"synth2rawlog -o room.rawlog --scene indoor --scans 50 --sensor vlp16",
+                       "A small sensor in rooms"}}};
+    help.interrupted = "nothing is written";
+    return help;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
     Arguments args;
-    return cli::run(args.cmd, argc, argv, args.verbose, [&] { return makeDrive(args); });
+    return cli::run(args.cmd, help(), argc, argv, args.verbose, [&] { return makeDrive(args); });
 }

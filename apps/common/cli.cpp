@@ -6,6 +6,7 @@
 #include <mrpt/system/progress.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -18,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line_output.h"
 #include "delio/core/error.h"
 #include "delio/core/printable.h"
 
@@ -53,26 +55,6 @@ class PlainOutput : public std::streambuf {
     std::streambuf* to_;
     int_type last_ = 0;
 };
-
-/** TCLAP's own help, but a version and a failure in one plain line. */
-class OneLineOutput : public TCLAP::StdOutput {
- public:
-    void version(TCLAP::CmdLineInterface& cmd) override {
-        std::cout << program_invocation_short_name << " " << cmd.getVersion() << std::endl;
-    }
-    void failure(TCLAP::CmdLineInterface& cmd, TCLAP::ArgException& e) override {
-        failed = true;
-        std::string which = e.argId();
-        if (which.find_first_not_of(' ') == std::string::npos) {  // something required is missing
-            which.clear();
-            for (TCLAP::Arg* arg : cmd.getArgList())
-                if (arg->isRequired() && !arg->isSet())
-                    which += (which.empty() ? "--" : ", --") + arg->getName();
-        }
-        say(e.error() + (which.empty() ? "" : " (" + which + ")") + "; see --help");
-    }
-    bool failed = false;
-};
 }  // namespace
 
 std::istream& operator>>(std::istream& in, Count& count) {
@@ -84,6 +66,28 @@ std::istream& operator>>(std::istream& in, Count& count) {
 }
 
 namespace {
+/** GNU's --name=VALUE as TCLAP takes it: two words. */
+std::vector<std::string> wordsOf(TCLAP::CmdLine& cmd, int argc, const char* const* argv) {
+    const auto takesValue = [&](const std::string& word) {
+        const auto& args = cmd.getArgList();
+        return std::any_of(args.begin(), args.end(), [&](const TCLAP::Arg* arg) {
+            return arg->isValueRequired() && arg->argMatches(word);
+        });
+    };
+    std::vector<std::string> words;
+    bool isValue = false;
+    for (const std::string& word : std::vector<std::string>(argv, argv + argc)) {
+        const auto equals = word.find('=');
+        const std::string name = word.substr(0, equals);
+        const bool isBoth =
+            !isValue && equals != word.npos && name.rfind("--", 0) == 0 && takesValue(name);
+        words.push_back(isBoth ? name : word);
+        if (isBoth) words.push_back(word.substr(equals + 1));
+        isValue = !isValue && !isBoth && takesValue(word);
+    }
+    return words;
+}
+
 /** Where an exception reaches nobody: in a thread of TBB's that has no memory for its own needs, or
  *  where there is none to tell of another one. Takes none itself. */
 [[noreturn]] void endInOneLine() noexcept {
@@ -105,14 +109,17 @@ namespace {
 }
 }  // namespace
 
-int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, TCLAP::SwitchArg& verbose,
-        const std::function<int()>& body) {
+int run(TCLAP::CmdLine& cmd, const HelpText& help, int argc, const char* const* argv,
+        TCLAP::SwitchArg& verbose, const std::function<int()>& body) {
     std::set_terminate(endInOneLine);
     const PlainOutput plain;
-    OneLineOutput output;
+    CommandLineOutput output(cmd, help);
     cmd.setOutput(&output);
-    std::vector<const char*> words(argv, argv + argc);
-    if (!cmd.parse(argc, words.data())) return output.failed ? kExitBadCommandLine : kExitSuccess;
+    const auto words = wordsOf(cmd, argc, argv);
+    std::vector<const char*> plainWords;
+    for (const auto& word : words) plainWords.push_back(word.c_str());
+    if (!cmd.parse(static_cast<int>(plainWords.size()), plainWords.data()))
+        return output.hasFailed() ? kExitBadCommandLine : kExitSuccess;
     try {
         return body();
     } catch (const Error& e) {

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "help_text.h"
+
 namespace TCLAP {
 class CmdLine;
 class SwitchArg;
@@ -26,12 +28,13 @@ struct Count {
 };
 std::istream& operator>>(std::istream& in, Count& count);
 
-/** Runs a tool: parses the command line into `cmd` (whose arguments the caller has added), then
- *  calls `body`, and turns every ending into the contract's exit code and one line on stderr:
- *  what() of a delio::Error, plainMessage() of any other exception (all of it if `verbose` is set).
+/** Runs a tool: parses the command line into `cmd` (whose arguments the caller has added; `help`
+ *  says the rest of --help), then calls `body`, and turns every ending into the contract's exit
+ * code and one line on stderr: what() of a delio::Error, plainMessage() of any other exception (all
+ * of it if `verbose` is set).
  */
-int run(TCLAP::CmdLine& cmd, int argc, const char* const* argv, TCLAP::SwitchArg& verbose,
-        const std::function<int()>& body);
+int run(TCLAP::CmdLine& cmd, const HelpText& help, int argc, const char* const* argv,
+        TCLAP::SwitchArg& verbose, const std::function<int()>& body);
 
 /** From now on Ctrl-C (SIGINT, SIGTERM) does not end the process but makes interrupted() true. */
 void catchInterrupts();

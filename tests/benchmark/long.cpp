@@ -104,7 +104,7 @@ void drive(Source& source, std::size_t scans, std::size_t rows, bool map) {
     std::printf("%9s %9s %9s %9s %9s %12s %9s\n", "scans", "km away", "ms/scan", "worst", "MB",
                 "% last km", "predicted");
     for (std::size_t i = 0; i < scans; ++i) {
-        const auto& row = run.process(source.scan(i));
+        const auto row = run.process(source.scan(i));
         ms.push_back(row.total_ms());
         if ((i + 1) * rows / scans == i * rows / scans) continue;
         const auto& poses = run.odometry().poses;

@@ -4,15 +4,14 @@
 #include <string>
 
 #include "command.h"
+#include "tools.h"
 
 namespace {
 using namespace delio;
 using test::runTool;
 
 TEST(EveryTool, HelpAndVersion) {
-    for (const std::string tool :
-         {"kitti2rawlog", "rawlog2kitti", "scans2rawlog", "synth2rawlog", "delio-slam",
-          "delio-eval", "delio-map", "delio-snapshot", "delio-figures"}) {
+    for (const auto& tool : test::kTools) {
         const auto help = runTool(tool, {"--help"});
         EXPECT_EQ(help.exitCode, 0) << tool;
         EXPECT_EQ(help.err, "") << tool;

@@ -65,6 +65,7 @@ void ObjectArchive::begin(const char* stack) {
     movement_ = Movement::None;
     nameSize_ = oldNameSize_ = 0;
     counts_ = 0;
+    viewports_ = Viewports::None;
 }
 
 std::size_t ObjectArchive::read(void* data, std::size_t count) {
@@ -139,6 +140,7 @@ void ObjectArchive::foreseeClass(std::string_view name) {
     // Up to its end for MRPT, which takes it for a C string.
     const auto* known =
         mrpt::rtti::findRegisteredClass(std::string(name.substr(0, name.find('\0'))));
+    checkViewport(known ? known->className : "nothing");
     if (!known) return;  // MRPT says so itself
     const std::string_view className = known->className;
     if (!isKnown(className, file_)) {
@@ -161,6 +163,18 @@ void ObjectArchive::checkMovement(std::string_view className) {
                       (before == Movement::Pdf && className.substr(0, kPdf.size()) == kPdf);
     if (!fits) throw std::runtime_error("a movement is of no known kind");
     if (className == "mrpt::obs::CActionRobotMovement2D") movement_ = Movement::Method;
+}
+
+/** What lies in a viewport is read by a function that its reader calls: deeper in the stack. */
+void ObjectArchive::checkViewport(std::string_view className) {
+    const char here = 0;
+    const std::ptrdiff_t depth = stack_ - &here;
+    if (viewports_ == Viewports::First) viewportDepth_ = depth;
+    const bool isOfScene = viewports_ != Viewports::None && depth <= viewportDepth_;
+    if (isOfScene && className != "mrpt::opengl::COpenGLViewport")
+        throw std::runtime_error("where a viewport should be, it holds something else");
+    if (isOfScene) viewports_ = Viewports::More;
+    if (className == "mrpt::opengl::COpenGLScene") viewports_ = Viewports::First;
 }
 
 void ObjectArchive::passOverImage(void* version, std::size_t count) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <mrpt/serialization/CArchive.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -19,7 +20,7 @@ namespace delio::io {
  *    a std::bad_alloc from a MemoryBudget;
  *  - objects within objects within objects throw where the stack would end;
  *  - a movement of another kind of distribution than MRPT expects, which it would use unseen,
- * throws;
+ *    throws, and so does a scene that holds anything but viewports;
  *  - images are passed over and come out empty: nothing here looks at them. */
 class ObjectArchive : public mrpt::serialization::CArchive {
  public:
@@ -47,6 +48,7 @@ class ObjectArchive : public mrpt::serialization::CArchive {
     void foresee(const void* data, std::size_t count);
     void foreseeClass(std::string_view name);
     void checkMovement(std::string_view className);
+    void checkViewport(std::string_view className);
     void passOverImage(void* version, std::size_t count);
 
     GzInput& in_;
@@ -57,7 +59,10 @@ class ObjectArchive : public mrpt::serialization::CArchive {
     enum class Next { Anything, ImageVersion, ImageIsExternal } next_ = Next::Anything;
     /** What comes next of a CActionRobotMovement2D. */
     enum class Movement { None, Method, Odometry, Pdf } movement_ = Movement::None;
-    std::size_t nameSize_ = 0;     ///< if the next read is as long, it may be a class's name
+    /** Which of a scene's viewports comes next. */
+    enum class Viewports { None, First, More } viewports_ = Viewports::None;
+    std::ptrdiff_t viewportDepth_ = 0;  ///< how deep the stack was when a viewport was begun
+    std::size_t nameSize_ = 0;          ///< if the next read is as long, it may be a class's name
     std::size_t oldNameSize_ = 0;  ///< the same, if three zeros come first: files from before 2008
     unsigned counts_ = 0;          ///< of these many numbers to come that count something
     std::uint64_t lastCount_ = 1;  ///< the number just before, if it was one: rows of columns

@@ -66,11 +66,14 @@ std::string scanTableLine(const ScanRow& row) {
     return line + (row.predicted ? ",1," : ",0,") + cellOf(row.reason) + '\n';
 }
 
-void writeScanTable(const std::vector<ScanRow>& rows, const std::string& path) {
+void writeScanTable(std::size_t rows, const std::function<ScanRow(std::size_t)>& rowAt,
+                    const std::string& path) {
     replaceTextFile(path, [&](std::ostream& out) {
-        out << scanTableHeading(rows.empty() ? ScanRow() : rows.front());
-        for (const auto& row : rows) {
-            if (!sameColumns(row, rows.front()))
+        const ScanRow first = rows > 0 ? rowAt(0) : ScanRow();
+        out << scanTableHeading(first);
+        for (std::size_t i = 0; i < rows; ++i) {
+            const ScanRow row = rowAt(i);
+            if (!sameColumns(row, first))
                 throw Error("cannot write '" + path + "': scan " + std::to_string(row.scan) +
                             " has other columns than the first");
             out << scanTableLine(row);

@@ -283,11 +283,13 @@ Step PlaneOdometry::process(const Scan& scan) {
     unregistered_s_ += interval.elapsed_s;
     seenScale_ = given_.tracker.scale > 0 ? given_.tracker.scale : scaleOf(scan);
     if (!started_) takeScale(seenScale_);
-    auto cloud =
-        timed(timeOf(step, "preprocess"), [&] { return scan::preprocess(scan, options_.scan); });
+    auto cloud = timed(timeOf(step, "preprocess"), [&] {
+        auto points = scan::preprocess(scan, options_.scan);
+        if (!started_) upright_ = scan::uprightOf(scan.sensorPose, points.points);
+        return points;
+    });
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
-    if (!started_) upright_ = scan::uprightOf(scan.sensorPose, cloud.points);
     if (started_)
         processNext(cloud, interval, step);
     else

@@ -2,6 +2,7 @@
 
 #include <mrpt/core/format.h>
 #include <mrpt/img/CImage.h>
+#include <mrpt/opengl/CSetOfObjects.h>
 
 namespace delio::picture {
 using mrpt::img::TColor;
@@ -20,6 +21,15 @@ mrpt::img::CImage barImage(map::Colormap colormap) {
         for (int column = 0; column < kBarWidth_px; ++column)
             image.setPixel(column, row, map::colourAt(colormap, 1 - (row + 0.5) / kBarHeight_px));
     return image;
+}
+
+/** With its colormap's name inside, which is not drawn: a scene that is loaded has no images. */
+void paint(mrpt::opengl::COpenGLViewport& bar, map::Colormap colormap) {
+    bar.setImageView(barImage(colormap));
+    bar.clear();
+    const auto name = mrpt::opengl::CSetOfObjects::Create();
+    name->setName(map::colormapNames().at(static_cast<std::size_t>(colormap)));
+    bar.insert(name);
 }
 
 void addText(COpenGLScene& scene, int x, double row, unsigned id, const std::string& text,
@@ -42,7 +52,7 @@ void addColourBar(COpenGLScene& scene, unsigned row, map::Colormap colormap,
                   const map::ValueRange& range, const std::string& unit, const std::string& what,
                   const TColor& ink) {
     const auto bar = scene.createViewport(kBar);
-    bar->setImageView(barImage(colormap));
+    paint(*bar, colormap);
     bar->setViewportPosition(kMargin_px, kMargin_px + kLegendLine_px * static_cast<int>(row),
                              kBarWidth_px, kBarHeight_px);
     constexpr unsigned kFirstId = 100;
@@ -59,6 +69,14 @@ void addColourBar(COpenGLScene& scene, unsigned row, map::Colormap colormap,
 
 void recolourBar(COpenGLScene& scene, map::Colormap colormap) {
     for (const auto& viewport : scene.viewports())
-        if (viewport->getName() == kBar) viewport->setImageView(barImage(colormap));
+        if (viewport->getName() == kBar) paint(*viewport, colormap);
+}
+
+void repaintBar(COpenGLScene& scene) {
+    for (const auto& viewport : scene.viewports())
+        for (const auto& name : map::colormapNames())
+            if (viewport->getName() == kBar && viewport->getByName(name))
+                return paint(*viewport, map::colormapNamed(name));
+    recolourBar(scene, map::Colormap::Turbo);  // of a scene that does not say it
 }
 }  // namespace delio::picture

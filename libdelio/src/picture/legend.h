@@ -20,6 +20,10 @@ void addColourBar(mrpt::opengl::COpenGLScene& scene, unsigned row, map::Colormap
                   const map::ValueRange& range, const std::string& unit, const std::string& what,
                   const mrpt::img::TColor& ink);
 
+/** Paints the bar of a scene that was loaded, if there is one, as it was when the scene was saved.
+ */
+void repaintBar(mrpt::opengl::COpenGLScene& scene);
+
 /** Changes the colours of the bar, if there is one. */
 void recolourBar(mrpt::opengl::COpenGLScene& scene, map::Colormap colormap);
 }  // namespace delio::picture

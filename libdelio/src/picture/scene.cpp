@@ -260,6 +260,7 @@ COpenGLScene::Ptr loadScene(const std::string& path) {
     io::loadWhole(path, "a .3Dscene", io::FileOf::Scene, *scene);
     try {
         makeDrawable(*scene);
+        repaintBar(*scene);
     } catch (const Error& e) {
         throw Error("'" + path + "' " + e.what());
     }

@@ -72,36 +72,43 @@ Eigen::Matrix3d PlaneMap::Sums::scatter() const {
 
 void PlaneMap::Level::clear() {
     cells.clear();
-    isPlane.clear();
-    planes.clear();
+    forgetPlanes();
 }
 
-void PlaneMap::fit(Level& level, std::uint32_t number) const {
-    Sums& cell = level.cells[number];
-    cell.touched = false;
-    if (cell.count < options_.min_points) return;
+void PlaneMap::Level::forgetPlanes() {
+    states.assign(cells.size(), State::Unknown);
+    planes.resize(cells.size());
+}
+
+PlaneMap::State PlaneMap::fit(const Level& level, std::uint32_t number) const {
+    const Sums& cell = level.cells[number];
+    if (cell.count < options_.min_points) return State::None;
     const Eigen::Vector3d mean = cell.sum / cell.count;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> pca;
     pca.computeDirect(cell.scatter() / cell.count - mean * mean.transpose());
     // Never thinner than rounding allows.
     const Eigen::Vector3d variances = pca.eigenvalues().cwiseMax(1e-9);
     const double least = options_.min_breadth * level.edge;
-    level.isPlane[number] = std::sqrt(variances[0]) < options_.max_thickness &&
-                            variances[0] < options_.max_flatness * variances[1] &&
-                            variances[1] > least * least &&
-                            std::abs(pca.eigenvectors().col(0).dot(up_)) >= level.steepest;
+    const bool isPlane = std::sqrt(variances[0]) < options_.max_thickness &&
+                         variances[0] < options_.max_flatness * variances[1] &&
+                         variances[1] > least * least &&
+                         std::abs(pca.eigenvectors().col(0).dot(up_)) >= level.steepest;
+    if (!isPlane) return State::None;
     level.planes[number] = {cell.origin + mean, pca.eigenvectors(), variances,
                             static_cast<double>(cell.count)};
+    return State::Plane;
 }
 
-/** Once more, as when the last points came. */
-void PlaneMap::fitAll() {
-    for (auto& level : levels_) {
-        level.isPlane.assign(level.cells.size(), 0);
-        level.planes.resize(level.cells.size());
-        tbb::parallel_for(std::size_t{0}, level.cells.size(),
-                          [&](std::size_t i) { fit(level, static_cast<std::uint32_t>(i)); });
+/** Fitted by the first thread that asks; others wait. */
+const Plane* PlaneMap::planeIn(const Level& level, std::uint32_t number) const {
+    SharedState& state = level.states[number];
+    State now = state.load(std::memory_order_acquire);
+    if (now == State::Unknown && state.compare_exchange_strong(now, State::BeingFitted)) {
+        now = fit(level, number);
+        state.store(now, std::memory_order_release);
     }
+    while (now == State::BeingFitted) now = state.load(std::memory_order_acquire);
+    return now == State::Plane ? &level.planes[number] : nullptr;
 }
 
 void PlaneMap::add(const Eigen::Matrix3Xd& points, const std::vector<std::uint64_t>& voxels,
@@ -116,19 +123,15 @@ void PlaneMap::add(const Eigen::Matrix3Xd& points, const std::vector<std::uint64
         const bool isSame = i > 0 && key == scan::coarserKey(voxels[i - 1], level.number);
         numbers[i] = isSame ? numbers[i - 1] : level.cells.insert(key);
     }
-    std::vector<std::uint32_t> touched;
+    level.states.resize(level.cells.size());
+    level.planes.resize(level.cells.size());
     for (std::size_t i = 0; i < voxels.size(); ++i) {
         if (i + kAhead < voxels.size()) level.cells.prefetchValue(numbers[i + kAhead]);
         Sums& cell = level.cells[numbers[i]];
         if (cell.count >= options_.max_points) continue;
         cell.add(points.col(static_cast<Eigen::Index>(i)));
-        if (!cell.touched) touched.push_back(numbers[i]);
-        cell.touched = true;
+        level.states[numbers[i]].store(State::Unknown, std::memory_order_relaxed);
     }
-    level.isPlane.resize(level.cells.size());
-    level.planes.resize(level.cells.size());
-    tbb::parallel_for(std::size_t{0}, touched.size(),
-                      [&](std::size_t i) { fit(level, touched[i]); });
 }
 
 void PlaneMap::add(const Eigen::Matrix3Xd& points) {
@@ -144,11 +147,11 @@ void PlaneMap::erase(const Eigen::Matrix3Xd& points) {
     for (Eigen::Index k = 0; k < points.cols(); ++k) {
         const std::uint64_t voxel = voxelAt(points.col(k));
         for (std::size_t i = 0; i < options_.levels; ++i) {
-            auto& [number, edge, steepest, cells, isPlane, planes] = levels_[i];
-            const std::uint32_t cell = cells.numberOf(scan::coarserKey(voxel, number));
+            Level& level = levels_[i];
+            const std::uint32_t cell = level.cells.numberOf(scan::coarserKey(voxel, level.number));
             if (cell == scan::VoxelIndex::kNone) continue;
-            cells[cell].clear();
-            isPlane[cell] = 0;
+            level.cells[cell].clear();
+            level.states[cell] = State::None;
         }
     }
 }
@@ -158,10 +161,10 @@ void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
         const auto kept = level.cells.eraseIf(
             [&](const Sums& cell) { return (cell.origin - centre).norm() > options_.radius; });
         for (std::size_t i = 0; i < kept.size(); ++i) {
-            level.isPlane[i] = level.isPlane[kept[i]];
-            level.planes[i] = level.planes[kept[i]];
+            level.states[i] = level.states[kept[i]];
+            if (level.states[i] == State::Plane) level.planes[i] = level.planes[kept[i]];
         }
-        level.isPlane.resize(kept.size());
+        level.states.resize(kept.size());
         level.planes.resize(kept.size());
     }
 }
@@ -178,10 +181,11 @@ std::size_t PlaneMap::voxels() const {
 }
 
 std::size_t PlaneMap::planes() const {
-    std::ptrdiff_t count = 0;
+    std::size_t count = 0;
     for (const auto& level : levels_)
-        count += std::count(level.isPlane.begin(), level.isPlane.end(), std::uint8_t{1});
-    return static_cast<std::size_t>(count);
+        for (std::uint32_t i = 0; i < level.cells.size(); ++i)
+            count += planeIn(level, i) != nullptr;
+    return count;
 }
 
 std::uint64_t PlaneMap::voxelAt(const Eigen::Vector3d& point) const {
@@ -191,7 +195,8 @@ std::uint64_t PlaneMap::voxelAt(const Eigen::Vector3d& point) const {
 const Plane* PlaneMap::inVoxel(std::uint64_t voxel) const {
     for (const auto& level : levels_) {
         const std::uint32_t cell = level.cells.numberOf(scan::coarserKey(voxel, level.number));
-        if (cell != scan::VoxelIndex::kNone && level.isPlane[cell]) return &level.planes[cell];
+        if (cell == scan::VoxelIndex::kNone) continue;
+        if (const Plane* plane = planeIn(level, cell)) return plane;
     }
     return nullptr;
 }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 #include "delio/scan/voxel_grid.h"
 
@@ -14,6 +17,20 @@ std::vector<OptionField> PointMapOptions::fields() const {
             {"radius", &Me::radius, "m; the map ends at this distance from the sensor", 1, 1e4}};
 }
 
+Eigen::Vector3f PointMap::Cell::point(std::uint32_t number) const {
+    const Group& group = groups[number / Group::kSize];
+    const Eigen::Index i = number % Group::kSize;
+    return {group.x[i], group.y[i], group.z[i]};
+}
+
+void PointMap::Cell::set(std::uint32_t number, const Eigen::Vector3f& point) {
+    Group& group = groups[number / Group::kSize];
+    const Eigen::Index i = number % Group::kSize;
+    group.x[i] = point.x();
+    group.y[i] = point.y();
+    group.z[i] = point.z();
+}
+
 void PointMap::add(const Eigen::Matrix3Xd& points) {
     const auto squaredSpacing = static_cast<float>(options_.spacing * options_.spacing);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -22,11 +39,12 @@ void PointMap::add(const Eigen::Matrix3Xd& points) {
         if (cell.count == Cell::kMost) continue;
         if (cell.count == 0) cell.origin = point;
         const Eigen::Vector3f local = (point - cell.origin).cast<float>();
-        bool isNew = true;
-        for (Eigen::Index first = 0; isNew && first < cell.count; first += Cell::kTogether)
-            isNew = cell.distances(first, local).minCoeff() >= squaredSpacing;
+        const bool isNew = std::all_of(
+            cell.groups.begin(), cell.groups.begin() + cell.groupsTaken(), [&](const Group& group) {
+                return group.squaredDistances(local).minCoeff() >= squaredSpacing;
+            });
         if (!isNew) continue;
-        cell.points.row(cell.count++) = local.array();
+        cell.set(cell.count++, local);
         ++size_;
     }
 }
@@ -37,16 +55,16 @@ void PointMap::erase(const Eigen::Matrix3Xd& points) {
         const Eigen::Vector3d point = points.col(i);
         Cell* cell = cells_.find(scan::voxelKey(point, options_.voxel_size));
         if (!cell) continue;
-        const auto local = (point - cell->origin).cast<float>().transpose().array().eval();
-        Eigen::Index kept = 0;
-        for (Eigen::Index row = 0; row < cell->count; ++row) {
-            if ((cell->points.row(row) - local).square().sum() < squaredSpacing) continue;
-            const Eigen::Array<float, 1, 3> stays = cell->points.row(row);
-            cell->points.row(kept++) = stays;
+        const Eigen::Vector3f local = (point - cell->origin).cast<float>();
+        std::uint32_t kept = 0;
+        for (std::uint32_t k = 0; k < cell->count; ++k) {
+            const Eigen::Vector3f other = cell->point(k);
+            if ((other - local).squaredNorm() >= squaredSpacing) cell->set(kept++, other);
         }
-        cell->points.middleRows(kept, cell->count - kept)
-            .setConstant(std::numeric_limits<float>::infinity());
-        size_ -= static_cast<std::size_t>(cell->count - kept);
+        constexpr float kNowhere = std::numeric_limits<float>::infinity();
+        for (std::uint32_t k = kept; k < cell->count; ++k)
+            cell->set(k, Eigen::Vector3f::Constant(kNowhere));
+        size_ -= cell->count - kept;
         cell->count = kept;
     }
 }
@@ -55,7 +73,7 @@ void PointMap::forgetFarFrom(const Eigen::Vector3d& centre) {
     cells_.eraseIf(
         [&](const Cell& cell) { return (cell.origin - centre).norm() > options_.radius; });
     size_ = 0;
-    for (const Cell& cell : cells_) size_ += static_cast<std::size_t>(cell.count);
+    for (std::uint32_t i = 0; i < cells_.size(); ++i) size_ += cells_[i].count;
 }
 
 void PointMap::clear() {
@@ -63,25 +81,29 @@ void PointMap::clear() {
     size_ = 0;
 }
 
-/** Of the cell, where it is nearer than `least` (squared metres). */
-bool PointMap::Cell::nearest(const Eigen::Vector3d& point, float& least,
-                             Eigen::Vector3d& found) const {
+/** Of the cell, where it is nearer than what was found before. */
+void PointMap::Cell::nearest(const Eigen::Vector3d& point, Search& search) const {
     const Eigen::Vector3f local = (point - origin).cast<float>();
-    Eigen::Index best = kMost;
-    for (Eigen::Index first = 0; first < count; first += kTogether) {
-        const Distances squared = distances(first, local);
+    std::uint32_t best = kMost;
+    for (Eigen::Index g = 0; g < groupsTaken(); ++g) {
+        auto squared = groups[static_cast<std::size_t>(g)].squaredDistances(local).eval();
         const float lowest = squared.minCoeff();
-        if (!(lowest < least)) continue;
-        least = lowest;
-        best = first;
-        while (squared[best - first] != lowest) ++best;
+        if (!(lowest < search.least)) {
+            search.others = std::min(search.others, lowest);
+            continue;
+        }
+        std::uint32_t in = 0;
+        while (squared[in] != lowest) ++in;
+        squared[in] = std::exchange(search.least, lowest);
+        search.others = std::min(search.others, squared.minCoeff());
+        best = static_cast<std::uint32_t>(g * Group::kSize) + in;
     }
-    if (best == kMost) return false;
-    found = origin + points.row(best).matrix().transpose().cast<double>();
-    return true;
+    if (best == kMost) return;
+    search.any = true;
+    search.found = origin + this->point(best).cast<double>();
 }
 
-bool PointMap::nearest(const Eigen::Vector3d& point, double reach, Eigen::Vector3d& found) const {
+PointMap::Nearest PointMap::nearest(const Eigen::Vector3d& point, double reach) const {
     const double size = options_.voxel_size;
     // How far, squared, the voxels at, before and behind the point's own are, along each axis: its
     // own first, as what is found there leaves out most others.
@@ -95,19 +117,27 @@ bool PointMap::nearest(const Eigen::Vector3d& point, double reach, Eigen::Vector
         squares[axis] = {0, before * before, behind * behind};
     }
     constexpr std::array<std::int64_t, 3> kOffsets = {0, -1, 1};
-    auto least = static_cast<float>(std::min(reach * reach, size * size));
-    bool any = false;
+    const auto most = static_cast<float>(std::min(reach * reach, size * size));
+    Search search{most, most};
+    double passedOver = most;
     for (std::size_t x = 0; x < 3; ++x)
         for (std::size_t y = 0; y < 3; ++y) {
             const double flat = squares[0][x] + squares[1][y];
-            if (flat >= double{least}) continue;
+            if (flat >= double{search.least}) {
+                passedOver = std::min(passedOver, flat);
+                continue;
+            }
             for (std::size_t z = 0; z < 3; ++z) {
-                if (flat + squares[2][z] >= double{least}) continue;
+                const double away = flat + squares[2][z];
+                if (away >= double{search.least}) {
+                    passedOver = std::min(passedOver, away);
+                    continue;
+                }
                 const Cell* cell = cells_.find(scan::voxelKey(
                     own[0] + kOffsets[x], own[1] + kOffsets[y], own[2] + kOffsets[z]));
-                if (cell) any |= cell->nearest(point, least, found);
+                if (cell) cell->nearest(point, search);
             }
         }
-    return any;
+    return {search.any, search.found, std::sqrt(std::min(passedOver, double{search.others}))};
 }
 }  // namespace delio::points

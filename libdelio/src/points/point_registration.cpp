@@ -1,15 +1,13 @@
 #include "delio/points/point_registration.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "delio/core/geometry.h"
 #include "delio/core/kabsch.h"
 #include "delio/scan/sample.h"
+#include "pairing.h"
 
 namespace delio::points {
 namespace {
@@ -24,34 +22,8 @@ Vector6 stepBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 }
 
 namespace {
-/** A point of the scan, by its place in the order, with the nearest one of the map. */
-struct Pair {
-    Eigen::Vector3d inMap = Eigen::Vector3d::Zero();
-    double squaredDistance = 0;
-    double weight = 0;  //!< 0: none
-};
-
-std::vector<Pair> pairsAt(const PointMap& map, const Eigen::Matrix3Xd& points,
-                          const Eigen::Isometry3d& pose, double kernel) {
-    constexpr double kReach = 3;  // kernel widths
-    std::vector<Pair> pairs(static_cast<std::size_t>(points.cols()));
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, pairs.size(), 64),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                const Eigen::Vector3d placed = pose * points.col(static_cast<Eigen::Index>(i));
-                Pair& pair = pairs[i];
-                if (!map.nearest(placed, kReach * kernel, pair.inMap)) continue;
-                pair.squaredDistance = (pair.inMap - placed).squaredNorm();
-                const double robust = 1 / (1 + pair.squaredDistance / (kernel * kernel));
-                pair.weight = robust * robust;
-            }
-        });
-    return pairs;
-}
-
 /** Rotation about the centroids, then the translation. False with too few pairs. */
-bool solve(const Eigen::Matrix3Xd& points, const std::vector<Pair>& pairs, unsigned least,
+bool solve(const Eigen::Matrix3Xd& points, const Pairs& pairs, unsigned least,
            Eigen::Isometry3d& pose) {
     Eigen::Vector3d inMap = Eigen::Vector3d::Zero(), inScan = inMap;
     double weight = 0;
@@ -92,15 +64,15 @@ bool extrapolate(const Vector6& before, const Vector6& step, double most, Eigen:
 }
 
 /** With one kernel, until steps are shorter than `enough`. False with too few pairs. */
-bool iterate(const PointMap& map, const Eigen::Matrix3Xd& points, double width, double enough,
-             const PointRegistrationOptions& options, PointEstimate& estimate) {
+bool iterate(Pairing& pairing, double width, double enough, const PointRegistrationOptions& options,
+             PointEstimate& estimate) {
     // Between two places that attract alike extrapolation goes back and forth: no more often.
     constexpr unsigned kExtrapolations = 8;
     unsigned extrapolated = 0;
     Vector6 latest = Vector6::Zero();
     for (unsigned i = 0; i < options.max_iterations; ++i) {
         const Eigen::Isometry3d before = estimate.pose;
-        if (!solve(points, pairsAt(map, points, before, width), options.min_matches, estimate.pose))
+        if (!solve(pairing.points(), pairing.at(before, width), options.min_matches, estimate.pose))
             return false;
         ++estimate.iterations;
         const Vector6 step = stepBetween(before, estimate.pose);
@@ -114,17 +86,17 @@ bool iterate(const PointMap& map, const Eigen::Matrix3Xd& points, double width, 
     return true;
 }
 
-void judge(const PointMap& map, const Eigen::Matrix3Xd& points,
-           const PointRegistrationOptions& options, PointEstimate& estimate) {
+void judge(Pairing& pairing, const PointRegistrationOptions& options, PointEstimate& estimate) {
     double squares = 0;
-    for (const auto& pair : pairsAt(map, points, estimate.pose, options.last_kernel)) {
+    for (const auto& pair : pairing.at(estimate.pose, options.last_kernel)) {
         if (pair.weight == 0 || pair.squaredDistance > options.last_kernel * options.last_kernel)
             continue;
         squares += pair.squaredDistance;
         ++estimate.matches;
     }
     const auto matches = static_cast<double>(estimate.matches);
-    estimate.share = matches / static_cast<double>(std::max<Eigen::Index>(points.cols(), 1));
+    estimate.share =
+        matches / static_cast<double>(std::max<Eigen::Index>(pairing.points().cols(), 1));
     estimate.residual_m = matches > 0 ? std::sqrt(squares / matches) : 0;
 }
 }  // namespace
@@ -160,30 +132,30 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
     // an OS1-64 that starts from rest on a highway is off by 0.2 %, not 0.02 %.)
     constexpr Eigen::Index kEnough = 4000;
     const Eigen::Matrix3Xd part = scan::sample(points, kEnough);
+    Pairing ofPart(map, part), ofAll(map, points);
     for (double width = estimate.kernel_m;; width = std::max(width / 2, options.last_kernel)) {
         // Only the last kernel has to converge; the others lead into its reach.
         constexpr double kRough = 0.02;
         const bool isLast = width <= options.last_kernel;
-        const Eigen::Matrix3Xd& used = width > 2 * options.last_kernel ? part : points;
+        Pairing& used = width > 2 * options.last_kernel ? ofPart : ofAll;
         const double enough = isLast ? options.converged_m : kRough * width;
-        if (!iterate(map, used, width, enough, options, estimate)) {
+        if (!iterate(used, width, enough, options, estimate)) {
             estimate.pose = predicted;
             estimate.converged = false;
             return estimate;
         }
         if (isLast) break;
     }
-    judge(map, points, options, estimate);
+    judge(ofAll, options, estimate);
     estimate.valid = estimate.share >= options.min_share;
     return estimate;
 }
 
 double shareAt(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
                double distance) {
-    Eigen::Vector3d nearest;
     Eigen::Index near = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i)
-        near += map.nearest(pose * points.col(i), distance, nearest);
+        near += map.nearest(pose * points.col(i), distance).any;
     return static_cast<double>(near) /
            static_cast<double>(std::max<Eigen::Index>(points.cols(), 1));
 }
@@ -192,9 +164,8 @@ Eigen::Matrix3Xd pointsOff(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& pose, double distance) {
     Eigen::Matrix3Xd off(3, points.cols());
     Eigen::Index count = 0;
-    Eigen::Vector3d nearest;
     for (Eigen::Index i = 0; i < points.cols(); ++i)
-        if (!map.nearest(pose * points.col(i), distance, nearest)) off.col(count++) = points.col(i);
+        if (!map.nearest(pose * points.col(i), distance).any) off.col(count++) = points.col(i);
     off.conservativeResize(3, count);
     return off;
 }

@@ -5,7 +5,7 @@
 namespace delio::run {
 namespace {
 template <typename IsOfKind>
-Stretches stretchesOf(const std::vector<RunRow>& rows, const IsOfKind& isOfKind) {
+Stretches stretchesOf(const RunRows& rows, const IsOfKind& isOfKind) {
     Stretches found;
     std::size_t inRow = 0;
     for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -40,16 +40,17 @@ std::string ofAll(const Stretches& found, std::size_t pairs) {
 }
 }  // namespace
 
-Doubts doubtsOf(const std::vector<RunRow>& rows) {
+Doubts doubtsOf(const RunRows& rows) {
     Doubts doubts;
     doubts.pairs = rows.empty() ? 0 : rows.size() - 1;
     doubts.predicted = stretchesOf(rows, [](const Step& step) { return step.predicted; });
     doubts.weak = stretchesOf(rows, isWeak);
     for (std::size_t i = 1; i < rows.size(); ++i) {
-        const Step& step = rows[i].report.step;
-        if (!isWeak(step)) continue;
-        count(step.quality.unobservedTranslation, rows[i], doubts.weakAlong);
-        count(step.quality.unobservedRotation, rows[i], doubts.weakAbout);
+        const RunRow row = rows[i];
+        const Quality& quality = row.report.step.quality;
+        if (!isWeak(row.report.step)) continue;
+        count(quality.unobservedTranslation, row, doubts.weakAlong);
+        count(quality.unobservedRotation, row, doubts.weakAbout);
     }
     doubts.searched = stretchesOf(rows, [](const Step& step) { return step.searched; });
     doubts.interrupted = stretchesOf(rows, [](const Step& step) { return step.interrupted; });
@@ -99,8 +100,7 @@ std::vector<std::string> warningsOf(const Doubts& doubts) {
     return warnings;
 }
 
-std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes,
-                                    const std::vector<RunRow>& rows) {
+std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes, const RunRows& rows) {
     std::vector<std::string> warnings;
     for (std::size_t i = 0; i < fixes.size();) {
         const auto where = fixes[i].where;

@@ -17,7 +17,7 @@ constexpr std::array<const char*, 3> kNames{"unknown", "in_map", "outside"};  //
 constexpr const char* kAxes[] = {"x", "y", "z", "wx", "wy", "wz"};
 }  // namespace
 
-void writeLocalisationTable(const std::vector<RunRow>& rows, const std::vector<MapFix>& fixes,
+void writeLocalisationTable(const RunRows& rows, const std::vector<MapFix>& fixes,
                             const std::string& path) {
     io::replaceTextFile(path, [&](std::ostream& out) {
         out << "scan,stamp_s,where,measured,searched,share,x,y,z,qx,qy,qz,qw";
@@ -28,8 +28,9 @@ void writeLocalisationTable(const std::vector<RunRow>& rows, const std::vector<M
             const auto& fix = fixes[n];
             const auto& pose = fix.vehicle.pose;
             const Eigen::Quaterniond q(pose.linear());
-            out << rows[n].scan
-                << mrpt::format(",%.7f,%s,%d,%d,%.3f", rows[n].stamp_s,
+            const RunRow row = rows[n];
+            out << row.scan
+                << mrpt::format(",%.7f,%s,%d,%d,%.3f", row.stamp_s,
                                 kNames[static_cast<std::size_t>(fix.where)], fix.measured,
                                 fix.searched, fix.share);
             const bool known = fix.where != Whereabouts::kUnknown;

@@ -99,7 +99,7 @@ void Run::readSideFiles(const io::SideFile& calib, const io::SideFile& poses,
     truthWasAskedFor_ = !truth.empty();
 }
 
-const RunRow& Run::process(const Scan& scan, double read_ms) {
+RunRow Run::process(const Scan& scan, double read_ms) {
     RunRow row;
     row.scan = scan.index;
     row.stamp_s = scan.stamp_s;
@@ -117,8 +117,8 @@ const RunRow& Run::process(const Scan& scan, double read_ms) {
                          "out",
                          scan.index));
     }
-    rows.push_back(std::move(row));
-    return rows.back();
+    rows.push_back(row);
+    return row;
 }
 
 /** What decides which results there are, for a state's label. */
@@ -269,6 +269,7 @@ void Run::finish(bool complete) {
     if (doubts.pairs > 0 && doubts.predicted.scans == doubts.pairs)
         fail("no scan could be registered: " + record_.rows[1].report.step.reason);
     record_.complete = complete;
+    slam_.close();
     optimise();
     if (settings_.map) store();
     if (truth_) score();

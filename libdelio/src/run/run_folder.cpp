@@ -47,11 +47,9 @@ constexpr const char* kAll[] = {RunFolder::kSummary,
                                 RunFolder::kRemovalPicture,
                                 RunFolder::kTrajectoryPicture};
 
-void writeScans(const std::vector<RunRow>& rows, const std::string& path) {
-    std::vector<io::ScanRow> table;
-    table.reserve(rows.size());
-    for (const auto& row : rows) table.push_back(scanRowOf(row));
-    io::writeScanTable(table, path);
+void writeScans(const RunRows& rows, const std::string& path) {
+    io::writeScanTable(
+        rows.size(), [&](std::size_t i) { return scanRowOf(rows[i]); }, path);
 }
 
 map::PageContent pageOf(const RunRecord& record, const map::BuiltMap& map) {

@@ -1,19 +1,10 @@
 #include "delio/run/run_record.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include "delio/evaluation/kitti_metric.h"
 
 namespace delio::run {
-double RunRow::total_ms() const {
-    double sum = read_ms;
-    for (const auto& [stage, ms] : report.step.times_ms) sum += ms;
-    for (const auto& [listener, ms] : report.listeners_ms)
-        if (std::string_view(listener) != "map") sum += ms;
-    return sum;
-}
-
 std::size_t RunRecord::predicted() const {
     return static_cast<std::size_t>(std::count_if(
         rows.begin(), rows.end(), [](const RunRow& row) { return row.report.step.predicted; }));
@@ -36,10 +27,12 @@ double RunRecord::msPerScan() const {
     return rows.empty() ? 0 : sum / static_cast<double>(rows.size());
 }
 
-io::Trajectory ofSensor(const io::Trajectory& vehicle, const std::vector<RunRow>& rows) {
+io::Trajectory ofSensor(const io::Trajectory& vehicle, const RunRows& rows) {
     io::Trajectory sensor = vehicle;
+    if (rows.empty()) return sensor;
+    const Eigen::Isometry3d first = rows.front().sensorPose.inverse();
     for (std::size_t i = 0; i < sensor.poses.size(); ++i)
-        sensor.poses[i] = rows[0].sensorPose.inverse() * vehicle.poses[i] * rows[i].sensorPose;
+        sensor.poses[i] = first * vehicle.poses[i] * rows[i].sensorPose;
     return sensor;
 }
 }  // namespace delio::run

@@ -20,6 +20,10 @@ void Slam::attach(std::shared_ptr<SlamListener> listener) {
     listeners_.push_back(std::move(listener));
 }
 
+void Slam::requireOpen() const {
+    if (!odometry_) throw Error("the drive is closed: it takes no more scans");
+}
+
 /** All listeners are told, or none. */
 void Slam::tell(const SlamScan& scan, ScanReport& report) {
     std::size_t told = 0;
@@ -41,6 +45,7 @@ std::string Slam::listenerNames() const {
 }
 
 void Slam::save(std::ostream& out) const {
+    requireOpen();
     checkpoint::save(out, {"drive", listenerNames()}, *this);
     odometry_->save(out);
     for (const auto& listener : listeners_) listener->save(out);
@@ -53,6 +58,7 @@ void Slam::restore(std::istream& in) {
 }
 
 ScanReport Slam::process(const Scan& scan) {
+    requireOpen();
     ScanReport report{odometry_->process(scan), {}};
     requireFinite(report.step.increment, scan);
     auto& [poses, stamps_s] = trajectory_;

@@ -45,13 +45,17 @@ void texts() {
 void tables() {
     io::ScanRow row;
     row.values = {{"points", "12"}};
-    behind("0", seed("tables", "scans"),
-           [&](const fs::path& file) { io::writeScanTable({row}, file.string()); });
+    behind("0", seed("tables", "scans"), [&](const fs::path& file) {
+        io::writeScanTable(
+            1, [&](std::size_t) { return row; }, file.string());
+    });
     behind("1", seed("tables", "loops"), [](const fs::path& file) {
         run::writeLoopTable({loops::LoopCandidate{}}, file.string());
     });
     behind("2", seed("tables", "localisation"), [](const fs::path& file) {
-        run::writeLocalisationTable({run::RunRow{}}, {MapFix{}}, file.string());
+        run::RunRows rows;
+        rows.push_back({});
+        run::writeLocalisationTable(rows, {MapFix{}}, file.string());
     });
     run::Summary summary;
     summary.version = "0.1.0";

@@ -191,6 +191,27 @@ TEST_F(ObjectArchive, ObjectsInObjectsDoNotEndTheStack) {
     EXPECT_THROW(picture::loadScene(file), Error);
 }
 
+/** MRPT writes where a viewport would be. */
+TEST_F(ObjectArchive, ASceneHoldsViewports) {
+    const auto scene = mrpt::opengl::COpenGLScene::Create();
+    scene->insert(mrpt::opengl::CBox::Create());
+    scene->createViewport("small")->insert(mrpt::opengl::CSetOfObjects::Create());
+    const std::string whole = bytesOf({scene});
+    const std::string file = folder_ / "a.3Dscene";
+    test::writeText(file, whole);
+    EXPECT_EQ(picture::loadScene(file)->viewportsCount(), 2U);
+    std::string one = bytesOf({mrpt::opengl::COpenGLViewport::Create()});
+    one.resize(1 + std::string("mrpt::opengl::COpenGLViewport").size());
+    const std::string nothing = "\x87nullptr\x88", box = bytesOf({mrpt::opengl::CBox::Create()});
+    const auto first = whole.find(one), second = whole.find(one, first + 1);
+    ASSERT_NE(second, std::string::npos);
+    for (const auto at : {first, second})
+        for (const std::string& other : {nothing, box}) {
+            test::writeText(file, whole.substr(0, at) + other + whole.substr(at));
+            EXPECT_THROW(picture::loadScene(file), Error);
+        }
+}
+
 /** A scan is found in its folder, through a link of its owner's as well, and nowhere else. */
 TEST_F(ObjectArchive, NamesOfExternalFilesDoNotLeadOutOfTheirFolder) {
     std::filesystem::create_directories(folder_ / "a_Images");

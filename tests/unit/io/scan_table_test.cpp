@@ -22,8 +22,12 @@ class ScanTable : public testing::Test {
         }
         return "";
     }
+    void write(const std::vector<io::ScanRow>& rows, const std::string& name) const {
+        io::writeScanTable(
+            rows.size(), [&](std::size_t i) { return rows[i]; }, folder_ / name);
+    }
     void expectUnwritable(const std::vector<io::ScanRow>& rows) const {
-        EXPECT_THROW(io::writeScanTable(rows, folder_ / "unlike.csv"), Error);
+        EXPECT_THROW(write(rows, "unlike.csv"), Error);
         EXPECT_FALSE(std::filesystem::exists(folder_ / "unlike.csv"));
     }
     test::TemporaryFolder folder_;
@@ -55,7 +59,7 @@ TEST_F(ScanTable, IsReadAsItWasWritten) {
     const std::vector<io::ScanRow> rows = {
         {2, 1.5, {{"points", "120000"}, {"read_ms", "3.250"}}, false, ""},
         {5, 1317000000.1234567, {{"points", "7"}, {"read_ms", "0.100"}}, true, "few, of\r\nall"}};
-    io::writeScanTable(rows, folder_ / "scans.csv");
+    write(rows, "scans.csv");
     EXPECT_EQ(test::readText(folder_ / "scans.csv"),
               "scan,stamp_s,points,read_ms,predicted,reason\n"
               "2,1.5000000,120000,3.250,0,\n"
@@ -67,7 +71,7 @@ TEST_F(ScanTable, IsReadAsItWasWritten) {
 }
 
 TEST_F(ScanTable, OfNoScansIsAHeading) {
-    io::writeScanTable({}, folder_ / "scans.csv");
+    write({}, "scans.csv");
     EXPECT_EQ(test::readText(folder_ / "scans.csv"), "scan,stamp_s,predicted,reason\n");
     EXPECT_TRUE(io::readScanTable(folder_ / "scans.csv").scans.empty());
 }

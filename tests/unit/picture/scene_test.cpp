@@ -21,16 +21,20 @@ using test::someWay;
 
 TEST(Scene, ReloadsWithTheSamePicture) {
     const test::TemporaryFolder folder;
-    auto scene = picture::mapScene(someMap(), {someWay(), {}, {}, {}});
-    picture::saveScene(*scene, folder / "map.3Dscene");
-    auto loaded = picture::loadScene(folder / "map.3Dscene");
-    EXPECT_TRUE(loaded->getByName("map"));
-    EXPECT_TRUE(loaded->getByName("trajectory"));
-    SnapshotOptions options;
-    options.width_px = 200;
-    options.height_px = 150;
-    EXPECT_EQ(bytesOf(picture::picture(*loaded, options)),
-              bytesOf(picture::picture(*scene, options)));
+    for (const auto colormap : {map::Colormap::Turbo, map::Colormap::Viridis}) {
+        picture::SceneOptions colours;
+        colours.colormap = colormap;
+        auto scene = picture::mapScene(someMap(), {someWay(), {}, {}, {}}, colours);
+        picture::saveScene(*scene, folder / "map.3Dscene");
+        auto loaded = picture::loadScene(folder / "map.3Dscene");
+        EXPECT_TRUE(loaded->getByName("map"));
+        EXPECT_TRUE(loaded->getByName("trajectory"));
+        SnapshotOptions options;
+        options.width_px = 640;
+        options.height_px = 480;  // with a legend
+        EXPECT_EQ(bytesOf(picture::picture(*loaded, options)),
+                  bytesOf(picture::picture(*scene, options)));
+    }
 }
 
 std::size_t redPixels(const CImage& image) {

@@ -27,8 +27,8 @@ TEST(PointMap, FindsTheNearestAsBruteForceDoes) {
     unsigned found = 0;
     for (int i = 0; i < 200; ++i) {
         const Eigen::Vector3d query = far + 4 * noise.normals();
-        Eigen::Vector3d nearest;
-        if (!map.nearest(query, 0.5, nearest)) continue;
+        const auto [any, nearest, others_m] = map.nearest(query, 0.5);
+        if (!any) continue;
         ++found;
         const double least = (points.colwise() - query).colwise().norm().minCoeff();
         // A full cell holds twenty points: one that it dropped may be nearer.
@@ -36,6 +36,28 @@ TEST(PointMap, FindsTheNearestAsBruteForceDoes) {
         EXPECT_LE((nearest - query).norm(), 0.5);
     }
     EXPECT_GT(found, 30U);
+}
+
+TEST(PointMap, OthersAreNoNearerThanItSays) {
+    test::Noise noise;
+    PointMapOptions options;
+    options.spacing = 0.01;
+    PointMap map(options);
+    const Eigen::Matrix3Xd points = cloud(300, 1.5, noise);
+    map.add(points);
+    ASSERT_EQ(map.size(), 300U) << "one was left out";
+    unsigned farther = 0;
+    for (int i = 0; i < 300; ++i) {
+        const Eigen::Vector3d query = 1.5 * noise.normals();
+        const auto [any, nearest, others_m] = map.nearest(query, 0.8);
+        const Eigen::RowVectorXd distances = (points.colwise() - query).colwise().norm();
+        for (Eigen::Index k = 0; k < points.cols(); ++k) {
+            const bool isIt = any && (points.col(k) - nearest).norm() < 1e-5;
+            EXPECT_TRUE(isIt || distances[k] >= others_m - 1e-4) << distances[k] << ' ' << others_m;
+        }
+        farther += any && others_m > (nearest - query).norm() + 0.05;
+    }
+    EXPECT_GT(farther, 30U);
 }
 
 TEST(PointMap, KeepsPointsThatAreApart) {
@@ -54,13 +76,12 @@ TEST(PointMap, ForgetsWhatIsFarAway) {
     map.add(Eigen::Vector3d(0, 0, 0));
     map.add(Eigen::Vector3d(500, 0, 0));
     map.forgetFarFrom({0, 0, 0});
-    Eigen::Vector3d nearest;
     EXPECT_EQ(map.size(), 1U);
-    EXPECT_TRUE(map.nearest({0.1, 0, 0}, 0.5, nearest));
-    EXPECT_FALSE(map.nearest({500.1, 0, 0}, 0.5, nearest));
+    EXPECT_TRUE(map.nearest({0.1, 0, 0}, 0.5).any);
+    EXPECT_FALSE(map.nearest({500.1, 0, 0}, 0.5).any);
     map.clear();
     EXPECT_EQ(map.size(), 0U);
-    EXPECT_FALSE(map.nearest({0.1, 0, 0}, 0.5, nearest));
+    EXPECT_FALSE(map.nearest({0.1, 0, 0}, 0.5).any);
 }
 
 TEST(PointMap, WhatTurnedOutToMoveIsErased) {
@@ -71,10 +92,9 @@ TEST(PointMap, WhatTurnedOutToMoveIsErased) {
     map.erase(moves + Eigen::Vector3d(0.05, 0, 0));
     map.erase(Eigen::Vector3d(50, 0, 0));
     EXPECT_EQ(map.size(), 1U);
-    Eigen::Vector3d nearest;
-    EXPECT_TRUE(map.nearest(stays, 0.05, nearest));
-    EXPECT_FALSE(map.nearest(moves, 0.3, nearest));
+    EXPECT_TRUE(map.nearest(stays, 0.05).any);
+    EXPECT_FALSE(map.nearest(moves, 0.3).any);
     map.add(moves);
-    EXPECT_TRUE(map.nearest(moves, 0.05, nearest));
+    EXPECT_TRUE(map.nearest(moves, 0.05).any);
 }
 }  // namespace

@@ -8,7 +8,7 @@ using run::RunRow;
 
 /** Scans 5, 6, 7 ...: '.' registered, 'p' predicted, 'w' an axis not observed, 'i' interrupted, 's'
  *  searched. */
-std::vector<RunRow> rowsOf(const std::string& kinds) {
+std::vector<RunRow> listOf(const std::string& kinds) {
     std::vector<RunRow> rows;
     for (const char kind : kinds) {
         RunRow row;
@@ -22,6 +22,14 @@ std::vector<RunRow> rowsOf(const std::string& kinds) {
     }
     return rows;
 }
+
+run::RunRows kept(const std::vector<RunRow>& rows) {
+    run::RunRows result;
+    for (const auto& row : rows) result.push_back(row);
+    return result;
+}
+
+run::RunRows rowsOf(const std::string& kinds) { return kept(listOf(kinds)); }
 
 TEST(Doubts, AreCountedWithTheirLongestStretch) {
     const auto doubts = run::doubtsOf(rowsOf(".pp.ppp..ww.wi"));
@@ -47,8 +55,8 @@ TEST(Doubts, SearchedScansAreCountedAndNoWarning) {
 }
 
 TEST(Doubts, WeakAxesAreTheVehicles) {
-    auto rows = rowsOf(".wwww.");
-    EXPECT_EQ(run::weakAxesOf(run::doubtsOf(rows)), "along x in 4");
+    auto rows = listOf(".wwww.");
+    EXPECT_EQ(run::weakAxesOf(run::doubtsOf(kept(rows))), "along x in 4");
     // A sensor that looks to the left: its x is the vehicle's y.
     rows[1].sensorPose.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
     // Two that are open, neither along one of the vehicle's; both nearest to x count once.
@@ -57,7 +65,7 @@ TEST(Doubts, WeakAxesAreTheVehicles) {
     axes << 0.8, -0.8, 0.6, 0.6, 0, 0;
     rows[3].report.step.quality.unobservedTranslation.resize(3, 0);
     rows[3].report.step.quality.unobservedRotation = -Eigen::Vector3d::UnitZ();
-    const auto doubts = run::doubtsOf(rows);
+    const auto doubts = run::doubtsOf(kept(rows));
     EXPECT_EQ(doubts.weak.scans, 4U);
     EXPECT_EQ(run::weakAxesOf(doubts), "along x in 2, along y in 1, about z in 1");
     const auto warnings = run::warningsOf(doubts);

@@ -24,11 +24,13 @@ std::vector<MapFix> someFixes() {
     return fixes;
 }
 
-std::vector<run::RunRow> someRows() {
-    std::vector<run::RunRow> rows(12);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        rows[i].scan = 100 + 2 * i;
-        rows[i].stamp_s = 0.5 * static_cast<double>(i);
+run::RunRows someRows() {
+    run::RunRows rows;
+    for (std::size_t i = 0; i < 12; ++i) {
+        run::RunRow row;
+        row.scan = 100 + 2 * i;
+        row.stamp_s = 0.5 * static_cast<double>(i);
+        rows.push_back(row);
     }
     return rows;
 }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
+#include "delio/core/error.h"
 #include "gauss_newton.h"
 #include "slam_drive.h"
 
@@ -41,6 +43,17 @@ TEST(Slam, GivesOnePoseForEachScanWithItsTime) {
     expectSame(mapping.slam.trajectory().poses, expected, 0.1, 0.6);
     expectSame(mapping.poses(), expected, 0.1, 0.6);
     EXPECT_EQ(mapping.map->builder().keyframes(), 2U);  // 2.5 m of path, one each 2 m
+}
+
+TEST(Slam, TakesNoScansOnceItIsClosed) {
+    const auto scans = scansOf(drive(2));
+    Mapping mapping(withSkipEdges(1));
+    mapping.slam.process(scans[0]);
+    mapping.slam.close();
+    EXPECT_THROW(mapping.slam.process(scans[1]), Error);
+    std::ostringstream state;
+    EXPECT_THROW(mapping.slam.save(state), Error);
+    EXPECT_EQ(mapping.slam.trajectory().poses.size(), 1U);
 }
 
 // S T S^-1 of the sensor's trajectory T: the same scans, seen as another vehicle's.

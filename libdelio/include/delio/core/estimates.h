@@ -14,13 +14,13 @@ struct RotationEstimate {
      *  0 to 1. Ground alone gives (0, 1, 1). */
     Eigen::Vector3d observability = Eigen::Vector3d::Zero();
     Eigen::Matrix3Xd unobservedAxes;  //!< unit vectors in frame `to` where the prediction was kept
-    std::size_t matches = 0;
-    double residual_rad = 0;  //!< weighted root mean square angle of the pairs
-    unsigned iterations = 0;
-    bool converged = false;  //!< false: ended by the most iterations that are allowed
+    std::size_t matches = 0;          //!< pairs of normals, or points on planes, that it stands on
+    double residual_rad = 0;          //!< weighted root mean square angle of the pairs
+    unsigned iterations = 0;          //!< in all rounds
+    bool converged = false;           //!< false: ended by the most iterations that are allowed
     /** False: too few normals, or a rotation too far from the prediction; it is the prediction. */
     bool valid = false;
-    bool tooFar = false;
+    bool tooFar = false;  //!< it was found, but farther from the prediction than is allowed
 };
 
 /** The same of the translation of the unrotated scan. */
@@ -35,14 +35,14 @@ struct TranslationEstimate {
      *  directions, 0 to 1. */
     Eigen::Vector3d observability = Eigen::Vector3d::Zero();
     Eigen::Matrix3Xd unobservedAxes;  //!< unit vectors along which the prediction was kept
-    std::size_t matches = 0;
+    std::size_t matches = 0;          //!< pairs of lines, or points on planes, that it stands on
     /** Share of the lines of `to` that have one of `from` next to them (midpoints no farther apart
      *  than `overlap_distance`): how much both scans see of the same surfaces, 0 to 1. */
     double overlap = 0;
-    double residual_m = 0;  //!< root mean square distance of the matched lines
-    unsigned iterations = 0;
-    bool converged = false;
-    bool valid = false;  //!< false: too few lines or matches; translation is the prediction
+    double residual_m = 0;    //!< root mean square distance of the matched lines
+    unsigned iterations = 0;  //!< in all rounds
+    bool converged = false;   //!< false: ended by the most iterations that are allowed
+    bool valid = false;       //!< false: too few lines or matches; translation is the prediction
 };
 
 /** Both estimates as one relative pose. Its covariance is in the right tangent, which is the later

@@ -9,7 +9,9 @@
  *  MRPT only. Tangent vectors are [x y z wx wy wz], metres and radians. Formulas: Solà, Deray,
  *  Atchuthan, "A micro Lie theory for state estimation in robotics" (arXiv 1812.01537). */
 namespace delio {
+/** A tangent vector or a twist: [x y z wx wy wz]. */
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+/** Covariance or information of one, or its Jacobian. */
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /** The matrix of the cross product: hat(v) u = v x u. */
@@ -18,6 +20,7 @@ Eigen::Matrix3d hat(const Eigen::Vector3d& v);
 /** SO(3): the rotation by |w| radians about w, and back. The logarithm's length is at most pi;
  *  at pi either axis will do. */
 Eigen::Matrix3d rotationExp(const Eigen::Vector3d& w);
+/** See rotationExp(). */
 Eigen::Vector3d rotationLog(const Eigen::Matrix3d& R);
 
 /** Of R in radians, 0 to pi. */
@@ -30,19 +33,23 @@ Eigen::Matrix3d inverseRightJacobian(const Eigen::Vector3d& w);
 /** SE(3): where constant velocity (m) and rate of turn (rad), both in the moving frame, lead to in
  *  a unit of time, and back. */
 Eigen::Isometry3d poseExp(const Vector6& twist);
+/** See poseExp(). */
 Vector6 poseLog(const Eigen::Isometry3d& pose);
 
 /** Moves a right tangent [x y z wx wy wz] from the frame that `pose` is named after to its
  *  reference: pose * exp(e) = exp(adjointOf(pose) e) * pose. */
 Matrix6 adjointOf(const Eigen::Isometry3d& pose);
 
+/** The pose that maps p to R p + t. */
 Eigen::Isometry3d isometry(const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
 
 /** A rotation once more, exactly: products of rotations lose it over thousands of scans. */
 Eigen::Matrix3d normalised(const Eigen::Matrix3d& R);
+/** The same of its rotation; the translation stays. */
 Eigen::Isometry3d normalised(const Eigen::Isometry3d& pose);
 
 /** The border to MRPT. */
 Eigen::Isometry3d fromMrpt(const mrpt::poses::CPose3D& pose);
+/** See fromMrpt(). */
 mrpt::poses::CPose3D toMrpt(const Eigen::Isometry3d& pose);
 }  // namespace delio

@@ -5,7 +5,7 @@ namespace delio {
 /** A relative pose with its uncertainty. `pose` maps the coordinates of the later frame to those
  *  of the earlier one (p_earlier = pose * p_later; chained: T_later = T_earlier * pose). */
 struct Increment {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< later frame to earlier one, metres
 
     /** Order [x y z wx wy wz], metres and radians, of the error e in
      *  pose_true = pose * (exp(w), t): the right tangent, expressed in the later frame. */

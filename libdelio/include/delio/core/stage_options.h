@@ -31,14 +31,15 @@ struct OptionField {
           meaning(std::move(meaning_)),
           words(std::move(words_)) {}
 
-    std::string key;
+    std::string key;  //!< in its section
+    /** Where its value is. */
     std::variant<double StageOptions::*, unsigned StageOptions::*, bool StageOptions::*,
                  std::string StageOptions::*>
         member;
-    std::string meaning;
-    double min = 0;  //!< smallest allowed number
-    double max = 0;  //!< largest allowed number
-    std::vector<std::string> words;
+    std::string meaning;             //!< with the unit
+    double min = 0;                  //!< smallest allowed number
+    double max = 0;                  //!< largest allowed number
+    std::vector<std::string> words;  //!< of a text: what it may be
 };
 
 /** Base of each stage's options. A stage names every option once, in fields(); reading is strict:
@@ -46,8 +47,10 @@ struct OptionField {
  *  `section.key`. A key that is absent keeps its value. */
 class StageOptions : public mrpt::config::CLoadableOptions {
  public:
+    /** Takes over the keys of a section; Error as above. */
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
+    /** Writes every key into a section. */
     void saveToConfigFile(mrpt::config::CConfigFileBase& target,
                           const std::string& section) const override;
 
@@ -60,6 +63,7 @@ class StageOptions : public mrpt::config::CLoadableOptions {
     virtual void check(const std::string& /*section*/) const {}
 
  protected:
+    /** Every option of the stage, once. */
     virtual std::vector<OptionField> fields() const = 0;
 };
 

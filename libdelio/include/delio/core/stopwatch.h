@@ -6,6 +6,7 @@ namespace delio {
 /** Milliseconds since it was made, or since lap_ms() was last called. */
 class Stopwatch {
  public:
+    /** Milliseconds since it was made, or since the last call. */
     double lap_ms() {
         const auto now = std::chrono::steady_clock::now();
         const double ms = std::chrono::duration<double, std::milli>(now - begin_).count();

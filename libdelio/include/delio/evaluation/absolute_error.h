@@ -6,8 +6,8 @@
 namespace delio::evaluation {
 /** Distances between positions after alignment, metres; NaN where there are no poses. */
 struct AbsoluteError {
-    double rmse_m = 0;
-    double max_m = 0;
+    double rmse_m = 0;  //!< root mean square
+    double max_m = 0;   //!< largest
 };
 
 /** APE: the positions of the estimate are moved onto those of the reference by the best rigid

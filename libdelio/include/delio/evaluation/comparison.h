@@ -16,10 +16,10 @@ namespace delio::evaluation {
 /** One estimate on one sequence, pose by pose: `reference[i]`, `estimate[i]`, `times_s[i]` and
  *  `predicted[i]` belong together. */
 struct Comparison {
-    ReportRow row;  //!< without its names, which are the caller's to set
-    std::vector<Eigen::Isometry3d> reference;
-    std::vector<Eigen::Isometry3d> estimate;
-    std::vector<double> times_s;   //!< since the first pose
+    ReportRow row;                             //!< without its names, which are the caller's to set
+    std::vector<Eigen::Isometry3d> reference;  //!< true poses
+    std::vector<Eigen::Isometry3d> estimate;   //!< their partners
+    std::vector<double> times_s;               //!< since the first pose
     bool timesAreAssumed = false;  //!< no file has times: ten poses a second, as KITTI has it
     std::vector<bool> predicted;   //!< scans that were not registered; empty where not known
     RelativeError perScan;         //!< of the motion from each pose to the next
@@ -33,6 +33,7 @@ struct Comparison {
     double endError_percent() const;
 };
 
+/** What compare() is asked for. */
 struct ComparisonSettings {
     /** Of KITTI's segments. Empty: kittiLengths_m(), or suggestedLengths_m() where the path is
      *  shorter than twice the first of them. */
@@ -43,8 +44,9 @@ struct ComparisonSettings {
 /** The two trajectories are of different moving frames. */
 class WrongFrames : public Error {
  public:
+    /** With a message that says which, and what to do. */
     explicit WrongFrames(FrameMismatch found);
-    FrameMismatch mismatch() const { return mismatch_; }
+    FrameMismatch mismatch() const { return mismatch_; }  //!< which way round
 
  private:
     FrameMismatch mismatch_;

@@ -8,8 +8,8 @@ namespace delio::evaluation {
 /** A stretch of the drive from pose `first` to pose `last`, and what the estimate got wrong on it.
  */
 struct Segment {
-    std::size_t first = 0;
-    std::size_t last = 0;
+    std::size_t first = 0;      //!< number of the pose that it begins with
+    std::size_t last = 0;       //!< number of the pose that it ends with
     double length_m = 0;        //!< asked for; the last pose is the first one beyond it
     double t_percent = 0;       //!< translation error per length, in percent
     double r_deg_per_100m = 0;  //!< rotation error per length, in deg per 100 m
@@ -17,17 +17,20 @@ struct Segment {
 
 /** Mean errors of a number of segments; NaN where there is none. */
 struct SegmentErrors {
-    std::size_t segments = 0;
+    std::size_t segments = 0;   //!< that the means are over
     double t_percent = 0;       //!< translation error per length of the segment, in percent
     double r_deg_per_100m = 0;  //!< rotation error per length of the segment, in deg per 100 m
 };
 
+/** The plain mean over segments. */
 SegmentErrors meanOf(const std::vector<Segment>& segments);
 
+/** Mean errors of the segments of one length. */
 struct LengthErrors : SegmentErrors {
-    double length_m = 0;
+    double length_m = 0;  //!< of each of them, as asked for
 };
 
+/** Mean errors of all segments, and what they are made of. */
 struct KittiErrors : SegmentErrors {
     std::vector<LengthErrors> perLength;  //!< one per length asked for, in that order
     std::vector<Segment> all;             //!< in order of their lengths

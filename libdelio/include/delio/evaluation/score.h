@@ -13,10 +13,10 @@ struct ReportRow {
     std::string name;      //!< of the estimate
     std::string sequence;  //!< "avg" in a row of averages
     double length_m = 0;   //!< of the reference's path
-    KittiErrors kitti;
-    double ape_m = 0;    //!< RMSE after rigid alignment
-    double rpe_m = 0;    //!< RMSE
-    double rpe_deg = 0;  //!< RMSE
+    KittiErrors kitti;     //!< over KITTI's segments
+    double ape_m = 0;      //!< RMSE after rigid alignment
+    double rpe_m = 0;      //!< RMSE
+    double rpe_deg = 0;    //!< RMSE
 };
 
 /** Scores an estimate pose by pose: every metric of a row. */

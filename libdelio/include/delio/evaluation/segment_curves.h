@@ -6,9 +6,9 @@
 namespace delio::evaluation {
 /** Mean errors of the segments of about one length, or one speed. */
 struct CurvePoint {
-    double at = 0;  //!< length in metres, or speed in km/h
-    double t_percent = 0;
-    double r_deg_per_100m = 0;
+    double at = 0;              //!< length in metres, or speed in km/h
+    double t_percent = 0;       //!< translation error per length, in percent
+    double r_deg_per_100m = 0;  //!< rotation error per length, in deg per 100 m
 };
 
 /** Errors over the length of the segments, as KITTI's development kit plots them: all segments of

@@ -13,9 +13,9 @@ struct WhitenedGraph;
 
 /** A measured relative pose between two nodes: T_to = T_from + increment.pose. */
 struct Edge {
-    std::size_t from = 0;
-    std::size_t to = 0;
-    Increment increment;
+    std::size_t from = 0;  //!< node whose frame the increment maps to
+    std::size_t to = 0;    //!< node whose frame it maps from
+    Increment increment;   //!< `to` to `from`, covariance in the frame of `to`
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
@@ -24,6 +24,7 @@ struct Edge {
     }
 };
 
+/** How a graph is made and optimised. */
 struct PoseGraphOptions : StageOptions {
     /** More edges than the chain (i,i+1): 1 adds (i,i+2), 2 adds (i,i+3) too, as long as the two
      *  scans overlap by `min_overlap` (TranslationEstimate::overlap). For whoever makes the edges;
@@ -41,6 +42,7 @@ struct PoseGraphOptions : StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
+/** What a minimisation came to. */
 struct OptimisationResult {
     double initial_cost = 0;  //!< F before (no factor 1/2; robust if there is a kernel)
     double final_cost = 0;    //!< F after; never more than before
@@ -85,7 +87,8 @@ class PoseGraph {
      *  large drift. Error as above. */
     OptimisationResult optimiseLast(std::size_t count, const PoseGraphOptions& options);
 
-    const std::vector<Eigen::Isometry3d>& poses() const { return poses_; }
+    const std::vector<Eigen::Isometry3d>& poses() const { return poses_; }  //!< of all nodes
+    /** In the order in which they were added. */
     const std::vector<Edge>& edges() const { return edges_; }
     /** Omega of edges()[i], in the order of delio::Increment. */
     const Matrix6& information(std::size_t i) const { return information_[i]; }

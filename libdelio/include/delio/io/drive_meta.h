@@ -7,10 +7,10 @@ namespace delio::io {
 struct DriveMeta {
     std::string sensorModel = "unknown";  //!< e.g. HDL-64E
     std::string source = "unknown";       //!< kitti-odometry | kitti-raw | synthetic
-    bool motionCompensated = true;
-    double verticalCorrectionDeg = 0;  //!< to be added to every point's vertical angle
-    double epoch_s = 0;                //!< Unix time of second 0 of times.txt
-    std::string generator;             //!< program and version that wrote the rawlog
+    bool motionCompensated = true;        //!< the recorder brought each scan to its stamp
+    double verticalCorrectionDeg = 0;     //!< to be added to every point's vertical angle
+    double epoch_s = 0;                   //!< Unix time of second 0 of times.txt
+    std::string generator;                //!< program and version that wrote the rawlog
 };
 
 /** `DRIVE.rawlog` and `.meta.yaml` give `DRIVE.meta.yaml`. */

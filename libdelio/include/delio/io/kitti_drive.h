@@ -8,13 +8,14 @@
 namespace delio::io {
 /** A drive in one of KITTI's two layouts, as it lies on the disk. */
 struct KittiDrive {
-    DriveMeta meta;
+    DriveMeta meta;                            //!< with the correction that KITTI's sensor needs
     std::vector<std::filesystem::path> scans;  //!< in order of their numbers
     std::vector<double> times_s;               //!< one per scan, since meta.epoch_s
     std::vector<std::string> timeRows;  //!< one per scan, as they stand in times.txt; or none
     std::vector<std::string> poseRows;  //!< one per scan, in the cam0 frame; or none
     std::string calibText;              //!< of calib.txt; empty where there is no calibration
-    std::string posesName, calibName;   //!< the files of these, also where there are none
+    std::string posesName;              //!< file of the poses, also where there is none
+    std::string calibName;              //!< file of the calibration, likewise
     bool nominalTimes = false;          //!< there are none: 0.1 s apart
     std::vector<std::string> warnings;  //!< what is missing but not needed
 };

@@ -19,6 +19,7 @@ class PartialFolder {
     PartialFolder(const PartialFolder&) = delete;
     PartialFolder& operator=(const PartialFolder&) = delete;
 
+    /** Where files are to be written. */
     const std::filesystem::path& path() const { return path_; }
 
     /** Moves the files and folders `names` into `folder`, in place of what is

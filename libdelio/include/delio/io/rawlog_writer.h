@@ -64,7 +64,7 @@ class RawlogWriter {
                 const std::string& posesText, const std::string& faultsText = "",
                 const std::string& originText = "");
 
-    std::size_t scans() const { return count_; }
+    std::size_t scans() const { return count_; }  //!< that were added
 
  private:
     /** Appends an observation that has no time or label yet. */

@@ -76,6 +76,7 @@ struct ScanSource {
  *  it is is not known, or what is said about the drive cannot be understood; a fault in these scans
  *  is thrown by next(). */
 std::unique_ptr<ScanReader> openScans(const ScanSource& source);
+/** The same of a source that needs no more to be told: members of ScanSource. */
 std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label = "",
                                       const std::string& imagesFolder = "");
 

@@ -8,7 +8,7 @@ namespace delio::io {
 /** Poses along a drive, in order of time: each maps the coordinates of the moving frame to those
  *  of the frame of the first pose (or of the world, if the file says so). */
 struct Trajectory {
-    std::vector<Eigen::Isometry3d> poses;
+    std::vector<Eigen::Isometry3d> poses;  //!< metres
     std::vector<double> stamps_s;  //!< one per pose, or empty where the file has none (KITTI)
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
@@ -43,8 +43,8 @@ std::vector<double> readTimes(const std::string& path);
 
 /** KITTI's calib.txt: `Tr`, which maps LiDAR coordinates to cam0 coordinates. */
 struct Calibration {
-    bool hasTr = false;
-    Eigen::Isometry3d Tr = Eigen::Isometry3d::Identity();
+    bool hasTr = false;                                    //!< false: the file has no Tr
+    Eigen::Isometry3d Tr = Eigen::Isometry3d::Identity();  //!< LiDAR to cam0, metres
 };
 
 /** Throws Error for a missing file or a malformed Tr; a file without Tr gives hasTr = false. */

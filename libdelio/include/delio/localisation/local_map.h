@@ -11,6 +11,7 @@ namespace delio {
  *  near, a few points at a time, and forgotten when they are far. */
 class LocalMap {
  public:
+    /** Of nothing yet: see load(). */
     explicit LocalMap(std::shared_ptr<const StoredMap> map);
 
     /** Takes in all that is near `place` (the map's frame). */
@@ -18,6 +19,7 @@ class LocalMap {
     /** The same, not more than a scan has time for: what comes near on the way is there in time. */
     void follow(const Eigen::Vector3d& place);
 
+    /** Points and planes of what is near, in the map's frame. */
     const ScanToMap& scanToMap() const { return map_; }
 
     /** What has to be kept to go on later: see core/checkpoint.h. */

@@ -9,6 +9,7 @@
 #include "delio/localisation/place_search.h"
 
 namespace delio {
+/** When a vehicle counts as lost, and how it is searched for. */
 struct LocalisationOptions : public StageOptions {
     double min_share = 0.5;
     double drift = 0.01;
@@ -27,7 +28,7 @@ enum class Whereabouts {
 
 /** What is known of the vehicle's place in a stored map at a scan. */
 struct MapFix {
-    Whereabouts where = Whereabouts::kUnknown;
+    Whereabouts where = Whereabouts::kUnknown;  //!< with respect to the map
     Increment vehicle;      //!< its pose in the map's frame; where unknown, nothing
     bool measured = false;  //!< registered to the map, otherwise from the odometry
     bool searched = false;  //!< all places were compared
@@ -46,6 +47,7 @@ struct MapFix {
  *  it again when it comes back. A place counts as found when the scans after it confirm it. */
 class MapTracker {
  public:
+    /** In `map`, of which nothing is known but what expect() says. */
     MapTracker(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& search,
                const LocalisationOptions& options);
 
@@ -59,8 +61,9 @@ class MapTracker {
     /** Takes back the scan that was added last. */
     void undo() noexcept;
 
-    const StoredMap& map() const { return *map_; }
-    const LocalisationOptions& options() const { return options_; }
+    const StoredMap& map() const { return *map_; }                   //!< that it was made with
+    const LocalisationOptions& options() const { return options_; }  //!< that it was made with
+    /** That it was made with. */
     const PlaceSearchOptions& searchOptions() const { return search_.options(); }
 
     /** What has to be kept to go on later in the same map: see core/checkpoint.h. */

@@ -7,6 +7,7 @@
 #include "delio/loops/place_index.h"
 
 namespace delio {
+/** When a place counts as found. */
 struct PlaceSearchOptions : public StageOptions {
     double min_overlap = 0.45;
     double max_bare = 0.2;
@@ -19,11 +20,11 @@ struct PlaceSearchOptions : public StageOptions {
 /** A place of the map that a cloud was recognised at, or why none was. */
 struct FoundPlace {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< the cloud's frame to the map's
-    double overlap = 0;  //!< of what stands in the cloud so much stands in the map
-    double bare = 0;     //!< of the walls of one so much is free space of the other
-    double rival = 0;    //!< overlap at another place where it could be, too
-    std::size_t submap = 0;
-    std::string reason;  //!< empty: it was found
+    double overlap = 0;      //!< of what stands in the cloud so much stands in the map
+    double bare = 0;         //!< of the walls of one so much is free space of the other
+    double rival = 0;        //!< overlap at another place where it could be, too
+    std::size_t submap = 0;  //!< number of the map's submap that it was found by
+    std::string reason;      //!< empty: it was found
 };
 
 /** Finds a levelled cloud in a stored map, knowing nothing of where it was taken: all places and
@@ -32,9 +33,10 @@ struct FoundPlace {
  *  on what the other saw as free space, and no place elsewhere may look as good. */
 class PlaceSearch {
  public:
+    /** Reads what all submaps of `map` are found by. Error where that is damaged. */
     PlaceSearch(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& options);
 
-    const PlaceSearchOptions& options() const { return options_; }
+    const PlaceSearchOptions& options() const { return options_; }  //!< that it was made with
 
     /** `cloud`: z up, metres. */
     FoundPlace find(const Eigen::Matrix3Xf& cloud);

@@ -13,19 +13,20 @@
 namespace delio {
 /** A drive that a map was made of: its scans are nodes of the map's graph, one after the other. */
 struct StoredDrive {
-    std::string name;
-    std::size_t firstNode = 0;
+    std::string name;              //!< of its recording: io::nameOfDrive()
+    std::size_t firstNode = 0;     //!< node of its first scan
     std::vector<double> stamps_s;  //!< of each of its scans
 };
 
 /** What a stored map is written of. Poses are the vehicle's in the map's frame, which is that of
  *  the first scan of its first drive. */
 struct MapContent {
-    graph::PoseGraph graph;
-    std::vector<StoredDrive> drives;
+    graph::PoseGraph graph;              //!< a node a scan, of all drives
+    std::vector<StoredDrive> drives;     //!< in the order of their nodes
     std::vector<loops::Submap> submaps;  //!< without their points
-    /** Of each of them. */
+    /** What each of them is found by. */
     std::function<loops::Sketch(std::size_t)> sketch;
+    /** Points of each of them: metres, its level frame. */
     std::function<Eigen::Matrix3Xf(std::size_t)> points;
 };
 
@@ -34,7 +35,7 @@ struct MapContent {
  *  when they are asked for, by any thread. Coordinates are rounded to 5 mm. */
 class StoredMap {
  public:
-    static constexpr std::uint32_t kVersion = 1;
+    static constexpr std::uint32_t kVersion = 1;  //!< of the file
 
     /** Throws Error where the file is missing, no such map, of another version or cut off. */
     explicit StoredMap(const std::string& path);
@@ -42,9 +43,11 @@ class StoredMap {
     StoredMap(const StoredMap&) = delete;
     StoredMap& operator=(const StoredMap&) = delete;
 
-    const std::string& path() const { return path_; }
-    const graph::PoseGraph& graph() const { return graph_; }
+    const std::string& path() const { return path_; }         //!< of the file
+    const graph::PoseGraph& graph() const { return graph_; }  //!< a node a scan, of all drives
+    /** In the order of their nodes. */
     const std::vector<StoredDrive>& drives() const { return drives_; }
+    /** Without their points. */
     const std::vector<loops::Submap>& submaps() const { return submaps_; }
     /** Of each submap: maps its coordinates to the map's. */
     const std::vector<Eigen::Isometry3d>& levelFrames() const { return level_; }
@@ -52,8 +55,9 @@ class StoredMap {
     /** Of one of its drives, in the map's frame. */
     io::Trajectory trajectory(const StoredDrive& drive) const;
 
-    /** Throw Error where that part of the file is damaged. */
+    /** What a submap is found by. Error where that part of the file is damaged. */
     loops::Sketch sketch(std::size_t submap) const;
+    /** Points of a submap: metres, its level frame. Error likewise. */
     Eigen::Matrix3Xf points(std::size_t submap) const;
 
     /** All of them in the map's frame, one in `spacing` metres. */

@@ -13,6 +13,7 @@ class Azimuths {
  public:
     static constexpr Eigen::Index kBins = 720;  //!< of half a turn
 
+    /** Of the normals of a levelled cloud. */
     explicit Azimuths(const surfaces::SurfaceNormals& surfaces);
     /** Of what weights() of another one gave. */
     static Azimuths ofWeights(Eigen::VectorXd weights) {

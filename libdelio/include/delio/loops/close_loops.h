@@ -7,10 +7,10 @@
 namespace delio::loops {
 /** A drive whose loops were closed. */
 struct ClosedLoops {
-    graph::PoseGraph graph;  //!< optimised; the loops' edges are its last ones
-    graph::OptimisationResult optimisation;
-    std::vector<LoopCandidate> candidates;  //!< of the last search
-    std::size_t accepted = 0;               //!< of these: so many edges that are new
+    graph::PoseGraph graph;                  //!< optimised; the loops' edges are its last ones
+    graph::OptimisationResult optimisation;  //!< of the last time
+    std::vector<LoopCandidate> candidates;   //!< of the last search
+    std::size_t accepted = 0;                //!< of these: so many edges that are new
     /** Of the drift that LoopOptions expect, so much do the loops show (standard deviations); 0:
      *  none that the odometry's own covariances do not explain. The chain's edges in `graph` have
      *  that added: along their path, since what drifts goes one way and is no noise of scans. */

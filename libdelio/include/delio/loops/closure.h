@@ -11,6 +11,7 @@
 #include "delio/scan/voxel_table.h"
 
 namespace delio::loops {
+/** When two submaps show one place. */
 struct ClosureOptions : public StageOptions {
     double min_overlap = 0.3;
     double min_share = 0.5;
@@ -26,6 +27,7 @@ struct ClosureOptions : public StageOptions {
  *  frame. */
 class RegistrableSubmap {
  public:
+    /** `points`: metres, the submap's level frame. */
     explicit RegistrableSubmap(const Eigen::Matrix3Xf& points);
 
     /** `other` to this, from `guess` on, which may be off by 2 m: by points, then by planes. */
@@ -34,7 +36,8 @@ class RegistrableSubmap {
 
     /** Of the one that fills fewer voxels of 0.5 m above the ground the share that both fill:
      *  Szymkiewicz and Simpson's coefficient, 0 to 1. (Ground lies on ground anywhere.) */
-    double overlap(const RegistrableSubmap& other, const Eigen::Isometry3d& pose) const;
+    double overlap(const RegistrableSubmap& other, const Eigen::Isometry3d& pose)
+        const;  //!< RegistrableSubmap::overlap() where `to` was brought
 
     /** Of the voxels of 0.5 m that the other fills above the ground the share that this one fills,
      *  too; 0 to 1. Those above all that this one saw in that column are left out (a sensor sees so
@@ -54,9 +57,9 @@ class RegistrableSubmap {
 struct Closure {
     Eigen::Isometry3d level = Eigen::Isometry3d::Identity();  //!< `to` to `from`, level frames
     Increment increment;  //!< `to` to `from`, the vehicle's frames at the key nodes
-    double overlap = 0;
-    double share = 0;    //!< of the points in voxels with a plane those that lie on it
-    std::string reason;  //!< why it is none; empty: it is one
+    double overlap = 0;   //!< of what stands in both: RegistrableSubmap::overlap()
+    double share = 0;     //!< of the points in voxels with a plane those that lie on it
+    std::string reason;   //!< why it is none; empty: it is one
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
@@ -67,8 +70,8 @@ struct Closure {
 
 /** A submap and what others are registered to. */
 struct ClosureEnd {
-    const Submap& submap;
-    const RegistrableSubmap& map;
+    const Submap& submap;          //!< where it is in the drive
+    const RegistrableSubmap& map;  //!< its points and planes
 };
 
 /** Registers `to` to `from`, from `guess` on. */

@@ -9,8 +9,8 @@
 namespace delio::loops {
 /** What others are registered to and compared with: 10 to 20 MB for a submap. */
 struct Ground {
-    RegistrableSubmap map;
-    FreeSpace free;
+    RegistrableSubmap map;  //!< its points and planes
+    FreeSpace free;         //!< what it saw to be empty
 
     /** `image`: of the same points. */
     Ground(const Eigen::Matrix3Xf& points, const HeightImage& image)
@@ -20,6 +20,7 @@ struct Ground {
 /** Of many submaps those that were needed last. */
 class Grounds {
  public:
+    /** Keeps so many. */
     explicit Grounds(std::size_t most) : most_(most) {}
 
     /** `make`: where it was not needed lately. */

@@ -10,8 +10,9 @@ namespace delio::loops {
  *  is something (a bit each). What drifts most, the height, is not in it. */
 class HeightImage {
  public:
-    static constexpr double kCell_m = 0.5;
+    static constexpr double kCell_m = 0.5;  //!< edge of a cell, metres
 
+    /** `points`: metres, z up. */
     explicit HeightImage(const Eigen::Matrix3Xf& points);
     /** Of what cells(), bands(), grounds() and heights() of another one gave. */
     HeightImage(const Eigen::Matrix2Xd& cells, std::vector<std::uint8_t> bands,
@@ -19,6 +20,7 @@ class HeightImage {
 
     /** Where something stands; x and y of the cell's centre, in metres. */
     Eigen::Matrix2Xd cells() const { return kCell_m / 2 * halves_.cast<double>(); }
+    /** Of each cell, a bit a height. */
     const std::vector<std::uint8_t>& bands() const { return bands_; }
     /** Height of the ground about that place, metres; NaN where none was seen. */
     double groundAt(double x, double y) const;
@@ -41,7 +43,7 @@ Eigen::Matrix3Xd aboveGround(const Eigen::Matrix3Xf& points);
 
 /** Where the other image, turned by `yaw`, lies on this one. */
 struct Shift {
-    double yaw = 0;
+    double yaw = 0;                                         //!< rad, about z
     Eigen::Vector3d translation = Eigen::Vector3d::Zero();  //!< other to this, metres
     /** Of the bands of that one which has fewer, so many meet some of the other's; 0 to 1. */
     double share = 0;

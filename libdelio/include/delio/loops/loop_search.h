@@ -11,6 +11,7 @@
 namespace delio::loops {
 class Places;
 
+/** Where loops are looked for, and which are believed. */
 struct LoopOptions : public StageOptions {
     double min_path = 50;
     double drift = 0.005;
@@ -27,20 +28,25 @@ struct LoopOptions : public StageOptions {
 /** By how much an odometry may be off after a stretch: standard deviations along a level axis, of
  *  the height and of the rotation. */
 struct Drift {
-    double level_m = 0, up_m = 0, turn_rad = 0;
+    double level_m = 0;   //!< along x or y, metres
+    double up_m = 0;      //!< along z, metres
+    double turn_rad = 0;  //!< about any axis
 };
+/** What the options expect of so much path, and what the odometry's own covariances say, summed. */
 Drift driftOf(const Stretch& driven, const LoopOptions& options);
 
 /** Two submaps that may show one place, and what was found. */
 struct LoopCandidate {
-    std::size_t from = 0, to = 0;          //!< submaps, the earlier first
-    std::size_t fromNode = 0, toNode = 0;  //!< their key nodes
-    double path_m = 0;                     //!< driven between
-    double reach_m = 0;                    //!< within which it was looked for, about `expected`
+    std::size_t from = 0;      //!< the earlier submap
+    std::size_t to = 0;        //!< the later one
+    std::size_t fromNode = 0;  //!< key node of `from`
+    std::size_t toNode = 0;    //!< key node of `to`
+    double path_m = 0;         //!< driven between
+    double reach_m = 0;        //!< within which it was looked for, about `expected`
     Eigen::Isometry3d expected = Eigen::Isometry3d::Identity();  //!< `to` to `from`, level frames
     double share = 0;                                            //!< of the height images that met
     Closure closure;  //!< with the reason why it was not accepted
-    bool accepted() const { return closure.reason.empty(); }
+    bool accepted() const { return closure.reason.empty(); }  //!< both are one place
     double moved_m() const;  //!< found so far from where it was expected
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
@@ -75,10 +81,11 @@ class LoopSearch {
     const std::vector<LoopCandidate>& candidates() const { return candidates_; }
     /** Without their points. */
     const std::vector<Submap>& submaps() const { return submaps_; }
+    /** What a submap is found by. */
     const Sketch& sketch(std::size_t submap) const;
     /** Of a submap; from the disk. */
     Eigen::Matrix3Xf points(std::size_t submap) const;
-    const LoopOptions& options() const { return options_; }
+    const LoopOptions& options() const { return options_; }  //!< that it was made with
 
     /** What was added and found. Error where the submaps are in a file without a name, or it cannot
      *  be written. */

@@ -7,7 +7,7 @@
 namespace delio::loops {
 /** A place that a cloud may have been seen at. */
 struct Sighting {
-    std::size_t place = 0;
+    std::size_t place = 0;  //!< its number, in the order of add()
     Shift shift;  //!< the cloud to the place; not better than a cell of 2 m and 5 deg, z is 0
 };
 
@@ -17,7 +17,7 @@ class PlaceIndex {
  public:
     /** The next place. */
     void add(const HeightImage& image);
-    std::size_t size() const { return places_.size(); }
+    std::size_t size() const { return places_.size(); }  //!< places
 
     /** Of each place that which fits best, of these the best `most`, the best first. */
     std::vector<Sighting> find(const HeightImage& cloud, std::size_t most) const;

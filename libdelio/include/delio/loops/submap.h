@@ -9,6 +9,7 @@
 #include "delio/core/stage_options.h"
 
 namespace delio::loops {
+/** Where a drive is cut, and what is kept of it. */
 struct SubmapOptions : public StageOptions {
     double path = 50;
     double straight = 25;
@@ -22,10 +23,13 @@ struct SubmapOptions : public StageOptions {
 /** So much of a drive, and by how much the odometry itself says that it may be off at its end:
  *  variances of place and rotation, summed up over its increments. A pause makes them large. */
 struct Stretch {
-    double path_m = 0;
-    double variance_m2 = 0, variance_rad2 = 0;
+    double path_m = 0;         //!< length of the way, metres
+    double variance_m2 = 0;    //!< of the place, along its worst axes
+    double variance_rad2 = 0;  //!< of the rotation, about its worst axes
 
+    /** The next increment, which moved the vehicle by so many metres. */
     void add(const Increment& increment, double moved_m);
+    /** One after the other. */
     Stretch operator+(const Stretch& other) const;
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
@@ -41,10 +45,13 @@ Stretch between(const Stretch& a, const Stretch& b);
 /** What was seen along a stretch of a drive, as one levelled cloud. Metres. Its frame has the
  *  origin at the vehicle's at the key node, and z up; `level` maps it to the vehicle's there. */
 struct Submap {
-    std::size_t first = 0, key = 0, last = 0;  //!< nodes of the pose graph
-    Stretch driven;                            //!< from the drive's first scan to the key node
-    Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
-    Eigen::Matrix3Xf points;  //!< one in `spacing`
+    std::size_t first = 0;  //!< node of the pose graph that it begins with
+    std::size_t key = 0;    //!< node whose pose carries it
+    std::size_t last = 0;   //!< node that it ends with
+    Stretch driven;         //!< from the drive's first scan to the key node
+    Eigen::Matrix3d level =
+        Eigen::Matrix3d::Identity();  //!< rotation, this frame to the vehicle's at the key node
+    Eigen::Matrix3Xf points;          //!< one in `spacing`
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
@@ -61,8 +68,9 @@ std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,
  *  `straight`, whichever comes first, so that small loops close, too; and before a gap. */
 class SubmapBuilder {
  public:
+    /** Of a drive that begins. */
     explicit SubmapBuilder(const SubmapOptions& options) : options_(options) {}
-    const SubmapOptions& options() const { return options_; }
+    const SubmapOptions& options() const { return options_; }  //!< that it was made with
 
     /** The next scan: increment since the one before, points in the vehicle's frame and the unit
      *  vector that points up in it. Where it begins another submap, the one that ended. */

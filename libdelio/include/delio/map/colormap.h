@@ -20,8 +20,9 @@ mrpt::img::TColor colourAt(Colormap colormap, double t);
 
 /** Limits that a range of colours is laid between so that a few outliers do not use it up. */
 struct ValueRange {
-    double low = 0;
-    double high = 1;
+    double low = 0;   //!< value of the lowest colour
+    double high = 1;  //!< value of the highest colour
+    /** Where a value lies: 0 at `low`, 1 at `high`. */
     double fractionAt(double value) const { return (value - low) / (high - low); }
 };
 

@@ -21,15 +21,17 @@ std::vector<std::string> colourByNames();
 /** Throws Error for an unknown name, listing the known ones. */
 ColourBy colourByNamed(const std::string& name);
 
+/** How a map is coloured. */
 struct Colouring {
-    ColourBy by = ColourBy::Height;
+    ColourBy by = ColourBy::Height;       //!< what the colours say
     Colormap colormap = Colormap::Turbo;  //!< normals have colours of their own
 };
 
 /** A colour a point, and what a legend needs to say what they mean. */
 struct Colours {
-    std::vector<mrpt::img::TColor> ofPoints;
-    std::string name, unit;           //!< "height above ground", " m"
+    std::vector<mrpt::img::TColor> ofPoints;  //!< in the order of the points
+    std::string name;                         //!< of what they say: "height above ground"
+    std::string unit;                         //!< with the blank before it: " m"; may be empty
     std::optional<ValueRange> range;  //!< that the colour map is laid over; normals have none
 };
 

@@ -16,8 +16,9 @@ Eigen::Isometry3d groundFrame(const MapPoints& points, const Eigen::Isometry3d& 
 
 /** Where on the earth the vehicle was first, and how it stood there. */
 struct GeoReference {
-    double latitude_deg = 0, longitude_deg = 0;
-    double altitude_m = 0;   //!< above the WGS84 ellipsoid
+    double latitude_deg = 0;   //!< WGS84, north positive
+    double longitude_deg = 0;  //!< WGS84, east positive
+    double altitude_m = 0;     //!< above the WGS84 ellipsoid
     double heading_deg = 0;  //!< of the vehicle's x axis, from north, clockwise as seen from above
 };
 

@@ -65,7 +65,9 @@ class MapBuilder {
     explicit MapBuilder(const MapOptions& options, std::string sensorLabel = "lidar",
                         std::string folder = "", bool isKept = false);
     ~MapBuilder();
+    /** Moves; what is left of the other is of no use. */
     MapBuilder(MapBuilder&&) noexcept;
+    /** Likewise. */
     MapBuilder& operator=(MapBuilder&&) noexcept;
 
     /** Adds a scan; returns true if it became a keyframe: the first one, and every one that is
@@ -90,7 +92,7 @@ class MapBuilder {
      *  last can be taken back, and once. */
     void undo() noexcept;
 
-    std::size_t keyframes() const { return now_.keyframes; }
+    std::size_t keyframes() const { return now_.keyframes; }  //!< among the scans that were added
 
     /** What was added. Error where scans are in a file without a name, or it cannot be written. */
     void save(std::ostream& out) const;

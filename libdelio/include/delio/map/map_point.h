@@ -17,9 +17,11 @@ struct MapPoint {
     float residual_m = 0;  //!< root mean square distance of the points about it from their plane
     std::uint16_t observations = 0;  //!< scans that saw something in its voxel; 0: not known
 };
+/** All in one frame, the map's. */
 using MapPoints = std::vector<MapPoint>;
 
 /** Positions and intensities as MRPT has them, and the other way round. */
 mrpt::maps::CPointsMapXYZI cloudOf(const MapPoints& points);
+/** See cloudOf(); all else is not known. */
 MapPoints pointsOf(const mrpt::maps::CPointsMap& cloud);
 }  // namespace delio::map

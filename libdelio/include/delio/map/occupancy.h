@@ -8,6 +8,7 @@
 #include "delio/map/map_point.h"
 
 namespace delio::map {
+/** What of a map is in the way of a vehicle. */
 struct OccupancyOptions {
     double resolution_m = 0.1;   //!< edge of a cell
     double low_m = 0.3;          //!< above the ground: from here on something is in the way

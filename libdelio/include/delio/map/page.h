@@ -11,18 +11,19 @@
 namespace delio::map {
 /** What a page shows, in the map's frame. All but the points may be empty. */
 struct PageContent {
-    std::string title;  //!< any text
-    MapPoints points;
-    MapPoints dynamic;  //!< of movers, kept apart
-    std::vector<Eigen::Isometry3d> trajectory;
+    std::string title;                          //!< any text
+    MapPoints points;                           //!< what stands still
+    MapPoints dynamic;                          //!< of movers, kept apart
+    std::vector<Eigen::Isometry3d> trajectory;  //!< final poses of the vehicle
     std::vector<Eigen::Isometry3d> odometry;  //!< before the graph; not shown where it is the same
     std::vector<std::pair<std::size_t, std::size_t>> loops;  //!< places of `trajectory`
-    std::vector<Eigen::Isometry3d> truth;
+    std::vector<Eigen::Isometry3d> truth;                    //!< true poses, where they are known
 };
 
 /** Of more points, a page shows so many, taken evenly, and says so: what a laptop draws fluently
  *  and mail still takes. */
 constexpr std::size_t kMostPagePoints = 2000000;
+/** The same of what moved. */
 constexpr std::size_t kMostPageDynamic = 200000;
 
 /** Where the build found three.js, which draws a page. */

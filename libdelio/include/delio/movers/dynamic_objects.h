@@ -11,6 +11,7 @@
 #include "delio/scan/range_image.h"
 
 namespace delio::movers {
+/** Which segments are dynamic. */
 struct DynamicObjectsOptions : public StageOptions {
     bool enabled = true;
     double cell_deg = 0.5;
@@ -31,6 +32,7 @@ struct DynamicObjectsOptions : public StageOptions {
  *    from such a row as it did. */
 class DynamicObjects {
  public:
+    /** Of no scan yet. */
     DynamicObjects(const DynamicObjectsOptions& options, const SegmentOptions& segments)
         : options_(options), segmentOptions_(segments) {}
 
@@ -112,6 +114,7 @@ class DynamicObjects {
     Eigen::Matrix3Xf unmasked_;
 };
 
+/** The image, the segments and the objects of one scan, in its sensor's frame. */
 class DynamicObjects::Sight {
  private:
     friend class DynamicObjects;

@@ -5,6 +5,7 @@
 #include "delio/core/stage_options.h"
 
 namespace delio::movers {
+/** Which points are one segment. */
 struct SegmentOptions : public StageOptions {
     double cell = 0.4;
     double radius = 60;

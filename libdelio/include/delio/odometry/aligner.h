@@ -26,11 +26,11 @@ struct AlignerOptions : public StageOptions {
     double scan_spacing = 0.5;
     double min_agreement = 0.25;
     double first_kernel = 1;
-    planes::PlaneMapOptions planeMap;
-    planes::PlaneRegistrationOptions planes;
-    surfaces::NormalsOptions normals;
-    surfaces::BilateralFilterOptions bilateral;
-    paper::PatternRegistrationOptions pattern;
+    planes::PlaneMapOptions planeMap;            //!< [plane_map]
+    planes::PlaneRegistrationOptions planes;     //!< [plane_registration]
+    surfaces::NormalsOptions normals;            //!< [normals]
+    surfaces::BilateralFilterOptions bilateral;  //!< [bilateral_filter]
+    paper::PatternRegistrationOptions pattern;   //!< [pattern_registration]
 
     AlignerOptions() {
         planes.search_radius = 10;
@@ -40,8 +40,10 @@ struct AlignerOptions : public StageOptions {
         planeMap.ground_levels = 0;  // which way is up is not known
         planeMap.min_breadth = 0.1;
     }
+    /** Of every section: Error names one that does not exist, and as StageOptions. */
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
+    /** Every section. */
     void saveToConfigFile(mrpt::config::CConfigFileBase& target,
                           const std::string& section) const override;
     /** Of every stage. */
@@ -88,9 +90,10 @@ class Aligner : public mrpt::slam::CMetricMapsAlignmentAlgorithm {
         bool searched = false;  //!< the estimate was too far off
     };
 
-    AlignerOptions options;
+    AlignerOptions options;  //!< may be changed between two calls
 
     Aligner() = default;
+    /** With options that are copied. */
     explicit Aligner(const AlignerOptions& o) : options(o) {}
 
     /** A CPose3DPDFGaussian; its covariance is MRPT's: x y z yaw pitch roll, metres and radians.

@@ -19,11 +19,12 @@ struct MethodOptions : public StageOptions {
 
 /** The choice of an odometry, and the options of each. Those of the other one have no effect. */
 struct OdometryOptions {
-    MethodOptions method;
-    PlaneOdometryOptions planes;
-    PaperOdometryOptions paper;
+    MethodOptions method;         //!< [odometry]: which of the two
+    PlaneOdometryOptions planes;  //!< of the profile `accurate`
+    PaperOdometryOptions paper;   //!< of the paper's profiles
 
-    bool isPaper() const { return method.method == "paper"; }
+    bool isPaper() const { return method.method == "paper"; }  //!< the paper's odometry is chosen
+    /** [scan], of the chosen one. */
     const scan::PreprocessOptions& scan() const { return isPaper() ? paper.scan : planes.scan; }
 };
 
@@ -34,12 +35,15 @@ std::unique_ptr<Odometry> makeOdometry(const OdometryOptions& options);
 /** What ScanFeatures::save() wrote. Error where that is cut off, damaged or of another version. */
 std::shared_ptr<const ScanFeatures> readFeatures(std::istream& in);
 
+/** Sections and their options, to be changed. */
 using StageList = std::vector<std::pair<std::string, StageOptions*>>;
+/** Sections and their options. */
 using ConstStageList = std::vector<std::pair<std::string, const StageOptions*>>;
 
 /** The stages of a method with the names of their sections, in the order in which a scan goes
  *  through them. */
 StageList stagesOf(PlaneOdometryOptions& options);
+/** The same of the paper's method. */
 StageList stagesOf(PaperOdometryOptions& options);
 /** Those of the chosen one, the choice first. */
 ConstStageList stagesOf(const OdometryOptions& options);

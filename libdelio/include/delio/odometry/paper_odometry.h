@@ -19,36 +19,38 @@
 namespace delio {
 /** The options of each stage of PaperOdometry. */
 struct PaperOdometryOptions {
-    scan::PreprocessOptions scan;
-    surfaces::NormalsOptions normals;
-    surfaces::BilateralFilterOptions bilateral;
-    paper::OutlierRemovalOptions outliers;
-    paper::MeanShiftOptions meanShift;
-    paper::PatternRegistrationOptions pattern;
-    paper::RotationInPlaceOptions inPlace;
-    paper::LineCloudOptions lines;
-    paper::LineRegistrationOptions lineRegistration;
-    PredictionOptions prediction;
-    PointCheckOptions check;
-    points::PointMapOptions pointMap;
-    points::PointRegistrationOptions points;
+    scan::PreprocessOptions scan;                     //!< [scan]
+    surfaces::NormalsOptions normals;                 //!< [normals]
+    surfaces::BilateralFilterOptions bilateral;       //!< [bilateral_filter]
+    paper::OutlierRemovalOptions outliers;            //!< [outlier_removal]
+    paper::MeanShiftOptions meanShift;                //!< [mean_shift]
+    paper::PatternRegistrationOptions pattern;        //!< [pattern_registration]
+    paper::RotationInPlaceOptions inPlace;            //!< [rotation_in_place]
+    paper::LineCloudOptions lines;                    //!< [line_cloud]
+    paper::LineRegistrationOptions lineRegistration;  //!< [line_registration]
+    PredictionOptions prediction;                     //!< [prediction]
+    PointCheckOptions check;                          //!< [point_check]
+    points::PointMapOptions pointMap;                 //!< [point_map]
+    points::PointRegistrationOptions points;          //!< [point_registration]
 };
 
 /** Scan `to` against scan `from`. */
 struct PaperRegistration {
-    Increment increment;  //!< maps the sensor's frame at `to` to that at `from`
-    RotationEstimate rotation;
-    TranslationEstimate translation;
+    Increment increment;              //!< maps the sensor's frame at `to` to that at `from`
+    RotationEstimate rotation;        //!< by the patterns
+    TranslationEstimate translation;  //!< by the lines
     /** Why rotation, translation or both are the prediction; empty where both were registered. */
     std::string predictedReason;
-    bool denied = false;  //!< points stand elsewhere: registered again from there
-    double rotation_ms = 0, translation_ms = 0, check_ms = 0;
+    bool denied = false;        //!< points stand elsewhere: registered again from there
+    double rotation_ms = 0;     //!< time of the rotation
+    double translation_ms = 0;  //!< time of the translation
+    double check_ms = 0;        //!< time of the check by points
 };
 
 /** Pattern of the normals and line cloud of a scan, in the sensor's frame. */
 struct PaperFeatures : public ScanFeatures {
-    paper::Pattern pattern;
-    paper::LineCloud lines;
+    paper::Pattern pattern;                               //!< of its normals
+    paper::LineCloud lines;                               //!< between its rings
     std::optional<CheckPoints> check;                     //!< where it is enabled
     std::shared_ptr<const PaperOdometryOptions> options;  //!< that they were made with
 
@@ -81,6 +83,7 @@ PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeature
  *  scan. */
 class PaperOdometry : public Odometry {
  public:
+    /** Before the first scan. */
     explicit PaperOdometry(const PaperOdometryOptions& options);
 
     Step process(const Scan& scan) override;

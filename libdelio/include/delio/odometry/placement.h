@@ -7,7 +7,7 @@ namespace delio {
 struct ReferenceScan {
     Eigen::Matrix3Xf points;                                 //!< sensor's frame
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
-    double time_s = 0;
+    double time_s = 0;                                       //!< stamp, seconds of the drive
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
@@ -18,8 +18,8 @@ struct ReferenceScan {
 
 /** What is known of a scan's place before it is registered. */
 struct Expectation {
-    const Eigen::Isometry3d& pose;  //!< predicted, sensor to map
-    const ReferenceScan& reference;
+    const Eigen::Isometry3d& pose;   //!< predicted, sensor to map
+    const ReferenceScan& reference;  //!< to search from where the prediction fails
     const Eigen::Matrix3f& upright;  //!< turns the sensor's z up
     bool motionIsKnown = false;      //!< else it may be anywhere within `start_m`
     bool isGuess = false;            //!< motion and place are not known well
@@ -30,9 +30,10 @@ struct Expectation {
     double usualShare = 0;           //!< of points on those of the map; 0: not known
 };
 
+/** What is known of a scan's place before planes refine it. */
 struct Placement {
-    points::PointEstimate estimate;
-    bool searched = false;  //!< from more starts than the prediction
+    points::PointEstimate estimate;  //!< sensor to map
+    bool searched = false;           //!< from more starts than the prediction
 };
 
 /** By points, from the prediction; where that is not known, or fits worse than usual, from other

@@ -16,6 +16,7 @@ namespace delio {
  *  the one that was found. */
 class PlaneOdometry : public Odometry {
  public:
+    /** Before the first scan. */
     explicit PlaneOdometry(const PlaneOdometryOptions& options);
 
     Step process(const Scan& scan) override;

@@ -8,6 +8,7 @@
 #include "delio/surfaces/normals.h"
 
 namespace delio {
+/** What PlaneOdometry itself decides by. */
 struct PlaneTrackerOptions : public StageOptions {
     double map_spacing = 0.25;
     double scan_spacing = 0.5;
@@ -24,19 +25,19 @@ struct PlaneTrackerOptions : public StageOptions {
 
 /** The options of each stage of PlaneOdometry. */
 struct PlaneOdometryOptions {
-    scan::PreprocessOptions scan;
-    PredictionOptions prediction;
-    PlaneTrackerOptions tracker;
-    ScanToMapOptions scanToMap;
-    points::PointMapOptions pointMap;
-    points::PointRegistrationOptions points;
-    planes::PlaneMapOptions map;
-    planes::PlaneRegistrationOptions registration;
-    movers::DynamicObjectsOptions dynamics;
-    movers::SegmentOptions segments;
-    /** Of the surfaces by which a scan is relocalised. */
+    scan::PreprocessOptions scan;                   //!< [scan]
+    PredictionOptions prediction;                   //!< [prediction]
+    PlaneTrackerOptions tracker;                    //!< [plane_tracker]
+    ScanToMapOptions scanToMap;                     //!< [scan_to_map]
+    points::PointMapOptions pointMap;               //!< [point_map]
+    points::PointRegistrationOptions points;        //!< [point_registration]
+    planes::PlaneMapOptions map;                    //!< [plane_map]
+    planes::PlaneRegistrationOptions registration;  //!< [plane_registration]
+    movers::DynamicObjectsOptions dynamics;         //!< [moving_objects]
+    movers::SegmentOptions segments;                //!< [segments]
+    /** [normals]: of the surfaces by which a scan is relocalised. */
     surfaces::NormalsOptions normals;
-    surfaces::BilateralFilterOptions bilateral;
-    paper::PatternRegistrationOptions pattern;
+    surfaces::BilateralFilterOptions bilateral;  //!< [bilateral_filter], likewise
+    paper::PatternRegistrationOptions pattern;   //!< [pattern_registration], likewise
 };
 }  // namespace delio

@@ -3,6 +3,7 @@
 #include "delio/points/point_registration.h"
 
 namespace delio {
+/** When points overrule the lines. */
 struct PointCheckOptions : public StageOptions {
     bool enabled = true;
     double believed = 0.1;
@@ -20,8 +21,8 @@ struct PointCheckOptions : public StageOptions {
 
 /** A scan as others are checked against it, and it against others; sensor's frame. */
 struct CheckPoints {
-    Eigen::Matrix3Xd points;
-    points::PointMap map;
+    Eigen::Matrix3Xd points;  //!< metres, thinned: these are asked
+    points::PointMap map;     //!< what others are asked in
     /** Turns the sensor's frame such that z is up. */
     Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();
 
@@ -31,6 +32,7 @@ struct CheckPoints {
         archive(points, map, upright);
     }
 };
+/** `points`: metres, sensor's frame; `upright` as in CheckPoints. */
 CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
                           const PointCheckOptions& options, const points::PointMapOptions& map);
 

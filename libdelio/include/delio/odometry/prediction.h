@@ -5,6 +5,7 @@
 #include "delio/core/stage_options.h"
 
 namespace delio {
+/** What motion is predicted from. */
 struct PredictionOptions : public StageOptions {
     unsigned frames = 3;
 
@@ -17,6 +18,7 @@ struct PredictionOptions : public StageOptions {
  *  number; with none the prediction is "no motion". */
 class LinearPrediction {
  public:
+    /** Of no motion yet. */
     explicit LinearPrediction(const PredictionOptions& options) : frames_(options.frames) {}
 
     /** The increment expected over the next `duration_s`: maps the coming frame to the present one.

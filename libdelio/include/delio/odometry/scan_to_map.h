@@ -8,6 +8,7 @@
 #include "delio/points/point_registration.h"
 
 namespace delio {
+/** How points and planes are weighed against each other. */
 struct ScanToMapOptions : public StageOptions {
     double point_sigma = 0.05;
     double point_sigma_deg = 1.0;
@@ -25,6 +26,7 @@ struct ScanToMapOptions : public StageOptions {
  */
 class ScanToMap {
  public:
+    /** An empty map, z up. */
     ScanToMap(const ScanToMapOptions& options, const planes::PlaneMapOptions& planeMap,
               const planes::PlaneRegistrationOptions& planes,
               const points::PointMapOptions& pointMap,
@@ -35,11 +37,13 @@ class ScanToMap {
           planes_(planeMap),
           points_(pointMap) {}
 
+    /** Takes `points` (metres, sensor's frame) in, where `pose` puts them. */
     void add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
     /** `points`: in the map's frame; they turned out to move, and what is there goes. */
     void erase(const Eigen::Matrix3Xf& points);
     /** `up`: the unit vector that does, in the map's frame. */
     void clear(const Eigen::Vector3d& up);
+    /** What it has as planes. */
     const planes::PlaneMap& planes() const { return planes_; }
     /** False where there are too few points to register anything against. */
     bool isUsable() const { return points_.size() >= pointOptions_.min_matches; }

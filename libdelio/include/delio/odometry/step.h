@@ -17,12 +17,15 @@ namespace delio {
 struct Quality {
     std::size_t matches = 0;  //!< correspondences that the result stands on
     double residual_m = 0;    //!< root mean square of their distances
-    /** How well they fix the three axes, 0 to 1, rising; 0 where the scan was predicted. */
+    /** How well they fix the rotation about three axes, 0 to 1, rising; 0 where the scan was
+     * predicted. */
     Eigen::Vector3d rotationObservability = Eigen::Vector3d::Zero();
+    /** The same of the translation along three axes. */
     Eigen::Vector3d translationObservability = Eigen::Vector3d::Zero();
-    /** Unit vectors in the sensor's frame at this scan about which, and along which, the prediction
-     *  was kept; all three axes where the scan was predicted, or was the first. */
-    Eigen::Matrix3Xd unobservedRotation, unobservedTranslation;
+    /** Unit vectors in the sensor's frame at this scan about which the prediction was kept; all
+     * three axes where the scan was predicted, or was the first. */
+    Eigen::Matrix3Xd unobservedRotation;
+    Eigen::Matrix3Xd unobservedTranslation;  //!< the same along which
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
@@ -38,7 +41,7 @@ Quality qualityOf(const RotationEstimate& rotation, const TranslationEstimate& t
 /** The points of a scan that were used, as the sensor would have seen them all at once at the
  *  stamp: metres, its frame, vertical angles corrected. */
 struct UsedPoints {
-    Eigen::Matrix3Xf points;
+    Eigen::Matrix3Xf points;             //!< a point a column
     std::vector<std::uint32_t> indices;  //!< of each in the scan as it came
     /** 1 for each that belongs to a dynamic object; empty where these are not looked for. */
     std::vector<std::uint8_t> dynamic;
@@ -81,8 +84,8 @@ struct Step {
     std::string reason;        //!< why; empty where it was registered
     bool searched = false;     //!< not only from the prediction: all about it
     bool interrupted = false;  //!< a pause or a clock that was set: the time before it is not known
-    Quality quality;
-    UsedPoints used;
+    Quality quality;           //!< of the registration
+    UsedPoints used;           //!< what the map and the pictures are made of
     std::size_t notFinite = 0;  //!< points dropped: a coordinate was NaN or infinite
     bool deskewed = false;      //!< its points had times
     /** Of each stage in its order: every scan of an odometry has the same ones. */

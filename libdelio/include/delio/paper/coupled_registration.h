@@ -4,10 +4,11 @@
 #include "delio/paper/line_registration.h"
 
 namespace delio::paper {
+/** Rotation and translation found together. */
 struct CoupledEstimate {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< p_from = pose * p_to
-    std::size_t matches = 0;
-    unsigned iterations = 0;
+    std::size_t matches = 0;                                 //!< pairs of lines
+    unsigned iterations = 0;                                 //!< until it stood still
     bool valid = false;  //!< false: too few matches; pose is the prediction
 };
 

@@ -21,10 +21,10 @@ struct LineCloudOptions : public StageOptions {
 
 /** Line segments between points of neighbouring rings, one per column; metres, sensor's frame. */
 struct LineCloud {
-    Eigen::Matrix3Xf midpoints;
+    Eigen::Matrix3Xf midpoints;   //!< metres
     Eigen::Matrix3Xf directions;  //!< unit vectors
-    Eigen::VectorXf lengths;
-    std::size_t drawn = 0;  //!< lines drawn, of which the shortest were kept
+    Eigen::VectorXf lengths;      //!< metres
+    std::size_t drawn = 0;        //!< lines drawn, of which the shortest were kept
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>

@@ -55,9 +55,11 @@ TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to
  *  divided where the lines are parallel: then `parallel` is true, X_s is P_s, and X_t the point of
  *  the other line next to it. */
 struct ClosestPoints {
-    Eigen::Vector3d onSource, onTarget;
-    bool parallel = false;
+    Eigen::Vector3d onSource;  //!< X_s
+    Eigen::Vector3d onTarget;  //!< X_t
+    bool parallel = false;     //!< the angle between the lines is below `min_angle_deg`
 };
+/** P: a point of each line; u: its direction. Metres, one frame. */
 ClosestPoints closestPoints(const Eigen::Vector3d& Ps, const Eigen::Vector3d& us,
                             const Eigen::Vector3d& Pt, const Eigen::Vector3d& ut,
                             double min_angle_deg);

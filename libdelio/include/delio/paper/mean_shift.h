@@ -27,8 +27,8 @@ struct MeanShiftOptions : public StageOptions {
 
 /** A place on the unit sphere where normals are densest. */
 struct Mode {
-    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
-    std::size_t support = 0;  //!< normals in its window
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  //!< unit
+    std::size_t support = 0;                               //!< normals in its window
 };
 
 /** The modes of the density of `directions` (unit vectors), the best supported first: mean shift

@@ -14,19 +14,20 @@
 namespace delio::picture {
 using map::ColourBy;
 
+/** How a map is drawn. */
 struct SceneOptions {
-    map::Colormap colormap = map::Colormap::Turbo;
-    ColourBy colourBy = ColourBy::Height;
-    float pointSize_px = 2;
-    mrpt::img::TColor background{16, 18, 22};
-    std::string caption = {};  //!< a line of the legend
+    map::Colormap colormap = map::Colormap::Turbo;  //!< of everything but normals
+    ColourBy colourBy = ColourBy::Height;           //!< what colours say
+    float pointSize_px = 2;                         //!< in a picture of 1080 lines
+    mrpt::img::TColor background{16, 18, 22};       //!< behind everything
+    std::string caption = {};                       //!< a line of the legend
 };
 
 /** The ways through a map, as poses in the frame of its points; each may be empty. */
 struct MapWays {
-    std::vector<Eigen::Isometry3d> trajectory;
-    std::vector<Eigen::Isometry3d> groundTruth;
-    std::vector<Eigen::Isometry3d> keyframes;
+    std::vector<Eigen::Isometry3d> trajectory;   //!< in white
+    std::vector<Eigen::Isometry3d> groundTruth;  //!< in red
+    std::vector<Eigen::Isometry3d> keyframes;    //!< axes
     /** Poses of the trajectory, by number, between which a loop was closed. */
     std::vector<std::pair<std::size_t, std::size_t>> loops;
     std::vector<std::vector<Eigen::Isometry3d>> others = {};  //!< of other drives, drawn alike
@@ -41,6 +42,7 @@ struct MapWays {
  *  coloured by. */
 mrpt::opengl::COpenGLScene::Ptr mapScene(const map::MapPoints& points, const MapWays& ways,
                                          const SceneOptions& options = {});
+/** The same of a cloud: only what pointsOf() takes over is known of it. */
 mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
                                          const SceneOptions& options = {});
 

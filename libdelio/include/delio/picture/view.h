@@ -7,8 +7,8 @@ namespace delio::picture {
 /** From where a scene is looked at, and how. What is not set is chosen so that the whole content
  *  (without stray points) fills the picture. */
 struct SnapshotOptions {
-    unsigned width_px = 1920;  //!< 1 to kMaxPictureSize_px
-    unsigned height_px = 1080;
+    unsigned width_px = 1920;   //!< 1 to kMaxPictureSize_px
+    unsigned height_px = 1080;  //!< likewise
 
     /** Where the camera stands, seen from the content: 0 on the side of +x, 90 of +y. Unset: such
      *  that the longer side of the content lies across the picture (looking straight down: turned
@@ -27,6 +27,7 @@ struct SnapshotOptions {
     double shading = 1;
 };
 
+/** The longest side of a picture, pixels. */
 constexpr unsigned kMaxPictureSize_px = 16384;
 
 /** Straight from above in parallel projection, with a scale bar. */

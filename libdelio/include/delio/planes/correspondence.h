@@ -19,6 +19,7 @@ struct Correspondence {
         return normal.dot(R * point + t - mean);
     }
 };
+/** Of one scan, in the order of its points. */
 using Correspondences = std::vector<Correspondence>;
 
 /** Finds them for one scan, over and over: most points stay in their voxels from one pose to the

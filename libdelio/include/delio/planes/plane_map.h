@@ -1,13 +1,16 @@
 #pragma once
 #include <Eigen/Core>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "delio/core/chunked.h"
 #include "delio/core/stage_options.h"
 #include "delio/scan/voxel_table.h"
 
 namespace delio::planes {
+/** Which voxels hold a plane. */
 struct PlaneMapOptions : public StageOptions {
     double voxel_size = 0.5;
     unsigned levels = 2;
@@ -25,12 +28,12 @@ struct PlaneMapOptions : public StageOptions {
 
 /** The surface in one voxel. Metres, the map's frame. */
 struct Plane {
-    Eigen::Vector3d mean;
+    Eigen::Vector3d mean;       //!< of the points
     Eigen::Matrix3d axes;       //!< columns; the first is the normal, of either sign
     Eigen::Vector3d variances;  //!< of the points, along the axes, rising
     double count;               //!< of points
 
-    Eigen::Vector3d normal() const { return axes.col(0); }
+    Eigen::Vector3d normal() const { return axes.col(0); }  //!< unit, of either sign
     /** Variance of the distance between the plane and a point of its surface: the surface's own
      *  thickness, and how well mean and normal are known there. */
     double varianceAt(const Eigen::Vector3d& point) const;
@@ -65,32 +68,36 @@ class PlaneMap {
 
     /** Which of the smallest voxels a point is in, and what at() gives for all points in it. */
     std::uint64_t voxelAt(const Eigen::Vector3d& point) const;
+    /** See voxelAt(). */
     const Plane* inVoxel(std::uint64_t voxel) const;
 
     /** Drops everything, for a map in which `up` is up. */
     void clear(const Eigen::Vector3d& up);
 
-    /** Of all levels. */
+    /** How many there are, on all levels. */
     std::size_t voxels() const;
+    /** How many of them hold a plane. */
     std::size_t planes() const;
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
     void serialize(Archive& archive) {
         archive(up_);
-        for (auto& level : levels_) archive(level.cells);
-        if constexpr (Archive::is_loading::value) fitAll();
+        for (auto& level : levels_) {
+            archive(level.cells);
+            if constexpr (Archive::is_loading::value) level.forgetPlanes();
+        }
     }
 
  private:
     /** Of the points in a voxel. */
     struct Sums {
-        Eigen::Vector3d origin;  //!< the first point: sums are taken from there
+        //! The first point: sums are taken from there.
+        Eigen::Vector3d origin = Eigen::Vector3d::Zero();
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         /** xx, yy, zz, xy, yz, zx. */
         Eigen::Matrix<double, 6, 1> squares = Eigen::Matrix<double, 6, 1>::Zero();
         unsigned count = 0;
-        bool touched = false;
 
         void add(const Eigen::Vector3d& point);
         void clear();
@@ -101,21 +108,35 @@ class PlaneMap {
             archive(origin, sum, squares, count);
         }
     };
-    /** Voxels of one size. What is asked most, whether there is a plane, lies closely packed. */
+    /** Whether there is a plane in a cell. */
+    enum class State : std::uint8_t { None, Plane, Unknown, BeingFitted };
+    /** Many threads may ask at once. */
+    struct SharedState : public std::atomic<State> {
+        SharedState(State state = State::None) : std::atomic<State>(state) {}
+        SharedState(const SharedState& other) : std::atomic<State>(other.load()) {}
+        SharedState& operator=(const SharedState& other) {
+            store(other.load());
+            return *this;
+        }
+    };
+    /** Voxels of one size. Planes are fitted where they are asked for: of most voxels that get a
+     *  point they are not before it gets the next one. What is asked most, whether there is one,
+     *  lies closely packed. */
     struct Level {
         unsigned number;
         double edge;      //!< of its voxels, metres
         double steepest;  //!< least that its planes' normals look up, cosine
         scan::VoxelTable<Sums> cells;
-        std::vector<std::uint8_t> isPlane;  //!< of the cells
-        std::vector<Plane> planes;          //!< likewise
+        mutable std::vector<SharedState> states;  //!< of the cells
+        mutable Chunked<Plane> planes;            //!< likewise
 
         void clear();
+        void forgetPlanes();
     };
     void add(const Eigen::Matrix3Xd& points, const std::vector<std::uint64_t>& voxels,
              Level& level) const;
-    void fit(Level& level, std::uint32_t number) const;
-    void fitAll();
+    State fit(const Level& level, std::uint32_t number) const;
+    const Plane* planeIn(const Level& level, std::uint32_t number) const;
 
     PlaneMapOptions options_;
     Eigen::Vector3d up_;

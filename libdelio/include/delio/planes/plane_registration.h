@@ -7,6 +7,7 @@
 #include "delio/planes/prior.h"
 
 namespace delio::planes {
+/** How a scan is registered to planes. */
 struct PlaneRegistrationOptions : public StageOptions {
     double last_kernel = 0.1;
     double point_sigma = 0.01;
@@ -28,11 +29,11 @@ struct PlaneRegistrationOptions : public StageOptions {
 /** A scan registered to the map. Of both estimates the frame `from` is the map's and `to` the
  *  sensor's. */
 struct PlaneEstimate {
-    RotationEstimate rotation;
-    TranslationEstimate translation;
+    RotationEstimate rotation;        //!< sensor to map
+    TranslationEstimate translation;  //!< in the map's axes
     /** Inlier ratio: of the points in voxels with a plane those that lie on it, 0 to 1. */
     double share = 0;
-    bool valid = false;
+    bool valid = false;  //!< false: too few correspondences; it is the prediction
 
     /** Sensor to map. */
     Eigen::Isometry3d pose() const { return isometry(rotation.rotation, translation.translation); }

@@ -1,11 +1,14 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <limits>
 
 #include "delio/core/stage_options.h"
 #include "delio/scan/voxel_table.h"
 
 namespace delio::points {
+/** Which points are kept. */
 struct PointMapOptions : public StageOptions {
     double voxel_size = 1.0;
     double spacing = 0.2;
@@ -19,8 +22,10 @@ struct PointMapOptions : public StageOptions {
  *  that are `spacing` apart. Metres, the map's frame. Memory is bounded by `radius`. */
 class PointMap {
  public:
+    /** An empty one. */
     explicit PointMap(const PointMapOptions& options) : options_(options) {}
 
+    /** Takes points (metres, the map's frame) in. */
     void add(const Eigen::Matrix3Xd& points);
 
     /** Drops what lies within `spacing` of one of `points` in its voxel: what was taken for a part
@@ -30,12 +35,20 @@ class PointMap {
     /** Drops what lies farther than `radius` from `centre`. */
     void forgetFarFrom(const Eigen::Vector3d& centre);
 
+    /** Drops everything. */
     void clear();
 
     std::size_t size() const { return size_; }  //!< points
 
-    /** The nearest point within `reach` metres, which are at most a voxel's edge; none: false. */
-    bool nearest(const Eigen::Vector3d& point, double reach, Eigen::Vector3d& found) const;
+    /** What nearest() finds. */
+    struct Nearest {
+        bool any = false;                                 //!< there is one
+        Eigen::Vector3d point = Eigen::Vector3d::Zero();  //!< metres, the map's frame
+        double others_m = 0;                              //!< all others are farther away
+    };
+    /** The nearest point within `reach` metres, which are at most a voxel's edge, if there is any;
+     *  and a distance, metres, within which no other one lies. */
+    Nearest nearest(const Eigen::Vector3d& point, double reach) const;
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
@@ -44,34 +57,45 @@ class PointMap {
     }
 
  private:
+    /** Points that are compared at once, seen from their cell's origin. Places without a point lie
+     *  infinitely far away. */
+    struct Group {
+        static constexpr Eigen::Index kSize = 4;
+        using Values = Eigen::Array<float, kSize, 1>;
+
+        Values x = Values::Constant(std::numeric_limits<float>::infinity()), y = x, z = x;
+
+        Values squaredDistances(const Eigen::Vector3f& point) const {
+            return (x - point.x()).square() + ((y - point.y()).square() + (z - point.z()).square());
+        }
+    };
+    /** How far the nearest point and all others are, at least: squared metres. */
+    struct Search {
+        float least, others;
+        bool any = false;
+        Eigen::Vector3d found = Eigen::Vector3d::Zero();
+    };
+    /** What is asked first lies first: cells are many, and memory is slow. */
     struct Cell {
         static constexpr Eigen::Index kMost = 20;
-        static constexpr Eigen::Index kTogether = 4;  //!< compared at once
-        using Distances = Eigen::Array<float, kTogether, 1>;
 
-        Eigen::Vector3d origin;  //!< the first point: the others are seen from there
-        /** A row each. Rows without one lie infinitely far away. */
-        Eigen::Array<float, kMost, 3> points =
-            Eigen::Array<float, kMost, 3>::Constant(std::numeric_limits<float>::infinity());
-        Eigen::Index count = 0;
+        //! The first point: the others are seen from there.
+        Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+        std::uint32_t count = 0;
+        std::array<Group, kMost / Group::kSize> groups;
 
-        /** Squared, of the points from `first` on; `local`: seen from the origin. */
-        Distances distances(Eigen::Index first, const Eigen::Vector3f& local) const {
-            const auto squared = [&](Eigen::Index axis) {
-                return (points.col(axis).segment<kTogether>(first) - local[axis]).square();
-            };
-            return squared(0) + (squared(1) + squared(2));
-        }
-
-        bool nearest(const Eigen::Vector3d& point, float& least, Eigen::Vector3d& found) const;
+        Eigen::Index groupsTaken() const { return (count + Group::kSize - 1) / Group::kSize; }
+        Eigen::Vector3f point(std::uint32_t number) const;
+        void set(std::uint32_t number, const Eigen::Vector3f& point);
+        void nearest(const Eigen::Vector3d& point, Search& search) const;
 
         template <class Archive>
         void serialize(Archive& archive) {
-            Eigen::Array<float, Eigen::Dynamic, 3, Eigen::ColMajor, kMost, 3> taken =
-                points.topRows(count);
-            archive(origin, taken);
-            count = taken.rows();
-            points.topRows(count) = taken;
+            Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMost> all(3, count);
+            for (std::uint32_t i = 0; i < count; ++i) all.col(i) = point(i);
+            archive(origin, all);
+            count = static_cast<std::uint32_t>(all.cols());
+            for (std::uint32_t i = 0; i < count; ++i) set(i, all.col(i));
         }
     };
     PointMapOptions options_;

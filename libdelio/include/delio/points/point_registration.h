@@ -5,6 +5,7 @@
 #include "delio/points/point_map.h"
 
 namespace delio::points {
+/** How a scan is registered to points. */
 struct PointRegistrationOptions : public StageOptions {
     double first_kernel = 2.0;
     double least_kernel = 0.3;
@@ -25,11 +26,11 @@ struct PointEstimate {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
     /** Inlier ratio: of the points those within the last kernel of one of the map's, 0 to 1. */
     double share = 0;
-    double residual_m = 0;  //!< root mean square distance of these
-    std::size_t matches = 0;
-    unsigned iterations = 0;
-    bool converged = false;  //!< false: ended by the most iterations that are allowed
-    double kernel_m = 0;     //!< width that it began with
+    double residual_m = 0;    //!< root mean square distance of these
+    std::size_t matches = 0;  //!< pairs that it stands on
+    unsigned iterations = 0;  //!< in all
+    bool converged = false;   //!< false: ended by the most iterations that are allowed
+    double kernel_m = 0;      //!< width that it began with
     /** False: too few correspondences, and the pose is the prediction; or too small a share. */
     bool valid = false;
 };

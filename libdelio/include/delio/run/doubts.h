@@ -19,14 +19,16 @@ struct Doubts {
     std::size_t pairs = 0;  //!< scans that have one before them
     Stretches predicted;    //!< not registered: the motion model's
     Stretches weak;         //!< registered, but an axis was not observed
-    /** Of these the scans with an open axis of the translation, and of the rotation, that is
-     * nearest to the vehicle's x, y and z. */
-    std::array<std::size_t, 3> weakAlong{}, weakAbout{};
-    Stretches searched;     //!< not only from the prediction
-    Stretches interrupted;  //!< a pause or a set clock before them
+    /** Of these the scans with an open axis of the translation that is nearest to the vehicle's x,
+     * y and z. */
+    std::array<std::size_t, 3> weakAlong{};
+    std::array<std::size_t, 3> weakAbout{};  //!< the same of the rotation
+    Stretches searched;                      //!< not only from the prediction
+    Stretches interrupted;                   //!< a pause or a set clock before them
 };
 
-Doubts doubtsOf(const std::vector<RunRow>& rows);
+/** Counts them. */
+Doubts doubtsOf(const RunRows& rows);
 
 /** "38, at most 30 in a row (from scan 12)"; `scans`: in place of those that were counted. */
 std::string textOf(const Stretches& found, std::size_t scans);
@@ -38,6 +40,5 @@ std::string weakAxesOf(const Doubts& doubts);
 std::vector<std::string> warningsOf(const Doubts& doubts);
 
 /** The same of a drive in a stored map: where it was not in it. */
-std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes,
-                                    const std::vector<RunRow>& rows);
+std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes, const RunRows& rows);
 }  // namespace delio::run

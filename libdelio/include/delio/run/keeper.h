@@ -16,7 +16,7 @@ class RowFiles;
  *  such intervals that a twentieth of the time is spent on it. */
 class Keeper {
  public:
-    static constexpr const char* kFolder = "incomplete";
+    static constexpr const char* kFolder = "incomplete";  //!< in the folder of the results
 
     /** @param results the folder of the run's results
      *  @param drive what the scans are of, in a line: another run's are not gone on with */

@@ -10,14 +10,14 @@ namespace delio::run {
  *  (unknown, in_map, outside; x y z and quaternion in the map's frame, and the upper triangle of
  * the covariance in the order of delio::Increment), how much of the scan stands in the map, and why
  * it was not measured. Error where the file cannot be written. */
-void writeLocalisationTable(const std::vector<RunRow>& rows, const std::vector<MapFix>& fixes,
+void writeLocalisationTable(const RunRows& rows, const std::vector<MapFix>& fixes,
                             const std::string& path);
 
 /** What a reader of localisation.csv wants to know of a scan. */
 struct LocalisationRow {
-    std::size_t scan = 0;
-    Whereabouts where = Whereabouts::kUnknown;
-    bool measured = false;
+    std::size_t scan = 0;                       //!< its number in its recording
+    Whereabouts where = Whereabouts::kUnknown;  //!< with respect to the map
+    bool measured = false;                      //!< registered to the map
 };
 
 /** Throws Error with file and line where a column is missing or malformed. */

@@ -12,9 +12,10 @@ void writeLoopTable(const std::vector<loops::LoopCandidate>& candidates, const s
 
 /** What a reader of loops.csv wants to know of a pair. */
 struct LoopRow {
-    std::size_t fromNode = 0, toNode = 0;
-    bool accepted = false;
-    std::string reason;  //!< why it was not
+    std::size_t fromNode = 0;  //!< of the pose graph, the earlier
+    std::size_t toNode = 0;    //!< the later
+    bool accepted = false;     //!< both are one place
+    std::string reason;        //!< why it was not
 };
 
 /** Throws Error with file and line where a column is missing or malformed. */

@@ -15,11 +15,12 @@
 #include "delio/slam/map_listener.h"
 
 namespace delio::run {
+/** What a run is told beside the options of its stages. */
 struct RunSettings {
-    std::string profile = "accurate";  //!< that the options were made of, for the summary
-    std::vector<std::string> command;  //!< for the summary
-    std::string sensorLabel = "lidar";
-    std::string drive = "drive";  //!< its name in the stored map
+    std::string profile = "accurate";   //!< that the options were made of, for the summary
+    std::vector<std::string> command;   //!< for the summary
+    std::string sensorLabel = "lidar";  //!< of the observations in map.simplemap
+    std::string drive = "drive";        //!< its name in the stored map
     /** Where keyframes are put aside while the drive goes on; empty: the system's folder for
      *  temporary files. */
     std::string folder;
@@ -45,6 +46,7 @@ struct RunSettings {
  *  the way. RunFolder writes it. */
 class Run {
  public:
+    /** Error where the options contradict each other, or the stored map cannot be read. */
     Run(const Options& options, const RunSettings& settings);
 
     /** Calibration and true poses, as the drive's reader has them. `truth`: a pose file that
@@ -60,7 +62,7 @@ class Run {
     void attach(std::shared_ptr<SlamListener> listener) { slam_.attach(std::move(listener)); }
 
     /** Processes the next scan, which took `read_ms` to read. */
-    const RunRow& process(const Scan& scan, double read_ms = 0);
+    RunRow process(const Scan& scan, double read_ms = 0);
 
     /** All that was done so far, to go on from there later. Error where it cannot be written. */
     void save(std::ostream& out) const;
@@ -69,6 +71,7 @@ class Run {
      */
     void restore(std::istream& in);
 
+    /** Notes a line for the summary, and tells RunSettings::onWarning. */
     void warn(const std::string& text);
     /** What ended the run, or is missing in it; of several the first is kept. */
     void fail(const std::string& fault);
@@ -77,7 +80,7 @@ class Run {
      *  which no scan was registered has failed. `complete`: every scan was processed. */
     void finish(bool complete);
 
-    const RunRecord& record() const { return record_; }
+    const RunRecord& record() const { return record_; }  //!< of what was done so far
     /** Of the odometry, so far. */
     const io::Trajectory& odometry() const { return slam_.trajectory(); }
     /** Of a run that is finished; they live as long as it does. */

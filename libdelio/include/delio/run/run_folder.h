@@ -28,34 +28,39 @@ using Illustrate =
  *  last: a folder that has one is whole. */
 class RunFolder {
  public:
+    /** Final poses, in KITTI's format. */
     static constexpr const char* kTrajectory = "trajectory_kitti.txt";
+    /** Poses before the pose graph, likewise. */
     static constexpr const char* kOdometry = "trajectory_odometry_kitti.txt";
+    /** Final poses in KITTI's cam0 frame. */
     static constexpr const char* kCam0 = "trajectory_kitti_cam0.txt";
+    /** Poses before the pose graph, likewise, where it changed them. */
     static constexpr const char* kOdometryCam0 = "trajectory_odometry_kitti_cam0.txt";
-    static constexpr const char* kTum = "trajectory_tum.txt";
-    static constexpr const char* kGraph = "posegraph.g2o";
-    static constexpr const char* kMrptGraph = "posegraph.graph";
-    static constexpr const char* kScans = "scans.csv";
-    static constexpr const char* kLoops = "loops.csv";  //!< where loops were searched for
+    static constexpr const char* kTum = "trajectory_tum.txt";  //!< final poses with times
+    static constexpr const char* kGraph = "posegraph.g2o";  //!< for g2o, and to be optimised again
+    static constexpr const char* kMrptGraph = "posegraph.graph";  //!< MRPT's text format
+    static constexpr const char* kScans = "scans.csv";            //!< a row a scan
+    static constexpr const char* kLoops = "loops.csv";            //!< where loops were searched for
     static constexpr const char* kLocalisation = "localisation.csv";  //!< in a stored map
     static constexpr const char* kJoints = "joints.csv";              //!< where one was extended
-    static constexpr const char* kConfig = "config.ini";
-    static constexpr const char* kSimplemap = "map.simplemap";
-    static constexpr const char* kPly = "map.ply";
-    static constexpr const char* kDynamicPly = "map_dynamic.ply";  //!< what was taken out of it
-    static constexpr const char* kMapPage = "map.html";
-    static constexpr const char* kStoredMap = "map.delio";
-    static constexpr const char* kScene = "map.3Dscene";
-    static constexpr const char* kMapPicture = "map.png";
+    static constexpr const char* kConfig = "config.ini";        //!< every option that had an effect
+    static constexpr const char* kSimplemap = "map.simplemap";  //!< MRPT's keyframes with points
+    static constexpr const char* kPly = "map.ply";              //!< points of the map
+    static constexpr const char* kDynamicPly = "map_dynamic.ply";      //!< what was taken out of it
+    static constexpr const char* kMapPage = "map.html";                //!< the map for a browser
+    static constexpr const char* kStoredMap = "map.delio";             //!< for StoredMap
+    static constexpr const char* kScene = "map.3Dscene";               //!< for SceneViewer3D
+    static constexpr const char* kMapPicture = "map.png";              //!< the map, obliquely
     static constexpr const char* kRemovalPicture = "map_removal.png";  //!< before and after it
-    static constexpr const char* kTrajectoryPicture = "trajectory.png";
-    static constexpr const char* kSummary = "summary.yaml";
+    static constexpr const char* kTrajectoryPicture = "trajectory.png";  //!< the way, from above
+    static constexpr const char* kSummary = "summary.yaml";              //!< the run in numbers
 
+    /** It need not be there yet. */
     explicit RunFolder(std::string folder) : folder_(std::move(folder)) {}
 
     /** Of one of the names above. */
     std::string path(const char* name) const;
-    bool has(const char* name) const;
+    bool has(const char* name) const;  //!< there is such a file
     /** Paths of all that write() replaces or takes away. */
     std::vector<std::string> files() const;
 
@@ -66,22 +71,24 @@ class RunFolder {
     std::string write(RunRecord record, const RunMaps& maps = {},
                       const Illustrate& illustrate = {}) const;
 
-    /** What is in the folder. Each throws Error where the file is missing or malformed. */
+    /** Final poses. As all of these it throws Error where the file is missing or malformed. */
     io::Trajectory trajectory() const { return io::readTrajectory(path(kTrajectory)); }
+    /** Poses before the pose graph. */
     io::Trajectory odometry() const { return io::readTrajectory(path(kOdometry)); }
-    io::Trajectory cam0() const { return io::readTrajectory(path(kCam0)); }
-    io::Trajectory tum() const { return io::readTrajectory(path(kTum)); }
-    graph::PoseGraph graph() const;
-    io::ScanTable scans() const { return io::readScanTable(path(kScans)); }
-    std::vector<LoopRow> loops() const { return readLoopTable(path(kLoops)); }
-    std::vector<LoopRow> joints() const { return readLoopTable(path(kJoints)); }
+    io::Trajectory cam0() const { return io::readTrajectory(path(kCam0)); }       //!< of kCam0
+    io::Trajectory tum() const { return io::readTrajectory(path(kTum)); }         //!< with stamps
+    graph::PoseGraph graph() const;                                               //!< of kGraph
+    io::ScanTable scans() const { return io::readScanTable(path(kScans)); }       //!< of kScans
+    std::vector<LoopRow> loops() const { return readLoopTable(path(kLoops)); }    //!< of kLoops
+    std::vector<LoopRow> joints() const { return readLoopTable(path(kJoints)); }  //!< of kJoints
+    /** Of kLocalisation. */
     std::vector<LocalisationRow> localisation() const {
         return readLocalisationTable(path(kLocalisation));
     }
-    StoredMap storedMap() const { return StoredMap(path(kStoredMap)); }
+    StoredMap storedMap() const { return StoredMap(path(kStoredMap)); }  //!< of kStoredMap
     /** The options that were in effect. */
     Options options() const;
-    Summary summary() const { return readSummary(path(kSummary)); }
+    Summary summary() const { return readSummary(path(kSummary)); }  //!< of kSummary
 
  private:
     void writeTables(const RunRecord& record) const;

@@ -5,8 +5,8 @@
 namespace delio::run {
 /** The maps that a run made; null: none. */
 struct RunMaps {
-    const map::MapBuilder* points = nullptr;
-    const MapContent* stored = nullptr;  //!< to come back to
-    bool keepDynamic = false;            //!< what is taken out of `points` has a file of its own
+    const map::MapBuilder* points = nullptr;  //!< of map.ply and all that is drawn
+    const MapContent* stored = nullptr;       //!< to come back to
+    bool keepDynamic = false;  //!< what is taken out of `points` has a file of its own
 };
 }  // namespace delio::run

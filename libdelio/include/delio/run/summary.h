@@ -10,37 +10,49 @@
 namespace delio::run {
 /** A run in numbers: summary.yaml. */
 struct Summary {
+    /** Names and numbers, in an order. */
     using Figures = std::vector<std::pair<std::string, double>>;
 
-    std::string version, command, profile;
-    bool complete = false;
-    std::string fault;  //!< empty: none
-    std::size_t scans = 0, deskewed = 0;
-    std::size_t predicted = 0, longest_predicted = 0;  //!< scans; of them in a row
-    std::size_t weakly_observed = 0, longest_weakly_observed = 0;
-    /** Of these those with an axis along which, and about which, nothing was seen, nearest to the
-     *  vehicle's x, y and z. */
-    std::array<std::size_t, 3> weakly_observed_along{}, weakly_observed_about{};
-    std::size_t searched = 0, longest_searched = 0;
-    std::size_t interrupted = 0;
-    bool searched_loops = false;
-    std::size_t loop_candidates = 0, loops_closed = 0;
-    double loop_search_ms = 0;  //!< beside the drive, and after it
-    std::string stored_map;     //!< that it was localised in; empty: none
-    std::size_t in_map = 0, outside_map = 0, not_found_in_map = 0;  //!< scans
-    double path_m = 0;
-    double vertical_correction_deg = 0;
-    double ms_per_scan = 0;         //!< reading, odometry, the graph's window, submaps
-    Figures ms_per_scan_of_stages;  //!< of which these are the parts
-    double map_ms_per_scan = 0;
-    double optimisation_ms = 0;
-    unsigned optimisation_iterations = 0;
-    double optimisation_cost_before = 0, optimisation_cost_after = 0;
-    double map_and_pictures_ms = 0;
-    double peak_rss_mb = 0;
-    std::vector<std::string> warnings;
-    Figures metrics;  //!< beside true poses; empty where they are not known
-    Figures metrics_before_optimisation;
+    std::string version;                      //!< of DeLiO
+    std::string command;                      //!< as it was typed, where there was a command line
+    std::string profile;                      //!< that the options were made of
+    bool complete = false;                    //!< every scan was processed
+    std::string fault;                        //!< empty: none
+    std::size_t scans = 0;                    //!< that were processed
+    std::size_t deskewed = 0;                 //!< of which so many had times
+    std::size_t predicted = 0;                //!< scans that were not registered
+    std::size_t longest_predicted = 0;        //!< of them in a row
+    std::size_t weakly_observed = 0;          //!< registered, with an axis that was not seen
+    std::size_t longest_weakly_observed = 0;  //!< of them in a row
+    /** Of these those with an axis along which nothing was seen, nearest to the vehicle's x, y and
+     * z. */
+    std::array<std::size_t, 3> weakly_observed_along{};
+    std::array<std::size_t, 3> weakly_observed_about{};  //!< the same about which
+    std::size_t searched = 0;              //!< scans that were sought all about the prediction
+    std::size_t longest_searched = 0;      //!< of them in a row
+    std::size_t interrupted = 0;           //!< scans after a pause or a set clock
+    bool searched_loops = false;           //!< else the next two say nothing
+    std::size_t loop_candidates = 0;       //!< pairs of places that were compared
+    std::size_t loops_closed = 0;          //!< of which so many were accepted
+    double loop_search_ms = 0;             //!< beside the drive, and after it
+    std::string stored_map;                //!< that it was localised in; empty: none
+    std::size_t in_map = 0;                //!< scans in the stored map
+    std::size_t outside_map = 0;           //!< scans after it was left
+    std::size_t not_found_in_map = 0;      //!< scans before it was found
+    double path_m = 0;                     //!< length of the final way
+    double vertical_correction_deg = 0;    //!< that was added to each point's vertical angle
+    double ms_per_scan = 0;                //!< reading, odometry, the graph's window, submaps
+    Figures ms_per_scan_of_stages;         //!< of which these are the parts
+    double map_ms_per_scan = 0;            //!< what the map took of each scan
+    double optimisation_ms = 0;            //!< of the whole graph
+    unsigned optimisation_iterations = 0;  //!< Levenberg-Marquardt steps tried
+    double optimisation_cost_before = 0;   //!< OptimisationResult::initial_cost
+    double optimisation_cost_after = 0;    //!< OptimisationResult::final_cost
+    double map_and_pictures_ms = 0;        //!< to build and write them
+    double peak_rss_mb = 0;                //!< peakMemory_mb()
+    std::vector<std::string> warnings;     //!< a line each
+    Figures metrics;                       //!< beside true poses; empty where they are not known
+    Figures metrics_before_optimisation;   //!< of the odometry, where the graph changed it
 };
 
 /** `pictures_ms`: what map and pictures took to write. */
@@ -49,6 +61,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms);
 /** Largest memory of this process so far, MB. */
 double peakMemory_mb();
 
+/** As YAML. Error where it cannot be written. */
 void writeSummary(const Summary& summary, const std::string& path);
 
 /** Throws Error for a file that is missing or is no summary. */

@@ -8,6 +8,7 @@
 #include "delio/scan/scan.h"
 
 namespace delio::scan {
+/** What is done to a scan before anything looks at it. */
 struct PreprocessOptions : public StageOptions {
     double min_range = 2.5;
     double max_range = 100;

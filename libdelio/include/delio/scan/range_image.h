@@ -13,7 +13,7 @@ enum class Place {
 
 /** A range image to be put aside: the rows that hold anything, in centimetres. */
 struct PackedRanges {
-    int firstRow = 0;
+    int firstRow = 0;                      //!< of the rows that are kept, from below
     std::vector<std::uint16_t> ranges_cm;  //!< row by row from below; 0: nothing was seen
 };
 
@@ -30,6 +30,7 @@ class RangeImage {
      *  went on. */
     RangeImage(const PackedRanges& packed, double cell_deg);
 
+    /** To be put aside. */
     PackedRanges packed() const;
 
     /** Of one that was packed: between two rings, radians. */

@@ -29,17 +29,19 @@ inline std::int64_t floorOf(double value) {
 /** Which voxel each point is in: voxels are numbered from 0 in the order in which they are first
  *  met. `size` in the unit of the points; also good for directions on the unit sphere. */
 struct VoxelNumbers {
-    std::vector<Eigen::Index> ofPoint;
-    Eigen::Index voxels = 0;
+    std::vector<Eigen::Index> ofPoint;  //!< of each point the number of its voxel
+    Eigen::Index voxels = 0;            //!< how many there are
 };
+/** See VoxelNumbers. `size`: edge of a voxel. */
 VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size);
 
 /** The sum of the columns in each voxel, and their count. */
 template <int kRows>
 struct VoxelSums {
-    Eigen::Matrix<float, kRows, Eigen::Dynamic> sums;
-    Eigen::RowVectorXf counts;
+    Eigen::Matrix<float, kRows, Eigen::Dynamic> sums;  //!< a voxel a column
+    Eigen::RowVectorXf counts;                         //!< of columns in each voxel
 };
+/** Of columns whose points are numbered so. */
 template <int kRows>
 VoxelSums<kRows> sumsOf(const Eigen::Matrix<float, kRows, Eigen::Dynamic>& columns,
                         const VoxelNumbers& numbers) {

@@ -4,13 +4,15 @@
 #include <utility>
 #include <vector>
 
+#include "delio/core/chunked.h"
+
 namespace delio::scan {
 /** Numbers the keys of voxels from 0 in the order in which they come. An open-addressing hash table
  *  with linear probing: a look-up mostly touches one place in memory, where std::unordered_map
  *  follows pointers. */
 class VoxelIndex {
  public:
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};  //!< no number
 
     std::size_t size() const { return size_; }  //!< keys
 
@@ -23,7 +25,9 @@ class VoxelIndex {
     /** The key will be asked for soon: memory is slow, and many keys can be waited for at once. */
     void prefetch(std::uint64_t key) const { __builtin_prefetch(&slots_[firstSlotOf(key)]); }
 
+    /** Drops everything. */
     void clear() { *this = VoxelIndex(); }
+    /** Makes room for so many keys. */
     void reserve(std::size_t keys);
 
  private:
@@ -49,12 +53,12 @@ class VoxelIndex {
     std::size_t size_ = 0;
 };
 
-/** A map from voxels' keys to values, which lie one behind the other in memory. Pointers are valid
- *  until a key is added or values are erased. */
+/** A map from voxels' keys to values, which lie by the thousand one behind the other in memory.
+ *  Pointers are valid until values are erased. */
 template <typename Value>
 class VoxelTable {
  public:
-    std::size_t size() const { return values_.size(); }
+    std::size_t size() const { return values_.size(); }  //!< values
 
     /** The number of the key's value; VoxelIndex::kNone where there is none. */
     std::uint32_t numberOf(std::uint64_t key) const { return index_.find(key); }
@@ -65,6 +69,7 @@ class VoxelTable {
         return number == VoxelIndex::kNone ? nullptr : &values_[number];
     }
 
+    /** The same, to be changed. */
     Value* find(std::uint64_t key) {
         const std::uint32_t number = index_.find(key);
         return number == VoxelIndex::kNone ? nullptr : &values_[number];
@@ -74,16 +79,20 @@ class VoxelTable {
     std::uint32_t insert(std::uint64_t key) {
         const std::uint32_t number = index_.insert(key);
         if (number == values_.size()) {
-            values_.emplace_back();
+            values_.push_back({});
             keys_.push_back(key);
         }
         return number;
     }
 
+    /** The value with this number. */
     Value& operator[](std::uint32_t number) { return values_[number]; }
+    /** The value with this number. */
+    const Value& operator[](std::uint32_t number) const { return values_[number]; }
 
     /** Soon insert(key) is called, or the number's value wanted. */
     void prefetch(std::uint64_t key) const { index_.prefetch(key); }
+    /** See prefetch(). */
     void prefetchValue(std::uint32_t number) const { __builtin_prefetch(&values_[number]); }
 
     /** Gives the numbers, rising, of those that stay: they are numbered anew in this order. */
@@ -105,10 +114,8 @@ class VoxelTable {
         return staying;
     }
 
+    /** Drops everything. */
     void clear() { *this = VoxelTable(); }
-
-    auto begin() const { return values_.begin(); }
-    auto end() const { return values_.end(); }
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
@@ -123,7 +130,7 @@ class VoxelTable {
 
  private:
     VoxelIndex index_;
-    std::vector<Value> values_;
+    Chunked<Value> values_;
     std::vector<std::uint64_t> keys_;  //!< of the values
 };
 }  // namespace delio::scan

@@ -11,6 +11,7 @@ namespace delio {
  *  last one where the odometry can make them, and while driving its last nodes optimised. */
 class GraphBuilder : public SlamListener {
  public:
+    /** Of an empty graph. */
     explicit GraphBuilder(const graph::PoseGraphOptions& options) : options_(options) {}
 
     const char* name() const override { return "graph"; }
@@ -22,7 +23,7 @@ class GraphBuilder : public SlamListener {
     /** Optimises the whole graph; while driving, its last nodes were. */
     graph::OptimisationResult optimise() { return graph_.optimise(options_); }
 
-    const graph::PoseGraph& graph() const { return graph_; }
+    const graph::PoseGraph& graph() const { return graph_; }  //!< a node a scan
 
     /** What has to be kept to go on later, without the features: see core/checkpoint.h. */
     template <class Archive>

@@ -9,8 +9,8 @@ namespace delio {
 /** One scan as Slam tells its listeners of it; what it refers to lives as long as the call. */
 struct SlamScan {
     std::size_t node;  //!< number of its pose, from 0
-    const Scan& scan;
-    const Step& step;
+    const Scan& scan;  //!< as it came
+    const Step& step;  //!< what the odometry said of it
     /** Of the vehicle, since the scan before; identity for the first. */
     Increment increment;
     /** Of the vehicle, by the odometry alone: maps its coordinates to those it had at the first

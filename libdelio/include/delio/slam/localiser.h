@@ -29,6 +29,7 @@ class Localiser {
      *  metres: then it is looked for there only. */
     void expect(const Eigen::Isometry3d& vehicle);
 
+    /** The next scan. As Slam::process() where something is thrown. */
     Localisation process(const Scan& scan);
 
     /** The same for who works with MRPT: a LiDAR observation (see io::decodeObservation) with its
@@ -37,8 +38,9 @@ class Localiser {
     std::optional<mrpt::poses::CPose3DPDFGaussian> process(
         const mrpt::obs::CObservation& observation);
 
-    /** See Slam::save() and Slam::restore(); the map has to be the same one. */
+    /** See Slam::save(). */
     void save(std::ostream& out) const;
+    /** See Slam::restore(); the map has to be the same one. */
     void restore(std::istream& in);
 
  private:

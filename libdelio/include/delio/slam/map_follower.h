@@ -9,6 +9,7 @@ namespace delio {
 /** Follows a drive through a stored map. */
 class MapFollower : public SlamListener {
  public:
+    /** `tracker`: of the map. */
     explicit MapFollower(MapTracker tracker) : tracker_(std::move(tracker)) {}
 
     /** See MapTracker. */
@@ -22,7 +23,7 @@ class MapFollower : public SlamListener {
 
     /** Of every scan. */
     const std::vector<MapFix>& fixes() const { return fixes_; }
-    const StoredMap& map() const { return tracker_.map(); }
+    const StoredMap& map() const { return tracker_.map(); }  //!< that is followed through
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>

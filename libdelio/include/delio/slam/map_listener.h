@@ -7,6 +7,7 @@ namespace delio {
  *  be registered is left out: where it was taken is a guess. */
 class MapListener : public SlamListener {
  public:
+    /** `builder`: empty. */
     explicit MapListener(map::MapBuilder builder) : builder_(std::move(builder)) {}
 
     const char* name() const override { return "map"; }
@@ -15,7 +16,7 @@ class MapListener : public SlamListener {
     void save(std::ostream& out) const override;
     void restore(std::istream& in) override;
 
-    const map::MapBuilder& builder() const { return builder_; }
+    const map::MapBuilder& builder() const { return builder_; }  //!< with what was added so far
 
  private:
     map::MapBuilder builder_;

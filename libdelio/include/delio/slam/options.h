@@ -16,17 +16,17 @@ namespace delio {
 /** The options of every stage, as one .ini file has them: a section a stage. The defaults are those
  *  of the profile `accurate`; the other profiles say what differs. */
 struct Options : public OdometryOptions {
-    graph::PoseGraphOptions graph;
-    map::MapOptions map;
-    loops::SubmapOptions submaps;
-    loops::LoopOptions loops;
-    loops::ClosureOptions closures;
-    PlaceSearchOptions placeSearch;
-    LocalisationOptions localisation;
+    graph::PoseGraphOptions graph;     //!< [graph]
+    map::MapOptions map;               //!< [map], and [removal]
+    loops::SubmapOptions submaps;      //!< [submaps]
+    loops::LoopOptions loops;          //!< [loops]
+    loops::ClosureOptions closures;    //!< [closures]
+    PlaceSearchOptions placeSearch;    //!< [place_search]
+    LocalisationOptions localisation;  //!< [localisation]
 
     /** share/config/NAME.ini, which travels inside the library. Error for an unknown name. */
     static Options ofProfile(const std::string& name);
-    static std::vector<std::string> profileNames();
+    static std::vector<std::string> profileNames();  //!< that ofProfile() knows
 
     /** The same, and what a drive says of its own sensor: what delio-slam uses. */
     static Options forDrive(const std::string& profile, const std::optional<io::DriveMeta>& meta);
@@ -49,6 +49,9 @@ struct Options : public OdometryOptions {
     /** Writes all that has an effect; loading the text gives the same options. */
     void write(std::ostream& out) const;
 
+    /** Those in use with their sections, in the order in which they are written. */
+    ConstStageList stages() const;
+
     /** True if `iniText` sets `section.key`. */
     static bool sets(const std::string& iniText, const std::string& section,
                      const std::string& key);
@@ -56,8 +59,6 @@ struct Options : public OdometryOptions {
  private:
     /** Every stage of both odometries; sections that both have are there twice. */
     StageList allStages();
-    /** Those in use, in the order in which they are written. */
-    ConstStageList stages() const;
 
     std::set<std::string> given_;  //!< sections that were loaded or set, the profile's apart
 };

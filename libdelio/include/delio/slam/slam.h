@@ -12,7 +12,7 @@
 namespace delio {
 /** What became of one scan. */
 struct ScanReport {
-    Step step;
+    Step step;                        //!< of the odometry
     std::vector<Named> listeners_ms;  //!< time of each listener, under its name
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
@@ -26,6 +26,7 @@ struct ScanReport {
  *  are the vehicle's: they map its coordinates to those it had at the first scan. */
 class Slam {
  public:
+    /** Without listeners yet. */
     explicit Slam(std::unique_ptr<Odometry> odometry) : odometry_(std::move(odometry)) {}
 
     /** From the next scan on it is told of every scan, after those that were attached before. */
@@ -36,6 +37,10 @@ class Slam {
      *  that is not known: the odometry threw, or gave an increment that is not finite, which is an
      *  Error.) */
     ScanReport process(const Scan& scan);
+
+    /** No more scans come: what the odometry has kept to register them goes, and with it what
+     *  process() and save() need; they are an Error from then on. */
+    void close() { odometry_.reset(); }
 
     /** Of the odometry alone. */
     const io::Trajectory& trajectory() const { return trajectory_; }
@@ -55,6 +60,7 @@ class Slam {
     }
 
  private:
+    void requireOpen() const;
     std::string listenerNames() const;
     void tell(const SlamScan& scan, ScanReport& report);
 

@@ -21,6 +21,7 @@ struct NormalsOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
+/** Normals of a cloud, and how they came about. */
 struct SurfaceNormals {
     Eigen::Matrix3Xf directions;     //!< unit vectors, turned towards the sensor (the origin)
     Eigen::VectorXf planarity;       //!< 0 (barely a plane) to 1, one per direction

@@ -7,9 +7,9 @@
 namespace delio::evaluation {
 /** What a report says about itself. */
 struct ReportNotes {
-    std::string program;  //!< name and version
-    std::string lengths;  //!< of the segments, metres
-    std::size_t delta = 1;
+    std::string program;    //!< name and version
+    std::string lengths;    //!< of the segments, metres
+    std::size_t delta = 1;  //!< poses that the relative error (RPE) spans
 };
 
 /** Writes metrics.tsv, lengths.tsv, report.html and plots/ (SVG, PNG, data and gnuplot scripts)

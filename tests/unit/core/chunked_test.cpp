@@ -1,0 +1,36 @@
+#include "delio/core/chunked.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace {
+using delio::Chunked;
+
+TEST(Chunked, HoldsWhatWasPutIn) {
+    constexpr std::size_t kCount = 5000;
+    Chunked<std::string> all;
+    for (std::size_t i = 0; i < kCount; ++i) all.push_back(std::to_string(i));
+    ASSERT_EQ(all.size(), kCount);
+    for (std::size_t i = 0; i < kCount; ++i) EXPECT_EQ(all[i], std::to_string(i));
+}
+
+TEST(Chunked, DoesNotMoveWhatItHolds) {
+    Chunked<int> all;
+    all.push_back(7);
+    const int* first = &all[0];
+    for (int i = 0; i < 100'000; ++i) all.push_back(i);
+    EXPECT_EQ(&all[0], first);
+    EXPECT_EQ(*first, 7);
+}
+
+TEST(Chunked, NewOnesAreNotWhatWasTakenAway) {
+    Chunked<std::string> all;
+    for (int i = 0; i < 10; ++i) all.push_back("old");
+    all.resize(3);
+    all.push_back({});
+    EXPECT_EQ(all.size(), 4U);
+    EXPECT_EQ(all[2], "old");
+    EXPECT_EQ(all[3], "");
+}
+}  // namespace
