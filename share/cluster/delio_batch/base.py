@@ -1,0 +1,83 @@
+"""What every part needs: errors of one line, plain text, files that are whole."""
+import json
+import os
+import subprocess
+import sys
+
+
+class Problem(Exception):
+    """One line that says what, where and what to do; the exit code."""
+
+    def __init__(self, text: str, code: int = 1):
+        super().__init__(text)
+        self.code = code
+
+
+def plain(text: str) -> str:
+    """Without control characters: names and logs reach terminals, tables and pages."""
+    return "".join(c if c.isprintable() else "?" for c in text)
+
+
+def say(text: str) -> None:
+    """One line, in one write: tasks speak at the same time."""
+    line = f"delio-batch: {plain(text)}\n".encode(errors="replace")
+    try:
+        os.write(2, line)
+    except OSError:
+        pass
+
+
+def reason(error: OSError) -> str:
+    """What the system says, with the file that it is about."""
+    name = f"'{error.filename}': " if error.filename else ""
+    return f"{name}{error.strerror or error}"
+
+
+def replace_file(path: str, text: str) -> None:
+    """The old file, or the new one whole."""
+    partial = f"{path}.{os.uname().nodename}.{os.getpid()}"
+    try:
+        with open(partial, "w", encoding="utf-8", errors="surrogateescape") as file:
+            file.write(text)
+        os.replace(partial, path)
+    except OSError:
+        remove_file(partial)
+        raise
+
+
+def remove_file(path: str) -> None:
+    try:
+        os.unlink(path)
+    except OSError:
+        pass
+
+
+def read_json(path: str) -> dict:
+    """Empty where there is no such file; damaged ones count as none."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            value = json.load(file)
+    except (OSError, ValueError):
+        return {}
+    return value if isinstance(value, dict) else {}
+
+
+def run_tool(words: list, **more) -> subprocess.CompletedProcess:
+    """Of another program: exit code and what it said, as text."""
+    try:
+        return subprocess.run(words, stdin=more.pop("stdin", None if "input" in more else subprocess.DEVNULL),
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8",
+                              errors="surrogateescape", check=False, **more)
+    except OSError as error:
+        raise Problem(f"cannot run {words[0]}: {reason(error)}") from None
+
+
+def last_line(text: str) -> str:
+    """What a program said last: its error."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    return plain(lines[-1])[:500] if lines else ""
+
+
+def say_table(text: str) -> None:
+    sys.stdout.write(text)
+    sys.stdout.flush()

@@ -1,0 +1,33 @@
+"""The same tasks on this machine: GNU parallel hands them out."""
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+
+from .base import Problem
+from .batch import Batch
+
+
+def check() -> None:
+    if not shutil.which("parallel"):
+        raise Problem("GNU parallel, which runs tasks on this machine, is not installed; install the package parallel")
+
+
+def run(batch: Batch, tasks: list, jobs: int, program: str) -> None:
+    """Tasks that fail stop no others. A SIGINT that reaches this process has reached them, too."""
+    batch.expect(tasks)
+    command = " ".join(shlex.quote(word) for word in (sys.executable, program, "--run-task", batch.out))
+    words = ["parallel", "--will-cite", "--ungroup", "--halt", "never", "--jobs", str(jobs),
+             "--joblog", batch.path("logs", "joblog.tsv"), command + " {}"]
+    numbers = "".join(f"{task.number}\n" for task in tasks).encode()
+    with subprocess.Popen(words, stdin=subprocess.PIPE, env={**os.environ, "PARALLEL_SHELL": "/bin/sh"}) as process:
+        try:
+            process.communicate(numbers)
+        except KeyboardInterrupt:
+            process.terminate()  # twice: its tasks, too
+            process.terminate()
+            process.wait()
+            raise
+    if process.returncode == 255:
+        raise Problem("GNU parallel could not run the tasks; what it says is above")
