@@ -107,21 +107,22 @@ def _arrays(batch: Batch, tasks: list, limits: Limits) -> list:
 def submit(batch: Batch, tasks: list, limits: Limits, program: str) -> list:
     """All is accepted, or nothing is begun: arrays are held until the collecting job is accepted, too."""
     name = plain(os.path.basename(batch.out))[:40]
-    common = ["--chdir", batch.out, "--open-mode=append"] + (limits.options or [])
+    common = (limits.options or []) + ["--chdir", batch.out, "--open-mode=append"]  # of two alike the last one counts
     jobs, rows = [], []
     try:
         for minutes, memory, offset, indices in _arrays(batch, tasks, limits):
             script = _script(["--run-task", batch.out], program).replace("$DELIO_BATCH_OFFSET", str(offset))
             most = f"%{limits.running}" if limits.running else ""
-            job = _submit(["--hold", "--requeue", f"--array={spans(indices)}{most}", f"--job-name={name}",
-                           f"--time={minutes}", f"--mem={memory}M", f"--cpus-per-task={batch.settings['threads']}",
-                           "--output=logs/slurm-%A.out"] + common, script)
+            job = _submit(common + ["--hold", "--requeue", f"--array={spans(indices)}{most}",
+                                    f"--job-name={name}",
+                                    f"--time={minutes}", f"--mem={memory}M",
+                                    f"--cpus-per-task={batch.settings['threads']}", "--output=logs/slurm-%A.out"], script)
             jobs.append(job)
             rows.append(f"{job}\t{offset}\n")
             say(f"job {job}: {len(indices)} tasks, {minutes} min and {memory} MB each at most")
-        collecting = _submit(["--dependency=afterany:" + ":".join(jobs), f"--job-name={name}-collect",
-                              f"--time={COLLECT_MINUTES}", f"--mem={min(COLLECT_MB, limits.memory_mb or COLLECT_MB)}M",
-                              "--output=logs/collect.out"] + common, _script(["--collect", batch.out], program))
+        collecting = _submit(common + ["--dependency=afterany:" + ":".join(jobs), f"--job-name={name}-collect",
+                                       f"--time={COLLECT_MINUTES}",
+                                       f"--mem={min(COLLECT_MB, limits.memory_mb or COLLECT_MB)}M", "--output=logs/collect.out"], _script(["--collect", batch.out], program))
         jobs.append(collecting)
         replace_file(batch.work("jobs"), "".join(rows) + f"{collecting}\tcollect\n")
         batch.expect(tasks)

@@ -19,12 +19,16 @@ class Stopped(Exception):
     """By a signal: a limit of time, preemption, scancel, Ctrl-C."""
 
 
+def _host() -> str:
+    return os.environ.get("SLURMD_NODENAME") or os.uname().nodename
+
+
 def _owner() -> str:
     """Of a scratch folder: the job, which keeps its number when it is requeued, or this process."""
     job = os.environ.get("SLURM_ARRAY_JOB_ID") or os.environ.get("SLURM_JOB_ID")
     if job:
         return f"{job}_{os.environ.get('SLURM_ARRAY_TASK_ID', '0')}"
-    return f"{os.uname().nodename}-{os.getpid()}"
+    return f"{_host()}-{os.getpid()}"
 
 
 class Attempt:
@@ -66,7 +70,7 @@ class Attempt:
             self._drop_empty_base()
 
     def _about(self) -> dict:
-        return {"attempts": self.attempts, "host": os.uname().nodename, "owner": self.owner, "began": int(self.began)}
+        return {"attempts": self.attempts, "host": _host(), "owner": self.owner, "began": int(self.began)}
 
     def _forget_own_past(self) -> None:
         """The scratch of this very job before it was requeued, and nobody else's."""
@@ -88,8 +92,9 @@ class Attempt:
                  "--threads", str(settings["threads"])] + task.options
         where = settings.get("cwd", "/")
         with open(self.batch.log(task), "wb") as log:
+            # Python ignores SIGXFSZ; left so, a file that is too large is an error that delio-slam names.
             self.child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
-                                          cwd=where if os.path.isdir(where) else "/")
+                                          restore_signals=False, cwd=where if os.path.isdir(where) else "/")
             _, status, used = os.wait4(self.child.pid, 0)
             self.child.returncode = os.waitstatus_to_exitcode(status)
         return self.child.returncode, used
