@@ -37,8 +37,8 @@ Examples:
       $ delio-batch -o out --slurm dataset
       $ delio-batch --status out
   A sweep over two options, twelve variants of each drive, on four cores:
-      $ delio-batch -o out --local 4 --set scan.voxel_m=0.2,0.4,0.8 \\
-          --set planes.size_m=1,2,3,4 fleet/*.rawlog -- --no-map
+      $ delio-batch -o out --local 4 --set plane_map.voxel_size=0.4,0.5,0.6 \\
+          --set scan.max_range=50,75,100,120 fleet/*.rawlog -- --no-map
 
 Exit status:
   0    success; with --slurm: all is in the queue, or done

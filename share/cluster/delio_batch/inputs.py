@@ -12,7 +12,6 @@ class Drive:
     """An input of delio-slam, by its absolute path."""
     input: str
     truth: str = ""  # poses that delio-eval takes
-    truth_given: bool = False
     options: list = field(default_factory=list)  # of this drive alone
     name: str = ""
     bytes: int = 0
@@ -49,7 +48,7 @@ def read_list(path: str, null: bool) -> list:
             raise Problem(f"the list '{path}' has NUL bytes in its lines: give -0 with it")
         words = [os.fsdecode(word) for word in record.split(b"\t")]
         truth = words[1] if len(words) > 1 else ""
-        drives.append(Drive(words[0], truth, bool(truth), [word for word in words[2:] if word]))
+        drives.append(Drive(words[0], truth, [word for word in words[2:] if word]))
     if not drives:
         raise Problem(f"the list '{path}' names no input")
     return drives
@@ -160,7 +159,6 @@ def resolve(drives: list, truths: str) -> list:
                 raise Problem(f"cannot read the truth '{drive.truth}' of '{drive.input}': no such file")
         elif truths and os.path.isfile(os.path.join(truths, drive.name + ".txt")):
             drive.truth = os.path.abspath(os.path.join(truths, drive.name + ".txt"))
-            drive.truth_given = True
         else:
             drive.truth = _truth_beside(drive.input)
         drive.bytes = _size(drive.input)
