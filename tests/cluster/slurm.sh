@@ -109,6 +109,7 @@ steps_of() {
 
 with_children() {
     echo "$1"
+    # shellcheck disable=SC2013 # words are wanted
     for child in $(cat "/proc/$1/task/"*/children 2>/dev/null); do with_children "$child"; done
 }
 

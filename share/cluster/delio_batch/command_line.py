@@ -153,8 +153,6 @@ def parse(words: list) -> argparse.Namespace:
         name = word.partition("=")[0]
         if name in OWN:
             parser.error(f"{name} after --: is for delio-batch to set")
-        if name == "--set":
-            parser.error("--set after --: give it before the --, where its values are told apart")
     if (line.lists or line.inputs) and not line.profiles:
         line.profiles = ["accurate"]
     if not line.lists and not line.inputs and (line.profiles or line.sets or line.slam_options or line.update):
