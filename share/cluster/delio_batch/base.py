@@ -27,6 +27,14 @@ def say(text: str) -> None:
         pass
 
 
+def say_some(lines: list, most: int = 50) -> None:
+    """Of thousands of lines the first ones."""
+    for line in lines[:most]:
+        say(line)
+    if len(lines) > most:
+        say(f"and {len(lines) - most} more")
+
+
 def reason(error: OSError) -> str:
     """What the system says, with the file that it is about."""
     name = f"'{error.filename}': " if error.filename else ""
@@ -63,11 +71,12 @@ def read_json(path: str) -> dict:
 
 
 def run_tool(words: list, **more) -> subprocess.CompletedProcess:
-    """Of another program: exit code and what it said, as text."""
+    """Of another program: exit code and what it said, as text. `more`: input, timeout."""
     try:
-        return subprocess.run(words, stdin=more.pop("stdin", None if "input" in more else subprocess.DEVNULL),
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8",
-                              errors="surrogateescape", check=False, **more)
+        return subprocess.run(words, stdin=None if "input" in more else subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, encoding="utf-8", errors="surrogateescape", check=False, **more)
+    except subprocess.TimeoutExpired:
+        raise Problem(f"{words[0]} does not answer") from None
     except OSError as error:
         raise Problem(f"cannot run {words[0]}: {reason(error)}") from None
 

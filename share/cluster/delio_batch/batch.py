@@ -33,6 +33,10 @@ class Task:
     def label(self) -> str:
         return f"{self.drive}, {self.variant}"
 
+    def identity(self) -> tuple:
+        """What makes it the same task. Recordings may grow, truths appear."""
+        return self.variant, self.drive, self.values, self.work()
+
     def work(self) -> dict:
         """What makes its result what it is."""
         return {"input": self.input, "profile": self.profile, "options": self.options}
@@ -45,7 +49,8 @@ class Batch:
             raise Problem("the name of the output folder has characters that cannot be printed: choose another")
         self.settings: dict = {}
         self.tasks: list = []
-        self._made: list = []
+        self._made: list = []  # by this run
+        self._replaced = None  # the batch with the list that was there
         self._lock = -1
 
     # ---- where everything is
@@ -125,28 +130,27 @@ class Batch:
         be taken; results that are there have to be those of the same work."""
         if self.exists():
             old = Batch(self.out).load()
-            if old.tasks == tasks:
-                self.tasks, self.settings = tasks, {**old.settings, **settings}
-                if self.settings != old.settings:
-                    self._save()
-                return
-            if not update:
+            if [task.identity() for task in old.tasks] == [task.identity() for task in tasks]:
+                settings = {**old.settings, **settings}
+            elif not update:
                 raise Problem(f"'{self.out}' holds another batch ({len(old.tasks)} tasks): choose another folder, "
                               "or take this list in its place by --update (what is done stays)")
+            self._replaced = old
         for task in tasks:
             if self.is_done(task) and read_json(self.record(task)).get("work") != task.work():
                 raise Problem(f"'{self.result(task)}' was made of another input, or with other options: "
                               "remove it, or choose another folder")
-        is_new = not self.exists()
-        self.tasks, self.settings = tasks, {**settings, "id": secrets.token_hex(4)}
-        self._save()
-        if is_new:
+        self.tasks, self.settings = tasks, {"id": secrets.token_hex(4), **settings}
+        if not self._replaced:
             self._made.append(self.list_file)
+        self._save()
 
     def discard(self) -> None:
         """Takes back what this run has made: a queue refused it."""
         if self._lock < 0:
             return
+        if self._replaced:
+            self._replaced._save()
         for path in reversed(self._made):
             if os.path.isdir(path):
                 shutil.rmtree(path, ignore_errors=True)
@@ -172,7 +176,8 @@ class Batch:
                     raise
             self._lock = handle
         except BlockingIOError:
-            raise Problem(f"another delio-batch works in '{self.out}': wait for it (--status says how far it is)") from None
+            raise Problem(f"another delio-batch works in '{self.out}': wait for it (--status says how far it "
+                          "is)") from None
         except OSError as error:
             raise Problem(f"cannot write '{self.out}': {reason(error)}") from None
 

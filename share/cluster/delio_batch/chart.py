@@ -48,8 +48,8 @@ def _lines(rows: list, key: str, swept: dict, value) -> dict:
 def _panel(title: str, lines: dict, places: dict) -> tuple:
     """Data and the plot command of a panel."""
     data, plots = "", []
-    for rest, points in lines.items():
-        block = f"$panel{abs(hash((title, rest)))}"
+    for number, (rest, points) in enumerate(lines.items()):
+        block = f"${title[:3]}{number}"
         ordered = sorted((places[at], mean) for at, mean in points)
         data += f"{block} << EOD\n" + "".join(f"{place} {mean}\n" for place, mean in ordered) + "EOD\n"
         plots.append(f"{block} using 1:2 with linespoints pt 7 title {_quoted(rest)}")

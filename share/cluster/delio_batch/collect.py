@@ -3,7 +3,7 @@ import os
 import shutil
 
 from . import chart, slurm
-from .base import last_line, plain, read_json, remove_file, replace_file, run_tool, say, say_table
+from .base import last_line, plain, read_json, remove_file, replace_file, run_tool, say, say_some, say_table
 from .batch import Batch, Task
 
 SCORES = ("length_m", "segments", "t_percent", "r_deg_per_100m", "ape_m", "rpe_m", "rpe_deg")
@@ -25,7 +25,7 @@ def outcome(batch: Batch, task: Task, running: set, waiting: set) -> tuple:
         return "waiting", state
     if word == "running":
         return "lost", {**state, "line": f"ended without a word on {state.get('host', '?')} "
-                                         "(killed with all its processes: memory, or the node)"}
+                                         "(killed with all its processes: limits of time or memory, or the node)"}
     return "failed", state  # stopped, and not in the queue again
 
 
@@ -123,8 +123,7 @@ def collect(batch: Batch, running: set = frozenset(), waiting: set = frozenset()
         remove_file(batch.path("failed.tsv"))
     fault = _draw_page(batch, scored)
     charts = chart.draw(batch, rows)
-    for failure in failures:
-        say(f"{failure['drive']}, {failure['variant']}: failed: {failure['line']}")
+    say_some([f"{failure['drive']}, {failure['variant']}: failed: {failure['line']}" for failure in failures])
     _summarise(batch, rows, counts, fault, charts)
     return 0 if counts.get("done", 0) == len(batch.tasks) and not fault else 1
 

@@ -104,7 +104,8 @@ def _parser() -> argparse.ArgumentParser:
         help="Poses of another program (DRIVE.txt) on the same page; may be repeated")
     add("--slurm", action="store_true", help="Submit job arrays, and a job that collects after them")
     add("--local", metavar="N", type=_count, help="Run N tasks at a time on this machine, by GNU parallel")
-    add("--retry", action="store_true", help="Do failed tasks again; those that were killed get twice the time and memory")
+    add("--retry", action="store_true",
+        help="Do failed tasks again; those that were killed get twice the time and memory")
     add("--update", action="store_true",
         help="Take this list in the place of the one that OUT has; what is done stays")
     add("--wait", action="store_true", help="With --slurm: end when all has been collected")
@@ -113,7 +114,8 @@ def _parser() -> argparse.ArgumentParser:
     add("--scratch", metavar="DIR", help="Where tasks work, on a disk of the node; default: in OUT")
     add("--time", metavar="MIN", type=_count, help="Most minutes of a task; default: by the size of its input")
     add("--mem", metavar="MB", type=_count, help="Memory of a task; default: by the size of its input")
-    add("--max-running", metavar="N", type=_count, help="Tasks at a time at most; default: as the queue has it")
+    add("--max-running", metavar="N", type=_count,
+        help="With --slurm: tasks at a time at most; default: as the queue has it")
     add("-p", "--partition", metavar="NAME", help="Partition of Slurm")
     add("-A", "--account", metavar="NAME", help="Account of Slurm")
     add("--sbatch", metavar="OPTION", action="append", default=[],
@@ -155,7 +157,8 @@ def parse(words: list) -> argparse.Namespace:
             parser.error(f"{name} after --: is for delio-batch to set")
     if (line.lists or line.inputs) and not line.profiles:
         line.profiles = ["accurate"]
-    if not line.lists and not line.inputs and (line.profiles or line.sets or line.slam_options or line.update):
+    is_new = line.profiles or line.sets or line.slam_options or line.update or line.truth
+    if not line.lists and not line.inputs and is_new:
         parser.error("inputs are missing; without any, the list that OUT has is gone on with as it is")
     return line
 
@@ -164,7 +167,8 @@ def check_tools() -> None:
     """The tools of the PATH, or of build/bin in this project."""
     if not shutil.which("delio-slam"):
         here = os.path.dirname(os.path.realpath(sys.argv[0]))
-        os.environ["PATH"] = os.path.normpath(os.path.join(here, "../../build/bin")) + ":" + os.environ.get("PATH", "")
+        built = os.path.normpath(os.path.join(here, "../../build/bin"))
+        os.environ["PATH"] = f"{built}:{os.environ.get('PATH', '')}"
     for tool in ("delio-slam", "delio-eval"):
         if not shutil.which(tool):
             raise Problem(f"{tool} is not in the PATH: install it, or cmake -S . -B build && cmake --build build")

@@ -11,11 +11,13 @@ from dataclasses import dataclass
 from .base import Problem, last_line, plain, replace_file, run_tool, say
 from .batch import Batch, Task
 
-# Measured: share/doc/scale.md, "What a scan costs". Of the dearest kind of drive, a MB of input being a MB on the disk.
-SECONDS_PER_MB = 0.5  # of one thread
-MEMORY_MB = 700
-MEMORY_PER_MB = 0.25
-SAFETY = 4  # of the time: other processors, busy file systems
+# Measured: share/doc/scale.md, "What a scan costs". Of a MB of the input (packets hold four times the scans of
+# a MB of points) on one thread, with the map.
+SECONDS_PER_MB = {"points": 0.08, "packets": 0.4}
+MEMORY_PER_MB = {"points": 1.0, "packets": 5.0}
+MEMORY_MB = 500  # whatever the input
+MEMORY_SAFETY = 1.5
+TIME_SAFETY = 4  # hard drives, other processors, busy file systems
 LEAST_MINUTES = 5
 COLLECT_MINUTES = 60
 COLLECT_MB = 2000
@@ -39,11 +41,12 @@ def needs(task: Task, state: dict, limits: Limits, threads: int) -> tuple:
     """Minutes and MB. What was ended by a signal gets more with each attempt."""
     ending = state.get("was", state.get("state"))
     more = 2 ** min(state.get("attempts", 1), 5) if ending in ("stopped", "killed", "running") else 1
+    kind = "packets" if task.input.endswith((".pcap", ".pcapng", ".bag", ".mcap", ".db3")) else "points"
     size = task.bytes / 1e6
-    minutes = limits.minutes or LEAST_MINUTES * _rounded(
-        more * SAFETY * size * SECONDS_PER_MB / max(1, min(threads, 2)) / 60 / LEAST_MINUTES)
-    memory = limits.memory_mb or 256 * _rounded(more * (MEMORY_MB + MEMORY_PER_MB * size) / 256)
-    return minutes, memory
+    seconds = TIME_SAFETY * SECONDS_PER_MB[kind] * size / min(threads, 2)
+    growing = 0 if "--no-map" in task.options else MEMORY_SAFETY * MEMORY_PER_MB[kind] * size
+    return (limits.minutes or LEAST_MINUTES * _rounded(more * seconds / 60 / LEAST_MINUTES),
+            limits.memory_mb or 256 * _rounded(more * (MEMORY_MB + growing) / 256))
 
 
 def _tool(words: list, **more):
@@ -53,7 +56,8 @@ def _tool(words: list, **more):
 def check() -> None:
     for tool in ("sbatch", "squeue", "scontrol", "scancel"):
         if not shutil.which(tool):
-            raise Problem(f"there is no Slurm here ({tool} is not in the PATH): log in where there is, or give --local N")
+            raise Problem(f"there is no Slurm here ({tool} is not in the PATH): log in where there is, "
+                          "or give --local N")
 
 
 def _largest_array() -> int:
@@ -76,11 +80,11 @@ def spans(numbers: list) -> str:
     return ",".join(str(a) if a == b else f"{a}-{b}" for a, b in parts)
 
 
-def _script(arguments: list, program: str) -> str:
-    """Runs where the tools of this shell are, whatever a node's PATH is. An array's tasks are told by $1."""
+def _script(arguments: list, program: str, offset: int = -1) -> str:
+    """Runs where the tools of this shell are, whatever a node's PATH is; of an array, task `offset` and on."""
     tools = os.path.dirname(shutil.which("delio-slam") or "")
     words = " ".join(shlex.quote(word) for word in [sys.executable, program] + arguments)
-    task = ' "$((SLURM_ARRAY_TASK_ID + $DELIO_BATCH_OFFSET))"' if "--run-task" in arguments else ""
+    task = f' "$((SLURM_ARRAY_TASK_ID + {offset}))"' if offset >= 0 else ""
     return f"#!/bin/sh\nPATH={shlex.quote(tools)}:$PATH\nexport PATH\nexec {words}{task}\n"
 
 
@@ -110,19 +114,21 @@ def submit(batch: Batch, tasks: list, limits: Limits, program: str) -> list:
     common = (limits.options or []) + ["--chdir", batch.out, "--open-mode=append"]  # of two alike the last one counts
     jobs, rows = [], []
     try:
-        for minutes, memory, offset, indices in _arrays(batch, tasks, limits):
-            script = _script(["--run-task", batch.out], program).replace("$DELIO_BATCH_OFFSET", str(offset))
-            most = f"%{limits.running}" if limits.running else ""
+        arrays = _arrays(batch, tasks, limits)
+        most = f"%{max(1, limits.running // len(arrays))}" if limits.running else ""
+        for minutes, memory, offset, indices in arrays:
+            script = _script(["--run-task", batch.out], program, offset)
             job = _submit(common + ["--hold", "--requeue", f"--array={spans(indices)}{most}",
-                                    f"--job-name={name}",
-                                    f"--time={minutes}", f"--mem={memory}M",
-                                    f"--cpus-per-task={batch.settings['threads']}", "--output=logs/slurm-%A.out"], script)
+                                    f"--job-name={name}", f"--time={minutes}", f"--mem={memory}M",
+                                    f"--cpus-per-task={batch.settings['threads']}",
+                                    "--output=logs/slurm-%A.out"], script)
             jobs.append(job)
             rows.append(f"{job}\t{offset}\n")
             say(f"job {job}: {len(indices)} tasks, {minutes} min and {memory} MB each at most")
         collecting = _submit(common + ["--dependency=afterany:" + ":".join(jobs), f"--job-name={name}-collect",
                                        f"--time={COLLECT_MINUTES}",
-                                       f"--mem={min(COLLECT_MB, limits.memory_mb or COLLECT_MB)}M", "--output=logs/collect.out"], _script(["--collect", batch.out], program))
+                                       f"--mem={min(COLLECT_MB, limits.memory_mb or COLLECT_MB)}M",
+                                       "--output=logs/collect.out"], _script(["--collect", batch.out], program))
         jobs.append(collecting)
         replace_file(batch.work("jobs"), "".join(rows) + f"{collecting}\tcollect\n")
         batch.expect(tasks)

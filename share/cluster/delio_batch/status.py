@@ -38,7 +38,8 @@ def show(batch: Batch) -> int:
         found.setdefault(word, []).append((task, known))
     lines = [f"{batch.out}: {len(batch.tasks)} tasks"]
     words = ["done", "running", "waiting", "failed", "lost"]
-    lines.append("  " + ", ".join(f"{len(found.get(word, []))} {word}" for word in words if word != "lost" or "lost" in found))
+    lines.append("  " + ", ".join(f"{len(found.get(word, []))} {word}" for word in words
+                                  if word != "lost" or word in found))
     left = _left(batch, found)
     if left:
         lines.append("  " + left)
@@ -46,7 +47,10 @@ def show(batch: Batch) -> int:
         lines.append("  the collecting job is at work, or waits")
     if found.get("waiting") and not running and not waiting:
         lines.append("  nothing is in the queue: the same command goes on")
-    for task, known in found.get("failed", []) + found.get("lost", []):
+    failures = found.get("failed", []) + found.get("lost", [])
+    for task, known in failures[:50]:
         lines.append(plain(f"  {task.label}: failed: {known.get('line', '')} ({batch.log(task)})"))
+    if len(failures) > 50:
+        lines.append(f"  and {len(failures) - 50} more failed")
     say_table("\n".join(lines) + "\n")
     return 0

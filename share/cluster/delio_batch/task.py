@@ -138,8 +138,8 @@ class Attempt:
         return {"scores": dict(zip(rows[0][2:], rows[1][2:]))}
 
     def _put_in_place(self) -> None:
-        """By a rename; from another file system over a copy beside the place. Where another instance of this task was faster, its result
-        stays."""
+        """By a rename; from another file system over a copy beside the place. Where another instance of this task
+        was faster, its result stays."""
         place = self.batch.result(self.task)
         os.makedirs(os.path.dirname(place), exist_ok=True)
         try:
