@@ -115,6 +115,10 @@ def collect(batch: Batch, running: set = frozenset(), waiting: set = frozenset()
                              "line": known.get("line", ""), "log": batch.log(task), "input": task.input})
         if word == "done" and ("scores" in known or "unscored" in known):
             scored.append((task, known))
+    try:
+        os.rmdir(batch.work("scratch"))
+    except OSError:
+        pass  # there is none, or tasks work in it
     replace_file(batch.path("table.tsv"), _tsv(_columns(batch), rows))
     if failures:
         replace_file(batch.path("failed.tsv"),

@@ -14,7 +14,7 @@ from .batch import Batch, Task
 # Measured: share/doc/scale.md, "What a scan costs". Of a MB of the input (packets hold four times the scans of
 # a MB of points) on one thread, with the map.
 SECONDS_PER_MB = {"points": 0.08, "packets": 0.4}
-MEMORY_PER_MB = {"points": 1.0, "packets": 5.0}
+MEMORY_PER_MB = {"points": 0.6, "packets": 3.0}
 MEMORY_MB = 500  # whatever the input
 MEMORY_SAFETY = 1.5
 TIME_SAFETY = 4  # hard drives, other processors, busy file systems
@@ -60,13 +60,17 @@ def check() -> None:
                           "or give --local N")
 
 
-def _largest_array() -> int:
-    """How many tasks an array may have at most."""
+def _largest_array(tasks: int) -> int:
+    """How many tasks an array may have at most. sbatch would wait for minutes for a queue that cannot take all."""
     shown = _tool(["scontrol", "show", "config"])
-    found = re.search(r"^MaxArraySize\s*=\s*(\d+)", shown.stdout, re.M)
-    if shown.returncode != 0 or not found:
+    found = dict(re.findall(r"^(MaxArraySize|MaxJobCount)\s*=\s*(\d+)", shown.stdout, re.M))
+    if shown.returncode != 0 or len(found) < 2:
         raise Problem(f"the queue does not answer: {last_line(shown.stderr)}")
-    return max(1, int(found.group(1)))
+    most = int(found["MaxJobCount"])
+    if tasks >= most:
+        raise Problem(f"the queue refuses the batch: it holds {most} jobs at most (MaxJobCount), these are {tasks} "
+                      "tasks and a collecting job; split the list")
+    return max(1, int(found["MaxArraySize"]))
 
 
 def spans(numbers: list) -> str:
@@ -100,7 +104,7 @@ def _submit(words: list, script: str) -> str:
 
 def _arrays(batch: Batch, tasks: list, limits: Limits) -> list:
     """(minutes, MB, offset, indices) of each: alike in what they need, as large as the queue takes."""
-    largest = _largest_array()
+    largest = _largest_array(len(tasks))
     kinds: dict = {}
     for task in tasks:
         need = needs(task, batch.state(task), limits, batch.settings["threads"])
@@ -111,7 +115,7 @@ def _arrays(batch: Batch, tasks: list, limits: Limits) -> list:
 def submit(batch: Batch, tasks: list, limits: Limits, program: str) -> list:
     """All is accepted, or nothing is begun: arrays are held until the collecting job is accepted, too."""
     name = plain(os.path.basename(batch.out))[:40]
-    common = (limits.options or []) + ["--chdir", batch.out, "--open-mode=append"]  # of two alike the last one counts
+    common = (limits.options or []) + ["--chdir", batch.out]  # of two options that are alike the last one counts
     jobs, rows = [], []
     try:
         arrays = _arrays(batch, tasks, limits)
@@ -121,14 +125,14 @@ def submit(batch: Batch, tasks: list, limits: Limits, program: str) -> list:
             job = _submit(common + ["--hold", "--requeue", f"--array={spans(indices)}{most}",
                                     f"--job-name={name}", f"--time={minutes}", f"--mem={memory}M",
                                     f"--cpus-per-task={batch.settings['threads']}",
-                                    "--output=logs/slurm-%A.out"], script)
+                                    "--open-mode=append", "--output=logs/slurm-%A.out"], script)
             jobs.append(job)
             rows.append(f"{job}\t{offset}\n")
             say(f"job {job}: {len(indices)} tasks, {minutes} min and {memory} MB each at most")
         collecting = _submit(common + ["--dependency=afterany:" + ":".join(jobs), f"--job-name={name}-collect",
                                        f"--time={COLLECT_MINUTES}",
                                        f"--mem={min(COLLECT_MB, limits.memory_mb or COLLECT_MB)}M",
-                                       "--output=logs/collect.out"], _script(["--collect", batch.out], program))
+                                       "--open-mode=truncate", "--output=logs/collect.out"], _script(["--collect", batch.out], program))
         jobs.append(collecting)
         replace_file(batch.work("jobs"), "".join(rows) + f"{collecting}\tcollect\n")
         batch.expect(tasks)

@@ -37,11 +37,10 @@ class Attempt:
     def __init__(self, batch: Batch, task: Task):
         self.batch, self.task = batch, task
         self.began = time.time()
-        self.owner = _owner()
-        self.restart = os.environ.get("SLURM_RESTART_COUNT", "0")
-        base = batch.settings.get("scratch")
-        self.base = os.path.join(base, batch.settings["id"]) if base else batch.work("scratch")
-        self.scratch = os.path.join(self.base, f"{task.number}.{self.owner}.{self.restart}")
+        # The folder that scratch folders are in stays: another task may be about to make its own in it.
+        self.base = batch.settings.get("scratch") or batch.work("scratch")
+        self.own = f"delio-batch.{batch.settings['id']}.{task.number}.{_owner()}."
+        self.scratch = os.path.join(self.base, self.own + os.environ.get("SLURM_RESTART_COUNT", "0"))
         self.child = None
 
     def run(self) -> int:
@@ -67,23 +66,15 @@ class Attempt:
             return self._fail(f"cannot write {reason(error)}", 1)
         finally:
             shutil.rmtree(self.scratch, ignore_errors=True)
-            self._drop_empty_base()
 
     def _about(self) -> dict:
-        return {"attempts": self.attempts, "host": _host(), "owner": self.owner, "began": int(self.began)}
+        return {"attempts": self.attempts, "host": _host(), "began": int(self.began)}
 
     def _forget_own_past(self) -> None:
         """The scratch of this very job before it was requeued, and nobody else's."""
-        own = f"{self.task.number}.{self.owner}."
         for name in os.listdir(self.base) if os.path.isdir(self.base) else []:
-            if name.startswith(own):
+            if name.startswith(self.own):
                 shutil.rmtree(os.path.join(self.base, name), ignore_errors=True)
-
-    def _drop_empty_base(self) -> None:
-        try:
-            os.rmdir(self.base)
-        except OSError:
-            pass  # others work in it
 
     def _slam(self) -> tuple:
         """Exit code of delio-slam, and what it used."""
@@ -107,6 +98,8 @@ class Attempt:
     def _end(self, code: int, used) -> int:
         task, log = self.task, self.batch.log(self.task)
         said = self._said(log)
+        if code in (-signal.SIGTERM, -signal.SIGINT, -signal.SIGHUP, 130):
+            raise Stopped("a signal to delio-slam")  # the same that is on its way to this process
         if code < 0:
             name = signal.Signals(-code).name
             memory = " (too little memory?)" if code == -signal.SIGKILL else ""
