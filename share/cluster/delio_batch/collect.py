@@ -7,7 +7,7 @@ from .base import last_line, plain, read_json, remove_file, replace_file, run_to
 from .batch import Batch, Task
 
 SCORES = ("length_m", "segments", "t_percent", "r_deg_per_100m", "ape_m", "rpe_m", "rpe_deg")
-MOST_ON_A_PAGE = 500  # results that delio-eval draws: share/doc/scale.md
+MOST_ON_A_PAGE = 200  # results that delio-eval draws: share/doc/scale.md
 
 
 def outcome(batch: Batch, task: Task, running: set, waiting: set) -> tuple:
