@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "delio/io/trajectory.h"
+#include "delio/version.h"
 #include "delio_slam_fixture.h"
 
 namespace {
@@ -72,7 +73,7 @@ TEST_F(DelioSlam, LeavesTheFilesOfTheContract) {
 
     const auto summary = this->summary();
     EXPECT_TRUE(summary["complete"].as<bool>());
-    EXPECT_EQ(summary["version"].as<std::string>(), "0.1.0");
+    EXPECT_EQ(summary["version"].as<std::string>(), kVersion);
     EXPECT_EQ(summary["profile"].as<std::string>(), "accurate");
     EXPECT_EQ(summary["scans"].as<int>(), static_cast<int>(kScans));
     EXPECT_EQ(summary["predicted"].as<int>(), 0);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "command.h"
+#include "delio/version.h"
 #include "tools.h"
 
 namespace {
@@ -19,7 +20,7 @@ TEST(EveryTool, HelpAndVersion) {
             EXPECT_NE(help.out.find(option), std::string::npos) << tool << option;
         const auto version = runTool(tool, {"--version"});
         EXPECT_EQ(version.exitCode, 0) << tool;
-        EXPECT_EQ(version.out, tool + " 0.1.0\n");
+        EXPECT_EQ(version.out, tool + " " + kVersion + "\n");
         EXPECT_EQ(version.err, "") << tool;
         const auto nothing = runTool(tool, {});
         test::expectFailure(nothing, 2, {"--help"});
