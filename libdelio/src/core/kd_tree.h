@@ -7,8 +7,9 @@ namespace delio {
  *  Queries may run in parallel. */
 class KdTree {
  public:
-    explicit KdTree(const Eigen::Matrix3Xf& points)
-        : columns_{points}, tree_(3, columns_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {
+    /** `leaf`: columns that are compared one by one; many of them where there are few questions. */
+    explicit KdTree(const Eigen::Matrix3Xf& points, std::size_t leaf = 10)
+        : columns_{points}, tree_(3, columns_, nanoflann::KDTreeSingleIndexAdaptorParams(leaf)) {
         if (points.cols() > 0) tree_.buildIndex();
     }
     KdTree(const KdTree&) = delete;

@@ -57,6 +57,7 @@ void PlaneOdometry::takeScale(double scale) {
     options_ = atScale(given_, scale);
     map_ = ScanToMap(options_.scanToMap, options_.map, options_.registration, options_.pointMap,
                      options_.points);
+    awaited_.reset();
 }
 
 /** True where scans in a row show a place of another size than the map was made for: out of a house
@@ -161,6 +162,12 @@ void PlaneOdometry::insert(const ScanView& view, const Eigen::Isometry3d& pose) 
     reference_ = {view.points, pose, timeline_.sinceStart_s()};
 }
 
+/** Puts into the map what waits for it. */
+void PlaneOdometry::settle() {
+    if (awaited_) map_.add(awaited_->points, awaited_->pose);
+    awaited_.reset();
+}
+
 /** A new map of this scan, at pose_. */
 ScanView PlaneOdometry::beginMap(const scan::PointCloud& cloud) {
     // The first pair has one scan only to be registered against: it is taken as dense as it came.
@@ -168,6 +175,7 @@ ScanView PlaneOdometry::beginMap(const scan::PointCloud& cloud) {
     ScanView view = undistorted(cloud, {});
     thin(view, kDense * options_.tracker.map_spacing, options_.tracker.scan_spacing);
     map_.clear(upAt(pose_));
+    awaited_.reset();
     dynamics_.clear();
     usualShare_ = 0;
     insert(view, pose_);
@@ -189,7 +197,8 @@ void PlaneOdometry::processFirstOfMap(const scan::PointCloud& cloud, Step& step)
            pose_, view, step);
 }
 
-/** Every other scan: undistort, place by points, leave out what moves, refine by planes, insert. */
+/** Every other scan: undistort, place by points, leave out what moves, refine by planes; it comes
+ *  into the map while the next one is thinned. */
 void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& interval,
                                 Step& step) {
     step.interrupted = !interval.believed;
@@ -202,7 +211,9 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
     ScanView view = timed(timeOf(step, "undistort"), [&] {
         return undistorted(cloud, Motion::of(motion, interval.duration_s));
     });
-    const auto voxels = timed(timeOf(step, "thinning"), [&] { return thinAll(view); });
+    scan::VoxelNumbers voxels;
+    timed(timeOf(step, "thinning"),
+          [&] { tbb::parallel_invoke([&] { settle(); }, [&] { voxels = thinAll(view); }); });
     const bool looking = options_.dynamics.enabled && !lost_;
     movers::DynamicObjects::Sight sight;
     Placement placement;
@@ -243,7 +254,8 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
         if (doubted_ && moved_m <= options_.tracker.doubt_spacing) return;
         if (!step.interrupted) learn(placed, predicted, since_s);
         if (detecting) dynamics_.remember(pose_ * turnedBack(upright_));
-        insert(view, pose_);
+        reference_ = {view.points, pose_, timeline_.sinceStart_s()};
+        awaited_ = Placed{std::move(view.fine), pose_};
     });
     if (!estimate.valid)
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";

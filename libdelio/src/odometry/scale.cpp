@@ -7,11 +7,12 @@
 namespace delio {
 double scaleOf(const Scan& scan) {
     constexpr double kShare = 0.9, kStreet_m = 16, kLeast = 0.25;
+    constexpr std::size_t kEnough = 10000;
     std::vector<float> ranges;
     const auto& x = scan.points->getPointsBufferRef_x();
     const auto& y = scan.points->getPointsBufferRef_y();
     const auto& z = scan.points->getPointsBufferRef_z();
-    for (std::size_t i = 0; i < x.size(); ++i) {
+    for (std::size_t i = 0; i < x.size(); i += 1 + x.size() / kEnough) {
         const float range = Eigen::Vector3f(x[i], y[i], z[i]).norm();
         if (std::isfinite(range) && range > 0) ranges.push_back(range);
     }

@@ -35,25 +35,34 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     const auto near = static_cast<float>(options.min_range * options.min_range);
     const auto far = static_cast<float>(options.max_range * options.max_range);
 
+    // All at once first, in a plain loop: vector instructions.
+    const auto all = static_cast<Eigen::Index>(x.size());
+    Eigen::ArrayXf squaredRanges(all), factors(all), heights(all);
+    for (Eigen::Index i = 0; i < all; ++i) {
+        const float px = x.data()[i], py = y.data()[i], pz = z.data()[i];
+        squaredRanges[i] = px * px + (py * py + pz * pz);
+        const float flat = std::sqrt(px * px + py * py);
+        const float flatNow = c * flat - s * pz;
+        factors[i] = flat > 0 ? flatNow / flat : 1.0F;
+        heights[i] = s * flat + c * pz;
+    }
+    const bool timed = options.deskew && !scan.times_s.empty();
     PointCloud cloud;
-    cloud.points.resize(3, static_cast<Eigen::Index>(x.size()));
+    cloud.points.resize(3, all);
+    cloud.indices.reserve(x.size());
     Eigen::Index kept = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const Eigen::Vector3f p(x[i], y[i], z[i]);
-        const bool timed = options.deskew && !scan.times_s.empty();
-        if (!p.allFinite() || (timed && !std::isfinite(scan.times_s[i]))) {
+        const auto k = static_cast<Eigen::Index>(i);
+        const bool finite = std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i]);
+        if (!finite || (timed && !std::isfinite(scan.times_s[i]))) {
             ++cloud.notFinite;
             continue;
         }
-        const float squaredRange = p.squaredNorm();
-        if (squaredRange < near || squaredRange > far) {
+        if (squaredRanges[k] < near || squaredRanges[k] > far) {
             ++cloud.outOfRange;
             continue;
         }
-        const float flat = p.head<2>().norm();
-        const float flatNow = c * flat - s * p.z();
-        cloud.points.col(kept) << p.head<2>() * (flat > 0 ? flatNow / flat : 1.0F),
-            s * flat + c * p.z();
+        cloud.points.col(kept) << x[i] * factors[k], y[i] * factors[k], heights[k];
         if (!scan.rings.empty()) cloud.rings.push_back(scan.rings[i]);
         if (timed) cloud.times_s.push_back(scan.times_s[i]);
         cloud.indices.push_back(static_cast<std::uint32_t>(i));

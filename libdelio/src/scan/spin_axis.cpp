@@ -15,7 +15,8 @@ namespace {
 std::vector<Eigen::Vector3d> stepsToNeighbours(const Eigen::Matrix3Xf& rays) {
     constexpr Eigen::Index kAsked = 3000;
     constexpr float kSame = 1e-5F, kFar = 0.05F;  // rad
-    const KdTree tree(rays);
+    constexpr std::size_t kLeaf = 100;
+    const KdTree tree(rays, kLeaf);
     std::vector<Eigen::Vector3d> steps;
     for (Eigen::Index i = 0; i < rays.cols();
          i += std::max<Eigen::Index>(1, rays.cols() / kAsked)) {

@@ -9,7 +9,8 @@ inline float approximateAtan2(float y, float x) {
     constexpr float kQuarter = 1.5707963F;
     const float most = std::max(std::abs(x), std::abs(y)),
                 least = std::min(std::abs(x), std::abs(y));
-    const float t = most > 0 ? least / most : 0, s = t * t;
+    constexpr float kLeast = 1e-30F;  // in place of a branch
+    const float t = least / std::max(most, kLeast), s = t * t;
     // Chebyshev fit of atan(t) / t over s in [0, 1].
     const float eighth =
         t * (0.99999553F +

@@ -30,10 +30,20 @@ class PlaneOdometry : public Odometry {
         if constexpr (Archive::is_loading::value) takeScale(scale_);
         archive(upright_, seenScale_, otherScale_, timeline_, prediction_, map_, dynamics_, kernel_,
                 reference_, pose_, unregistered_s_, first_, started_, lost_, doubted_, usualShare_,
-                misses_, skewed_);
+                misses_, skewed_, awaited_);
     }
 
  private:
+    /** Points of a scan and its pose. */
+    struct Placed {
+        Eigen::Matrix3Xf points;
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+
+        template <class Archive>
+        void serialize(Archive& archive) {
+            archive(points, pose);
+        }
+    };
     void takeScale(double scale);
     bool isOtherScale();
     void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
@@ -50,6 +60,7 @@ class PlaneOdometry : public Odometry {
                double since_s);
     Eigen::Vector3d upAt(const Eigen::Isometry3d& pose) const;
     void insert(const ScanView& view, const Eigen::Isometry3d& pose);
+    void settle();
     ScanView beginMap(const scan::PointCloud& cloud);
     void giveUp(const scan::PointCloud& cloud);
     void report(const planes::PlaneEstimate& estimate, const Eigen::Isometry3d& before,
@@ -78,5 +89,7 @@ class PlaneOdometry : public Odometry {
     unsigned misses_ = 0;        //!< scans in a row that were not found in the map
     /** The scan that the map began with, while the motion during it is not known. */
     std::optional<scan::PointCloud> skewed_;
+    /** The latest scan, where it is not in the map yet: the next one is thinned meanwhile. */
+    std::optional<Placed> awaited_;
 };
 }  // namespace delio

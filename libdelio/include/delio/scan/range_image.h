@@ -48,8 +48,8 @@ class RangeImage {
 
  private:
     /** In the whole sphere. */
-    int rowOf(const Eigen::Vector3f& point) const;
-    int columnOf(const Eigen::Vector3f& point) const;
+    int rowOf(float x, float y, float z) const;
+    int columnOf(float x, float y) const;
     /** Of one of the rows that are kept: its place in nearest_. */
     std::size_t cellOf(int row, int column) const {
         return static_cast<std::size_t>(row - firstRow_) * static_cast<std::size_t>(columns_) +
