@@ -74,11 +74,17 @@ void PlaneOdometry::thinned(ScanView& view) const {
     thin(view, options_.tracker.map_spacing, options_.tracker.scan_spacing);
 }
 
-/** Thins the whole scan; says which points became which. */
-scan::VoxelNumbers PlaneOdometry::thinAll(ScanView& view) const {
-    auto voxels = scan::numberVoxels(view.points, options_.tracker.map_spacing);
-    view.fine = scan::centroidsOf(view.points, voxels);
-    view.coarse = scan::firstOfVoxels(view.fine, options_.tracker.point_spacing).cast<double>();
+/** Thins the whole scan while the one before it comes into the map; says which points became
+ *  which. */
+scan::VoxelNumbers PlaneOdometry::thinAll(ScanView& view) {
+    const auto& spacings = options_.tracker;
+    scan::VoxelNumbers voxels;
+    const auto thinIt = [&] {
+        voxels = scan::numberVoxels(view.points, spacings.map_spacing);
+        view.fine = scan::centroidsOf(view.points, voxels);
+        view.coarse = scan::firstOfVoxels(view.fine, spacings.point_spacing).cast<double>();
+    };
+    tbb::parallel_invoke([&] { settle(); }, thinIt);
     return voxels;
 }
 
@@ -162,6 +168,12 @@ void PlaneOdometry::insert(const ScanView& view, const Eigen::Isometry3d& pose) 
     reference_ = {view.points, pose, timeline_.sinceStart_s()};
 }
 
+/** At pose_, while the next scan is thinned. */
+void PlaneOdometry::insertLater(ScanView& view) {
+    reference_ = {view.points, pose_, timeline_.sinceStart_s()};
+    awaited_ = Placed{std::move(view.fine), pose_};
+}
+
 /** Puts into the map what waits for it. */
 void PlaneOdometry::settle() {
     if (awaited_) map_.add(awaited_->points, awaited_->pose);
@@ -211,9 +223,7 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
     ScanView view = timed(timeOf(step, "undistort"), [&] {
         return undistorted(cloud, Motion::of(motion, interval.duration_s));
     });
-    scan::VoxelNumbers voxels;
-    timed(timeOf(step, "thinning"),
-          [&] { tbb::parallel_invoke([&] { settle(); }, [&] { voxels = thinAll(view); }); });
+    const auto voxels = timed(timeOf(step, "thinning"), [&] { return thinAll(view); });
     const bool looking = options_.dynamics.enabled && !lost_;
     movers::DynamicObjects::Sight sight;
     Placement placement;
@@ -254,8 +264,7 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
         if (doubted_ && moved_m <= options_.tracker.doubt_spacing) return;
         if (!step.interrupted) learn(placed, predicted, since_s);
         if (detecting) dynamics_.remember(pose_ * turnedBack(upright_));
-        reference_ = {view.points, pose_, timeline_.sinceStart_s()};
-        awaited_ = Placed{std::move(view.fine), pose_};
+        insertLater(view);
     });
     if (!estimate.valid)
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";

@@ -48,7 +48,7 @@ class PlaneOdometry : public Odometry {
     bool isOtherScale();
     void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
     void processNext(const scan::PointCloud& cloud, const Interval& interval, Step& step);
-    scan::VoxelNumbers thinAll(ScanView& view) const;
+    scan::VoxelNumbers thinAll(ScanView& view);
     void leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
                                 movers::DynamicObjects::Sight sight, const Eigen::Isometry3d& pose,
                                 ScanView& view);
@@ -60,6 +60,7 @@ class PlaneOdometry : public Odometry {
                double since_s);
     Eigen::Vector3d upAt(const Eigen::Isometry3d& pose) const;
     void insert(const ScanView& view, const Eigen::Isometry3d& pose);
+    void insertLater(ScanView& view);
     void settle();
     ScanView beginMap(const scan::PointCloud& cloud);
     void giveUp(const scan::PointCloud& cloud);
