@@ -41,7 +41,7 @@ RC_GTEST_PROP(Formats, TextForATerminalHasNoControlBytes, (const std::string& te
     RC_ASSERT(printable(shown) == shown);
 }
 
-RC_GTEST_PROP(Formats, KittisPosesAreTheSameDoubles, ()) {
+RC_GTEST_PROP(Formats, KittisPosesAreTheSame, ()) {
     const TemporaryFolder folder;
     const auto trajectory = drawTrajectory();
     io::writeKitti(trajectory, folder / "poses.txt");
@@ -49,9 +49,6 @@ RC_GTEST_PROP(Formats, KittisPosesAreTheSameDoubles, ()) {
     RC_ASSERT(read.poses.size() == trajectory.poses.size());
     for (std::size_t i = 0; i < read.poses.size(); ++i)
         RC_ASSERT(difference(read.poses[i], trajectory.poses[i]) < 1e-12);
-    io::writeKitti(read, folder / "again.txt");
-    io::writeKitti(io::readTrajectory(folder / "again.txt"), folder / "oncemore.txt");
-    RC_ASSERT(readText(folder / "again.txt") == readText(folder / "oncemore.txt"));
 }
 
 RC_GTEST_PROP(Formats, TumsPosesAreTheSame, ()) {
