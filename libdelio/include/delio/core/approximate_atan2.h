@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace delio {
 /** atan2 to within 4e-6 rad, faster, and the same for a build on whichever processor it runs (the C
@@ -9,7 +10,7 @@ inline float approximateAtan2(float y, float x) {
     constexpr float kQuarter = 1.5707963F;
     const float most = std::max(std::abs(x), std::abs(y)),
                 least = std::min(std::abs(x), std::abs(y));
-    constexpr float kLeast = 1e-30F;  // in place of a branch
+    constexpr float kLeast = std::numeric_limits<float>::denorm_min();  // in place of a branch
     const float t = least / std::max(most, kLeast), s = t * t;
     // Chebyshev fit of atan(t) / t over s in [0, 1].
     const float eighth =
