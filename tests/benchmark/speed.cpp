@@ -167,7 +167,8 @@ int main(int argc, char** argv) {
         TCLAP::SwitchArg map("", "map", "With map, scene and pictures", cmd);
         TCLAP::ValueArg<std::string> beside(
             "", "beside", "Another program's command; {}: recording", false, "", "COMMAND", cmd);
-        TCLAP::UnlabeledMultiArg<std::string> recordings("recordings", "", true, "RECORDING", cmd);
+        TCLAP::UnlabeledMultiArg<std::string> recordings("recordings", "What it runs on", true,
+                                                         "RECORDING", cmd);
         cmd.parse(argc, argv);
         Plan plan;
         plan.runs = std::max(1U, runs.getValue());
