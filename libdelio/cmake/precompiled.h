@@ -1,8 +1,8 @@
 #pragma once
 
 // What most of the library includes, and what takes longest to read: compiled once where
-// DELIO_PRECOMPILE_LIBRARY is on (share/scripts/test). No file may rely on it: share/scripts/sanitize
-// builds without.
+// DELIO_PRECOMPILE_LIBRARY is on (share/scripts/test). No file may rely on it:
+// share/scripts/sanitize builds without.
 #include <mrpt/maps/CPointsMapXYZI.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/poses/CPose3D.h>
