@@ -1,4 +1,5 @@
 #include "delio/core/geometry.h"
+#include "portable_math.h"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -10,8 +11,8 @@ namespace {
 Eigen::Matrix3d meanRotation(const Eigen::Vector3d& w) {
     const double angle = w.norm();
     const bool small = angle < 1e-4;
-    const double a = small ? 0.5 : (1 - std::cos(angle)) / (angle * angle);
-    const double b = small ? 1.0 / 6 : (angle - std::sin(angle)) / (angle * angle * angle);
+    const double a = small ? 0.5 : (1 - portable::cos(angle)) / (angle * angle);
+    const double b = small ? 1.0 / 6 : (angle - portable::sin(angle)) / (angle * angle * angle);
     const Eigen::Matrix3d W = hat(w);
     return Eigen::Matrix3d::Identity() + a * W + b * W * W;
 }
@@ -26,19 +27,26 @@ Eigen::Matrix3d hat(const Eigen::Vector3d& v) {
 Eigen::Matrix3d rotationExp(const Eigen::Vector3d& w) {
     const double angle = w.norm();
     if (angle == 0) return Eigen::Matrix3d::Identity();
-    return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+    const Eigen::Vector3d axis = w / angle;
+    const double s = portable::sin(angle), c = portable::cos(angle);
+    return c * Eigen::Matrix3d::Identity() + s * hat(axis) + (1 - c) * axis * axis.transpose();
 }
 
 Eigen::Vector3d rotationLog(const Eigen::Matrix3d& R) {
-    const Eigen::AngleAxisd turn(R);
-    return turn.angle() * turn.axis();
+    const Eigen::Quaterniond q(R);
+    const double sine = q.vec().stableNorm();  // of half the angle
+    if (sine == 0) return Eigen::Vector3d::Zero();
+    const double angle = 2 * portable::atan2(sine, std::abs(q.w()));
+    return (q.w() < 0 ? -angle : angle) / sine * q.vec();
 }
 
-double angleOf(const Eigen::Matrix3d& R) { return Eigen::AngleAxisd(R).angle(); }
+double angleOf(const Eigen::Matrix3d& R) { return rotationLog(R).norm(); }
 
 Eigen::Matrix3d inverseRightJacobian(const Eigen::Vector3d& w) {
     const double half = w.norm() / 2;
-    const double c = half < 1e-4 ? 1.0 / 12 : (1 - half / std::tan(half)) / (4 * half * half);
+    const double c =
+        half < 1e-4 ? 1.0 / 12
+                    : (1 - half * portable::cos(half) / portable::sin(half)) / (4 * half * half);
     const Eigen::Matrix3d W = hat(w);
     return Eigen::Matrix3d::Identity() + W / 2 + c * W * W;
 }

@@ -1,4 +1,5 @@
 #include "delio/graph/information.h"
+#include "../core/portable_math.h"
 
 #include <Eigen/LU>
 #include <cmath>
@@ -11,8 +12,8 @@ Matrix6 tangentBy(InformationOf terms, const Eigen::Isometry3d& pose) {
     if (terms == InformationOf::quaternion) K.bottomRightCorner<3, 3>() *= 2;
     if (terms == InformationOf::yawPitchRoll) {
         const auto angles = toMrpt(pose);
-        const double sp = std::sin(angles.pitch()), cp = std::cos(angles.pitch());
-        const double sr = std::sin(angles.roll()), cr = std::cos(angles.roll());
+        const double sp = portable::sin(angles.pitch()), cp = portable::cos(angles.pitch());
+        const double sr = portable::sin(angles.roll()), cr = portable::cos(angles.roll());
         K.topLeftCorner<3, 3>() = pose.linear().transpose();
         K.bottomRightCorner<3, 3>() << -sp, 0, 1, cp * sr, cr, 0, cp * cr, -sr, 0;
     }

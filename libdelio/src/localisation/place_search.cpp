@@ -1,5 +1,7 @@
 #include "delio/localisation/place_search.h"
 
+#include "delio/core/geometry.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,8 +12,7 @@ namespace {
 constexpr double kDeg = M_PI / 180;
 
 Eigen::Isometry3d poseOf(const Shift& shift) {
-    return Eigen::Translation3d(shift.translation) *
-           Eigen::AngleAxisd(shift.yaw, Eigen::Vector3d::UnitZ()) * Eigen::Isometry3d::Identity();
+    return isometry(rotationExp(shift.yaw * Eigen::Vector3d::UnitZ()), shift.translation);
 }
 
 /** In fine, about a sighting: rotations first, then the shift under each. The best, and others

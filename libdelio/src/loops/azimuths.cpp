@@ -1,4 +1,5 @@
 #include "delio/loops/azimuths.h"
+#include "../core/portable_math.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,8 @@ Eigen::VectorXd smoothed(const Eigen::VectorXd& weights) {
     constexpr auto kReach = static_cast<Eigen::Index>(3 * kSigma);
     Eigen::VectorXd result = Eigen::VectorXd::Zero(kBins);
     for (Eigen::Index offset = -kReach; offset <= kReach; ++offset) {
-        const double share = std::exp(-0.5 * std::pow(static_cast<double>(offset) / kSigma, 2));
+        const auto off = static_cast<float>(static_cast<double>(offset) / kSigma);
+        const double share = double{portable::exp(-0.5F * off * off)};
         for (Eigen::Index i = 0; i < kBins; ++i) result[i] += share * weights[wrapped(i + offset)];
     }
     return result;

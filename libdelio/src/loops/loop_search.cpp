@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "../core/checkpoint.h"
+#include "../core/portable_math.h"
+#include "delio/core/geometry.h"
 #include "places.h"
 
 namespace delio::loops {
@@ -16,7 +18,7 @@ std::vector<Shift> shiftsOf(const Sketch& from, const Sketch& to, const LoopCand
     constexpr std::size_t kTurns = 3, kShifts = 3;
     constexpr double kApart_m = 2;
     const Eigen::Isometry3d& guess = pair.expected;
-    const double yaw = std::atan2(guess(1, 0), guess(0, 0));
+    const double yaw = portable::atan2(guess(1, 0), guess(0, 0));
     auto turns = from.azimuths.turnsOf(to.azimuths, yaw, turn_rad, kTurns);
     if (turns.empty()) turns.push_back(yaw);
     std::vector<Shift> best;
@@ -161,9 +163,8 @@ void LoopSearch::search(LoopCandidate& pair) {
     const ClosureEnd from{submaps_[pair.from], fromGround->map},
         to{submaps_[pair.to], toGround->map};
     for (const auto& shift : shifts) {
-        const Eigen::Isometry3d guess = Eigen::Translation3d(shift.translation) *
-                                        Eigen::AngleAxisd(shift.yaw, Eigen::Vector3d::UnitZ()) *
-                                        Eigen::Isometry3d::Identity();
+        const Eigen::Isometry3d guess =
+            isometry(rotationExp(shift.yaw * Eigen::Vector3d::UnitZ()), shift.translation);
         const auto closure = closureOf(from, to, guess, closure_);
         const auto& best = pair.closure;
         const bool isBetter = closure.overlap > best.overlap;

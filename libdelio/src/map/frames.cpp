@@ -56,7 +56,7 @@ Isometry3d enuFrame(const MapPoints& points, const Isometry3d& firstPose, double
     const Matrix3d level =
         levelled(groundNormal(points, firstPose), firstPose.linear() * Vector3d::UnitX());
     // A heading turns from north to east, an angle about up from east to north.
-    const Matrix3d R = Eigen::AngleAxisd((90 - heading_deg) * kDeg, Vector3d::UnitZ()) * level;
+    const Matrix3d R = rotationExp((90 - heading_deg) * kDeg * Vector3d::UnitZ()) * level;
     return isometry(R, -(R * firstPose.translation()));
 }
 

@@ -2,9 +2,9 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "../core/principal_axes.h"
 #include "delio/scan/voxel_table.h"
 
 namespace delio::map {
@@ -53,7 +53,7 @@ void findSurfaces(MapPoints& points, double spacing) {
     constexpr double kSpacing_m = 0.2;
     constexpr int kLeast = 5;
     // Points about a line, a pole or a single ring, have no normal.
-    constexpr float kBroad = 0.05F;
+    constexpr double kBroad = 0.05;
     const FirstPoints firsts(points, spacing > 0 ? spacing : kSpacing_m);
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         MapPoint& point = points[i];
@@ -72,11 +72,10 @@ void findSurfaces(MapPoints& points, double spacing) {
         const Eigen::Vector3f mean = sum / static_cast<float>(count);
         const Eigen::Matrix3f scatter =
             squares / static_cast<float>(count) - mean * mean.transpose();
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes;
-        axes.computeDirect(scatter);
-        if (!(axes.eigenvalues()[1] > kBroad * axes.eigenvalues()[2])) return;
-        point.residual_m = std::sqrt(std::max(axes.eigenvalues()[0], 0.0F));
-        point.normal = axes.eigenvectors().col(0);
+        const auto [variances, axes] = principalAxes(scatter.cast<double>());
+        if (!(variances[1] > kBroad * variances[2])) return;
+        point.residual_m = static_cast<float>(std::sqrt(std::max(variances[0], 0.0)));
+        point.normal = axes.col(0).cast<float>();
         if (point.normal.dot(towards) < 0) point.normal = -point.normal;
     });
 }

@@ -1,4 +1,5 @@
 #include "delio/odometry/adaptive_kernel.h"
+#include "../core/portable_math.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,7 @@ void AdaptiveKernel::observe(const Eigen::Isometry3d& found, const Eigen::Isomet
     const Eigen::Isometry3d off = predicted.inverse() * found;
     const double angle = angleOf(off.linear());
     errors_m_.push_back(off.translation().norm() +
-                        2 * kTypicalRange_m * std::sin(std::abs(angle) / 2));
+                        2 * kTypicalRange_m * portable::sin(std::abs(angle) / 2));
     if (errors_m_.size() > kMemory) errors_m_.pop_front();
 }
 

@@ -11,6 +11,7 @@
 
 #include "delio/core/error.h"
 #include "delio/core/estimates.h"
+#include "delio/core/geometry.h"
 #include "delio/core/stopwatch.h"
 #include "delio/graph/pose_pdf.h"
 #include "delio/odometry/make_odometry.h"
@@ -52,9 +53,7 @@ Eigen::Matrix3Xf pointsOf(const CMetricMap* map, const std::string& which) {
  *  with half of its points on either side, and lose them to a step of a centimetre; it has to
  *  cross the voxels. Nearly upright, for the search is horizontal. */
 Eigen::Matrix3d mapTurn() {
-    return (Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()) *
-            Eigen::AngleAxisd(0.02, Eigen::Vector3d(0.6, 0.8, 0)))
-        .toRotationMatrix();
+    return rotationExp(0.5 * Eigen::Vector3d::UnitZ()) * rotationExp({0.012, 0.016, 0});
 }
 
 /** One alignment: what is known of both clouds, and the ways to bring them together. Estimates are

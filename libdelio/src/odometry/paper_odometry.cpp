@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "delio/core/geometry.h"
 #include "delio/core/motion.h"
 #include "delio/core/stopwatch.h"
 #include "delio/scan/deskew.h"
@@ -93,11 +94,11 @@ void hold(const Eigen::Isometry3d& placed, const PaperOdometryOptions& options,
           PaperRegistration& found) {
     auto& rotation = found.rotation;
     auto& translation = found.translation;
-    const Eigen::AngleAxisd turned(placed.linear().transpose() * rotation.rotation);
-    if (turned.angle() > options.check.believed_deg * kDeg) {
+    const Eigen::Vector3d turned = rotationLog(placed.linear().transpose() * rotation.rotation);
+    if (turned.norm() > options.check.believed_deg * kDeg) {
         rotation.rotation = placed.linear();
-        nameAxis(turned.axis(), options.pattern.prior_sigma_deg * kDeg, rotation.unobservedAxes,
-                 rotation.covariance);
+        nameAxis(turned.normalized(), options.pattern.prior_sigma_deg * kDeg,
+                 rotation.unobservedAxes, rotation.covariance);
     }
     const Eigen::Vector3d off = translation.translation - placed.translation();
     if (off.norm() > options.check.believed) {

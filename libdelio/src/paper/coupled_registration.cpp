@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "delio/core/geometry.h"
 #include "line_matches.h"
 
 namespace delio::paper {
@@ -40,7 +41,7 @@ CoupledEstimate registerCoupled(const LineCloud& from, const LineCloud& to,
                            Eigen::Map<const Eigen::Matrix3Xd>(targets[0].data(), 3, pairs), false);
         estimate.pose = Eigen::Isometry3d(step) * estimate.pose;
         estimate.pose.linear() = Eigen::Quaterniond(estimate.pose.linear()).normalized().matrix();
-        const double turn = Eigen::AngleAxisd(step.topLeftCorner<3, 3>()).angle();
+        const double turn = angleOf(step.topLeftCorner<3, 3>());
         // At 10 m a turn by 1e-4 rad is one millimetre.
         if (step.topRightCorner<3, 1>().norm() < options.converged && turn < 1e-4) break;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../core/portable_math.h"
 #include "line_matches.h"
 
 namespace delio::paper {
@@ -36,7 +37,7 @@ double trustIn(double firstLength, double secondLength, double sineOfAngle,
     if (options.centroids) return 1;
     const double error = options.short_length * std::hypot(1 / firstLength, 1 / secondLength) /
                          std::max(sineOfAngle, 1e-6);
-    return 1 / (1 + std::pow(error, 4));
+    return 1 / (1 + error * error * error * error);
 }
 
 Sums sumPairs(const LineCloud& from, const LineCloud& to, const Eigen::Vector3d& t,
@@ -199,7 +200,7 @@ ClosestPoints closestPoints(const Eigen::Vector3d& Ps, const Eigen::Vector3d& us
                             double min_angle_deg) {
     const Eigen::Vector3d w = Ps - Pt;
     const double a = us.dot(us), b = us.dot(ut), c = ut.dot(ut), d = us.dot(w), e = ut.dot(w);
-    const double sine = std::sin(min_angle_deg * M_PI / 180);
+    const double sine = portable::sin(min_angle_deg * M_PI / 180);
     const double denominator = a * c - b * b;  // a c sin^2 of the angle
     if (denominator <= a * c * sine * sine) return {Ps, Pt + e / c * ut, true};
     return {Ps + (b * e - c * d) / denominator * us, Pt + (a * e - b * d) / denominator * ut,

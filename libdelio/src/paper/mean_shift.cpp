@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "../core/kd_tree.h"
+#include "../core/portable_math.h"
 #include "delio/paper/sphere.h"
 #include "delio/scan/voxel_grid.h"
 
@@ -15,7 +16,7 @@ constexpr double kDeg = M_PI / 180;
 
 /** Square of the chord that an angle spans on the unit sphere. */
 float squaredChord(double angle) {
-    const double chord = 2 * std::sin(std::min(angle, M_PI) / 2);
+    const double chord = 2 * portable::sin(std::min(angle, M_PI) / 2);
     return static_cast<float>(chord * chord);
 }
 
@@ -32,7 +33,7 @@ Eigen::Vector3d meanShift(const Eigen::Matrix3Xf& directions, const KdTree& tree
     double weights = 0;
     for (const auto& [index, squared] : inside) {
         const Eigen::Vector3d m = sphereLog(centre, directions.col(index).cast<double>());
-        const double weight = std::exp(-c * m.squaredNorm());
+        const double weight = double{portable::exp(static_cast<float>(-c * m.squaredNorm()))};
         sum += weight * m;
         weights += weight;
     }

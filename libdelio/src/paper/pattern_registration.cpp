@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "../core/kd_tree.h"
+#include "../core/portable_math.h"
+#include "delio/core/geometry.h"
 #include "delio/core/kabsch.h"
 #include "delio/scan/voxel_grid.h"
 
@@ -80,7 +82,7 @@ Pairing pairDensities(const Pattern& from, const KdTree& tree, const Pattern& to
         Eigen::Vector3f mean = Eigen::Vector3f::Zero();
         float weight = 0;
         for (const auto& [index, squared] : partners) {
-            const float w = from.weights[index] * std::exp(scale * squared);
+            const float w = from.weights[index] * portable::exp(scale * squared);
             mean += w * from.directions.col(index);
             weight += w;
         }
@@ -129,7 +131,7 @@ void iterate(const Pattern& from, const Pattern& to, double kernel_deg,
         estimate.matches = pairs.matches;
         estimate.residual_rad = std::sqrt(pairs.squaredAngles / pairs.weight);
         const Eigen::Matrix3d next = rotationOf(pairs.moment);
-        step = Eigen::AngleAxisd(estimate.rotation.transpose() * next).angle();
+        step = angleOf(estimate.rotation.transpose() * next);
         estimate.rotation = next;
     }
     estimate.converged = step <= options.converged_deg * kDeg;
@@ -153,8 +155,7 @@ void settle(const Pattern& to, const Eigen::Matrix3d& predicted,
     const double noise =
         residual * residual / (options.independent_share * static_cast<double>(to.normals));
 
-    const Eigen::AngleAxisd found(predicted.transpose() * estimate.rotation);
-    Eigen::Vector3d correction = found.angle() * found.axis();
+    Eigen::Vector3d correction = rotationLog(predicted.transpose() * estimate.rotation);
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = axes.eigenvectors().col(k);
         const bool observed = axes.eigenvalues()[k] >= options.min_observability;
@@ -167,9 +168,7 @@ void settle(const Pattern& to, const Eigen::Matrix3d& predicted,
             (observed ? noise / axes.eigenvalues()[k] : prior) * axis * axis.transpose();
     }
     if (estimate.unobservedAxes.cols() == 0) return;
-    const double angle = correction.norm();
-    estimate.rotation = predicted;
-    if (angle > 0) estimate.rotation *= Eigen::AngleAxisd(angle, correction / angle).matrix();
+    estimate.rotation = predicted * rotationExp(correction);
 }
 }  // namespace
 
@@ -226,7 +225,7 @@ RotationEstimate registerPatterns(const Pattern& from, const Pattern& to,
         }
     } else if (enough)
         iterate(from, to, 0, options, estimate);
-    const double correction = Eigen::AngleAxisd(predicted.transpose() * estimate.rotation).angle();
+    const double correction = angleOf(predicted.transpose() * estimate.rotation);
     if (correction > options.max_correction_deg * kDeg) {
         estimate.tooFar = true;
         estimate.valid = false;

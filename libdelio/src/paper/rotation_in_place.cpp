@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "../core/kd_tree.h"
+#include "../core/portable_math.h"
+#include "delio/core/geometry.h"
 #include "delio/core/kabsch.h"
 
 namespace delio::paper {
@@ -34,7 +36,7 @@ std::vector<Pair> pairsInPlace(const Pattern& from, const Pattern& to,
         tree.within(moved * to.points.col(i), reach, partners);
         for (const auto& [index, squared] : partners)
             found[k].push_back(
-                {index, i, from.weights[index] * to.weights[i] * std::exp(scale * squared)});
+                {index, i, from.weights[index] * to.weights[i] * portable::exp(scale * squared)});
     });
     std::vector<Pair> pairs;
     for (const auto& some : found) pairs.insert(pairs.end(), some.begin(), some.end());
@@ -63,7 +65,8 @@ Moment momentOf(const Pattern& from, const Pattern& to, const std::vector<Pair>&
                 const Pair& pair = pairs[k];
                 const float squared =
                     (from.directions.col(pair.from) - turned.col(pair.to)).squaredNorm();
-                const auto weight = static_cast<double>(pair.weight * std::exp(scale * squared));
+                const auto weight =
+                    static_cast<double>(pair.weight * portable::exp(scale * squared));
                 sum.moment += weight * from.directions.col(pair.from).cast<double>() *
                               to.directions.col(pair.to).cast<double>().transpose();
                 sum.weight += weight;
@@ -77,13 +80,10 @@ Moment momentOf(const Pattern& from, const Pattern& to, const std::vector<Pair>&
 /** `rotation` without what it turned about the axes that the pattern leaves open. */
 Eigen::Matrix3d keepOpenAxes(const RotationEstimate& found, const Eigen::Matrix3d& rotation) {
     if (found.unobservedAxes.cols() == 0) return rotation;
-    const Eigen::AngleAxisd turn(found.rotation.transpose() * rotation);
-    Eigen::Vector3d correction = turn.angle() * turn.axis();
+    Eigen::Vector3d correction = rotationLog(found.rotation.transpose() * rotation);
     for (Eigen::Index k = 0; k < found.unobservedAxes.cols(); ++k)
         correction -= found.unobservedAxes.col(k) * found.unobservedAxes.col(k).dot(correction);
-    const double angle = correction.norm();
-    if (!(angle > 0)) return found.rotation;
-    return found.rotation * Eigen::AngleAxisd(angle, correction / angle).matrix();
+    return found.rotation * rotationExp(correction);
 }
 }  // namespace
 
@@ -129,7 +129,7 @@ RotationEstimate registerInPlace(const Pattern& from, const Pattern& to,
             const Moment sum = momentOf(from, to, pairs, estimate.rotation, kernel_deg * kDeg);
             if (!(sum.weight > 0)) return found;
             const Eigen::Matrix3d next = rotationOf(sum.moment);
-            step = Eigen::AngleAxisd(estimate.rotation.transpose() * next).angle();
+            step = angleOf(estimate.rotation.transpose() * next);
             estimate.rotation = next;
             estimate.residual_rad = std::sqrt(sum.squaredAngles / sum.weight);
             ++iterations;

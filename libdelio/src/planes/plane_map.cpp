@@ -2,10 +2,10 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "../core/principal_axes.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio::planes {
@@ -84,17 +84,16 @@ PlaneMap::State PlaneMap::fit(const Level& level, std::uint32_t number) const {
     const Sums& cell = level.cells[number];
     if (cell.count < options_.min_points) return State::None;
     const Eigen::Vector3d mean = cell.sum / cell.count;
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> pca;
-    pca.computeDirect(cell.scatter() / cell.count - mean * mean.transpose());
+    const auto pca = principalAxes(cell.scatter() / cell.count - mean * mean.transpose());
     // Never thinner than rounding allows.
-    const Eigen::Vector3d variances = pca.eigenvalues().cwiseMax(1e-9);
+    const Eigen::Vector3d variances = pca.variances.cwiseMax(1e-9);
     const double least = options_.min_breadth * level.edge;
     const bool isPlane = std::sqrt(variances[0]) < options_.max_thickness &&
                          variances[0] < options_.max_flatness * variances[1] &&
                          variances[1] > least * least &&
-                         std::abs(pca.eigenvectors().col(0).dot(up_)) >= level.steepest;
+                         std::abs(pca.axes.col(0).dot(up_)) >= level.steepest;
     if (!isPlane) return State::None;
-    level.planes[number] = {cell.origin + mean, pca.eigenvectors(), variances,
+    level.planes[number] = {cell.origin + mean, pca.axes, variances,
                             static_cast<double>(cell.count)};
     return State::Plane;
 }

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <ostream>
 
+#include "../core/portable_math.h"
 #include "../io/table_cells.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
@@ -18,7 +19,7 @@ void writeLoopTable(const std::vector<loops::LoopCandidate>& candidates, const s
         for (const auto& loop : candidates) {
             const auto& closure = loop.closure;
             const Eigen::Isometry3d& pose = closure.increment.pose;
-            const double yaw_deg = std::atan2(pose(1, 0), pose(0, 0)) * 180 / M_PI;
+            const double yaw_deg = portable::atan2(pose(1, 0), pose(0, 0)) * 180 / M_PI;
             out << loop.fromNode << ',' << loop.toNode
                 << mrpt::format(",%.1f,%.1f,%.3f,%.3f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,", loop.path_m,
                                 loop.reach_m, loop.share, closure.share, closure.overlap,

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../core/portable_math.h"
 #include "delio/scan/deskew.h"
 #include "delio/scan/rings.h"
 
@@ -31,7 +32,8 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     const auto& y = scan.points->getPointsBufferRef_y();
     const auto& z = scan.points->getPointsBufferRef_z();
     const double angle = options.vertical_correction_deg * M_PI / 180;
-    const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+    const auto c = static_cast<float>(portable::cos(angle)),
+               s = static_cast<float>(portable::sin(angle));
     const auto near = static_cast<float>(options.min_range * options.min_range);
     const auto far = static_cast<float>(options.max_range * options.max_range);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "../core/kd_tree.h"
+#include "../core/portable_math.h"
 
 namespace delio::surfaces {
 std::vector<OptionField> BilateralFilterOptions::fields() const {
@@ -40,9 +41,9 @@ SurfaceNormals filterBilaterally(const SurfaceNormals& normals,
                 for (std::size_t j = 0; j < found; ++j) {
                     const auto other = normals.directions.col(indices[j]);
                     // The chord stands for the angle: they differ by 1 % at 28 deg.
-                    const float weight =
-                        normals.planarity[indices[j]] *
-                        std::exp(perDistance * squared[j] + perAngle * (other - own).squaredNorm());
+                    const float weight = normals.planarity[indices[j]] *
+                                         portable::exp(perDistance * squared[j] +
+                                                       perAngle * (other - own).squaredNorm());
                     sum += weight * other;
                 }
                 const float length = sum.norm();

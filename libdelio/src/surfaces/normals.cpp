@@ -3,9 +3,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "../core/kd_tree.h"
+#include "../core/principal_axes.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio::surfaces {
@@ -38,10 +37,10 @@ Neighbourhood examine(const Eigen::Matrix3Xf& points, const Eigen::Vector3f& cen
     Neighbourhood result;
     if (count < 5) return result;  // three points always lie in a plane
     const Eigen::Vector3f mean = sum / count;
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> pca;
-    pca.computeDirect(squares / count - mean * mean.transpose());
+    const Eigen::Matrix3f scatter = squares / count - mean * mean.transpose();
+    const auto pca = principalAxes(scatter.cast<double>());
     // Ascending: thickness, breadth and length of the neighbourhood, squared.
-    const Eigen::Vector3f size = pca.eigenvalues().cwiseMax(0.0F).cwiseSqrt();
+    const Eigen::Vector3f size = pca.variances.cast<float>().cwiseMax(0.0F).cwiseSqrt();
     if (!(size[2] > 0) || size[1] < static_cast<float>(options.min_breadth) * size[2]) {
         result.shape = Shape::kLine;
         return result;
@@ -50,7 +49,7 @@ Neighbourhood examine(const Eigen::Matrix3Xf& points, const Eigen::Vector3f& cen
     if (thickness > static_cast<float>(options.max_thickness)) return result;
     result.shape = Shape::kPlane;
     result.planarity = 1 - thickness;
-    result.normal = pca.eigenvectors().col(0).normalized();
+    result.normal = pca.axes.col(0).cast<float>().normalized();
     if (result.normal.dot(centre) > 0) result.normal = -result.normal;
     return result;
 }
