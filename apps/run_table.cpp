@@ -80,7 +80,9 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
         row("loops", format("%zu closed of %zu candidates", record.closedLoops().size(),
                             record.loops.size()));
     row("path", format("%.1f m", record.path_m()));
-    row("time per scan", format("%.1f ms", record.msPerScan()));
+    const auto latency = run::latencyOf(record.rows);
+    row("time per scan", format("%.1f ms; 95 %% in %.1f, the worst %.1f ms", record.msPerScan(),
+                                latency[1].second, latency[2].second));
     row("peak memory", format("%.0f MB", run::peakMemory_mb()));
     if (record.metrics && record.metricsBefore) {
         const Rows after = rowsOf(*record.metrics), before = rowsOf(*record.metricsBefore);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "../core/portable_math.h"
 #include "delio/core/error.h"
 #include "velodyne_packets.h"
 
@@ -113,8 +114,8 @@ void decodeRotatingScan(const CObservationRotatingScan& observation, Scan& scan)
                 continue;
             const double azimuth = azimuths.at(row, column);
             const double flat = range * laser.cosVertCorrection;
-            scan.points->insertPointFast(static_cast<float>(flat * std::cos(azimuth)),
-                                         static_cast<float>(flat * std::sin(azimuth)),
+            scan.points->insertPointFast(static_cast<float>(flat * portable::cos(azimuth)),
+                                         static_cast<float>(flat * portable::sin(azimuth)),
                                          static_cast<float>(range * laser.sinVertCorrection));
             if (bright)
                 bright->setPointIntensity(

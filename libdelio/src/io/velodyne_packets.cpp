@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "../core/portable_math.h"
 #include "delio/core/error.h"
 
 namespace delio::io {
@@ -153,13 +154,13 @@ class Decoder {
             if (laser >= lasers_.size()) continue;
             const double angle = mrpt::DEG2RAD(0.01 * turn * shareOf(inBlock)) -
                                  angleUnit_ * lasers_[laser].azimuthCorrection;
-            headings_[k] = {std::sin(angle), std::cos(angle)};
+            headings_[k] = {portable::sin(angle), portable::cos(angle)};
         }
     }
 
     void decode(const Block& block, const Block* first, std::size_t firstLaser) {
         const double angle = mrpt::DEG2RAD(0.01 * block.rotation());
-        const Heading turned{std::sin(angle), std::cos(angle)};
+        const Heading turned{portable::sin(angle), portable::cos(angle)};
         for (std::size_t k = 0; k < kReturns; ++k) {
             const auto& measured = block.laser_returns[k];
             if (measured.distance() == 0) continue;

@@ -108,6 +108,17 @@ Summary::Figures figuresIn(const YAML::Node& node) {
 }
 }  // namespace
 
+Summary::Figures latencyOf(const RunRows& rows) {
+    std::vector<double> ms;
+    for (const auto& row : rows) ms.push_back(row.total_ms());
+    if (ms.empty()) ms.push_back(0);
+    std::sort(ms.begin(), ms.end());
+    const auto within = [&](double share) {
+        return ms[static_cast<std::size_t>(share * static_cast<double>(ms.size() - 1))];
+    };
+    return {{"median", within(0.5)}, {"p95", within(0.95)}, {"worst", ms.back()}};
+}
+
 double peakMemory_mb() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -145,6 +156,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.path_m = record.path_m();
     summary.vertical_correction_deg = record.options.scan().vertical_correction_deg;
     summary.ms_per_scan = record.msPerScan();
+    summary.latency_ms = latencyOf(record.rows);
     for (const auto& [name, ms] : meanTimes(record))
         if (name == "map")
             summary.map_ms_per_scan = ms;
@@ -197,6 +209,7 @@ void writeSummary(const Summary& s, const std::string& path) {
     write(yaml, "deskewed", s.deskewed);
     write(yaml, "ms_per_scan", s.ms_per_scan);
     write(yaml, "ms_per_scan_of_stages", s.ms_per_scan_of_stages);
+    write(yaml, "latency_ms", s.latency_ms);
     write(yaml, "map_ms_per_scan", s.map_ms_per_scan);
     write(yaml, "optimisation_ms", s.optimisation_ms);
     write(yaml, "optimisation_iterations", s.optimisation_iterations);
@@ -248,6 +261,7 @@ Summary readSummary(const std::string& path) {
         s.vertical_correction_deg = node["vertical_correction_deg"].as<double>();
         s.ms_per_scan = node["ms_per_scan"].as<double>();
         s.ms_per_scan_of_stages = figuresIn(node["ms_per_scan_of_stages"]);
+        s.latency_ms = figuresIn(node["latency_ms"]);
         s.map_ms_per_scan = node["map_ms_per_scan"].as<double>();
         s.optimisation_ms = node["optimisation_ms"].as<double>();
         s.optimisation_iterations = node["optimisation_iterations"].as<unsigned>();

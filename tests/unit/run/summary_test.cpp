@@ -33,6 +33,7 @@ Summary anySummary() {
     s.vertical_correction_deg = -0.205;
     s.ms_per_scan = 1.0 / 3;
     s.ms_per_scan_of_stages = {{"read", 1e-7}, {"registration", 1e22}, {"graph", 0}};
+    s.latency_ms = {{"median", 9.5}, {"p95", 12}, {"worst", 1.0 / 7}};
     s.map_ms_per_scan = 4.25;
     s.optimisation_ms = 5e3;
     s.optimisation_iterations = 1000000;
@@ -67,6 +68,7 @@ void expectSame(const Summary& a, const Summary& b) {
     EXPECT_EQ(a.vertical_correction_deg, b.vertical_correction_deg);
     EXPECT_EQ(a.ms_per_scan, b.ms_per_scan);
     EXPECT_EQ(a.ms_per_scan_of_stages, b.ms_per_scan_of_stages);
+    EXPECT_EQ(a.latency_ms, b.latency_ms);
     EXPECT_EQ(a.map_ms_per_scan, b.map_ms_per_scan);
     EXPECT_EQ(a.optimisation_ms, b.optimisation_ms);
     EXPECT_EQ(a.optimisation_iterations, b.optimisation_iterations);
@@ -155,6 +157,7 @@ TEST(Summary, SumsUpARecord) {
     EXPECT_EQ(summary.ms_per_scan, 1 + 15 + 2);  // the map is told apart
     EXPECT_EQ(summary.ms_per_scan_of_stages,
               (Summary::Figures{{"read", 1}, {"registration", 15}, {"graph", 2}}));
+    EXPECT_EQ(summary.latency_ms, (Summary::Figures{{"median", 13}, {"p95", 23}, {"worst", 33}}));
     EXPECT_EQ(summary.map_ms_per_scan, 5);
     EXPECT_EQ(summary.optimisation_ms, 7);
     EXPECT_EQ(summary.optimisation_iterations, 3U);

@@ -43,6 +43,7 @@ struct Summary {
     double vertical_correction_deg = 0;    //!< that was added to each point's vertical angle
     double ms_per_scan = 0;                //!< reading, odometry, the graph's window, submaps
     Figures ms_per_scan_of_stages;         //!< of which these are the parts
+    Figures latency_ms;                    //!< latencyOf()
     double map_ms_per_scan = 0;            //!< what the map took of each scan
     double optimisation_ms = 0;            //!< of the whole graph
     unsigned optimisation_iterations = 0;  //!< Levenberg-Marquardt steps tried
@@ -57,6 +58,10 @@ struct Summary {
 
 /** `pictures_ms`: what map and pictures took to write. */
 Summary summaryOf(const RunRecord& record, double pictures_ms);
+
+/** From when a scan is wanted to its pose, ms (RunRow::total_ms()): the median of the scans, 95 %
+ * of them, and the worst. */
+Summary::Figures latencyOf(const RunRows& rows);
 
 /** Largest memory of this process so far, MB. */
 double peakMemory_mb();

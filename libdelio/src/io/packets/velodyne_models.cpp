@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "core/portable_math.h"
 #include "delio/core/error.h"
 
 namespace delio::io {
@@ -28,8 +29,8 @@ constexpr std::array<std::array<double, 2>, kLasers32C> kLasersOf32C{
 VelodyneCalibration::PerLaserCalib laserAt(double elevation_deg, double azimuth_deg) {
     VelodyneCalibration::PerLaserCalib laser;
     laser.verticalCorrection = elevation_deg;
-    laser.sinVertCorrection = std::sin(mrpt::DEG2RAD(elevation_deg));
-    laser.cosVertCorrection = std::cos(mrpt::DEG2RAD(elevation_deg));
+    laser.sinVertCorrection = portable::sin(mrpt::DEG2RAD(elevation_deg));
+    laser.cosVertCorrection = portable::cos(mrpt::DEG2RAD(elevation_deg));
     laser.azimuthCorrection = -azimuth_deg;  // corrections are taken off the azimuth
     return laser;
 }
