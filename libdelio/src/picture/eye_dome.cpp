@@ -105,6 +105,10 @@ EyeDome eyeDomeOf(const SnapshotOptions& options, unsigned enlarged) {
     return shading;
 }
 
+unsigned reachOf(const EyeDome& shading) {
+    return 2 * static_cast<unsigned>(std::ceil(std::max(shading.radius_px, 1.0)));
+}
+
 void shadeEyeDome(CImage& image, const CMatrixFloat& logDepth, const EyeDome& shading) {
     const int width = static_cast<int>(image.getWidth());
     const int height = static_cast<int>(image.getHeight());

@@ -27,6 +27,9 @@ struct EyeDome {
 /** Of a picture that is rendered `enlarged` times as large as wanted: of all sizes alike. */
 EyeDome eyeDomeOf(const SnapshotOptions& options, unsigned enlarged);
 
+/** How many rows away a pixel's neighbours are at most: an even number. */
+unsigned reachOf(const EyeDome& shading);
+
 /** Eye-dome lighting (C. Boucheny, 2009): a pixel gets darker by how much nearer those around it
  *  are than it and the opposite ones are farther: steps in depth become dark edges on their far
  *  side, and so do creases; even surfaces stay as they are, and so does what has no depth. The same

@@ -8,6 +8,8 @@
 #include <memory>
 #include <optional>
 
+#include "band_viewports.h"
+#include "bands.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/picture/png.h"
@@ -63,10 +65,10 @@ mrpt::opengl::CCamera cameraOf(const View& view, const Raster& raster, bool orth
 
 /** The first EGL device that can be used: where there is a GPU that this user may not open, a later
  *  one is the software renderer. */
-std::unique_ptr<CFBORender> openRenderer(const Raster& raster) {
+std::unique_ptr<CFBORender> openRenderer(unsigned width, unsigned height) {
     constexpr int kDevicesTried = 8;
     for (int device = 0; device < kDevicesTried; ++device) {
-        CFBORender::Parameters parameters(raster.padded, raster.height);
+        CFBORender::Parameters parameters(width, height);
         parameters.deviceIndexToUse = device;
         try {
             return std::make_unique<CFBORender>(parameters);
@@ -79,18 +81,65 @@ std::unique_ptr<CFBORender> openRenderer(const Raster& raster) {
         "is needed)");
 }
 
-/** Cuts off the extra columns and brings the picture to the size that is wanted. */
-CImage trimmed(const CImage& rendered, const Raster& raster, const SnapshotOptions& options) {
-    CImage result = rendered;
-    if (raster.padded != raster.width)
-        rendered.extract_patch(result, (raster.padded - raster.width) / 2, 0, raster.width,
-                               raster.height);
-    if (raster.scale != 1) {
-        const CImage cut = result;
-        cut.scaleImage(result, options.width_px, options.height_px, mrpt::img::IMG_INTERP_AREA);
-    }
+/** What is wanted of a band, without the extra columns, in the size that is wanted. */
+CImage trimmed(const CImage& rendered, const Band& band, const Raster& raster) {
+    CImage result;
+    rendered.extract_patch(result, (raster.padded - raster.width) / 2, band.begin - band.first,
+                           raster.width, band.end - band.begin);
+    if (raster.scale == 1) return result;
+    const CImage cut = result;
+    cut.scaleImage(result, raster.width / raster.scale, (band.end - band.begin) / raster.scale,
+                   mrpt::img::IMG_INTERP_AREA);
     return result;
 }
+
+/** (MRPT 2.5.8's update_patch() copies the other way.) */
+void copyRows(const CImage& band, unsigned first, CImage& picture) {
+    for (unsigned row = 0; row < band.getHeight(); ++row)
+        std::copy_n(band.ptrLine<std::uint8_t>(row), 3 * band.getWidth(),
+                    picture.ptrLine<std::uint8_t>(first + row));
+}
+
+/** Draws a scene as it is prepared, band after band. */
+class Painter {
+ public:
+    Painter(COpenGLScene& scene, const SnapshotOptions& options, const Raster& raster)
+        : scene_(scene),
+          options_(options),
+          raster_(raster),
+          shading_(eyeDomeOf(options, raster.scale)),
+          isShaded_(options.shading > 0 && scene.getByName(kMapName) != nullptr),
+          bands_(raster.padded, raster.height, isShaded_ ? reachOf(shading_) : 0),
+          renderer_(openRenderer(raster.padded, bands_.rows)) {}
+
+    CImage paint(const View& view) {
+        CImage result(options_.width_px, options_.height_px, mrpt::img::CH_RGB);
+        BandViewports viewports(scene_, raster_.height, bands_.rows);
+        renderer_->setCamera(scene_, cameraOf(view, raster_, options_.ortho));
+        CImage rendered;
+        mrpt::math::CMatrixFloat depth;
+        for (const Band& band : bands_.all) {
+            viewports.show(band.first);
+            if (isShaded_) {
+                renderer_->render_RGBD(scene_, rendered, depth);
+                toLogDepth(depth, view, options_);
+                shadeEyeDome(rendered, depth, shading_);
+            } else
+                renderer_->render_RGB(scene_, rendered);
+            copyRows(trimmed(rendered, band, raster_), band.begin / raster_.scale, result);
+        }
+        return result;
+    }
+
+ private:
+    COpenGLScene& scene_;
+    const SnapshotOptions& options_;
+    const Raster& raster_;
+    EyeDome shading_;
+    bool isShaded_;
+    Bands bands_;
+    std::unique_ptr<CFBORender> renderer_;
+};
 }  // namespace
 
 void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned pictures,
@@ -100,30 +149,21 @@ void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned picture
     if (content.empty()) throw Error("the scene is empty, so there is nothing to show");
 
     const Raster raster(options);
-    const auto renderer = openRenderer(raster);
+    Painter painter(scene, options, raster);
     const auto views = viewsOf(content, options, pictures);
     PreparedScene prepared(scene, options, static_cast<float>(raster.scale), views[0]);
-    const bool shaded = options.shading > 0 && scene.getByName(kMapName) != nullptr;
     for (unsigned i = 0; i < pictures; ++i) {
         const View& view = views[i];
         std::optional<ScaleBar> bar;
         if (options.ortho && options.scaleBar && hasLegend(options)) bar.emplace(view, options);
-        CImage rendered;
+        CImage result;
         try {
             prepared.lookFrom(view);
             prepared.showTexts(bar);
-            renderer->setCamera(scene, cameraOf(view, raster, options.ortho));
-            if (shaded) {
-                mrpt::math::CMatrixFloat depth;
-                renderer->render_RGBD(scene, rendered, depth);
-                toLogDepth(depth, view, options);
-                shadeEyeDome(rendered, depth, eyeDomeOf(options, raster.scale));
-            } else
-                renderer->render_RGB(scene, rendered);
+            result = painter.paint(view);
         } catch (const std::exception& e) {
             throw Error("cannot render the scene: " + plainMessage(e));
         }
-        CImage result = trimmed(rendered, raster, options);
         if (bar) bar->drawInto(result, prepared.ink());
         use(i, result);
     }

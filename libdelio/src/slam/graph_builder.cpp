@@ -1,6 +1,10 @@
 #include "delio/slam/graph_builder.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 #include "../core/checkpoint.h"
 #include "delio/odometry/make_odometry.h"
@@ -72,16 +76,20 @@ void GraphBuilder::append(const SlamScan& scan) {
 
 void GraphBuilder::addSkipEdges(const Recent& latest) {
     const auto& poses = graph_.poses();
-    for (std::size_t i = 1; i < recent_.size(); ++i) {
+    std::vector<std::optional<Link>> links(recent_.size());
+    tbb::parallel_for(std::size_t{1}, std::max<std::size_t>(links.size(), 1), [&](std::size_t i) {
         const Recent& earlier = recent_[i];
         const Eigen::Isometry3d guess = (poses[earlier.node] * earlier.sensorPose).inverse() *
                                         (poses[latest.node] * latest.sensorPose);
-        const auto link = latest.features->linkTo(*earlier.features, guess);
+        links[i] = latest.features->linkTo(*earlier.features, guess);
+    });
+    for (std::size_t i = 1; i < recent_.size(); ++i) {
+        const auto& link = links[i];
         // Where a scan did not register there is nothing to learn beyond the prediction.
         if (!link) continue;
         if (link->overlap < options_.min_overlap) break;
-        graph_.addEdge({earlier.node, latest.node,
-                        ofVehicle(link->increment, earlier.sensorPose, latest.sensorPose)});
+        graph_.addEdge({recent_[i].node, latest.node,
+                        ofVehicle(link->increment, recent_[i].sensorPose, latest.sensorPose)});
     }
 }
 }  // namespace delio
