@@ -88,7 +88,7 @@ std::optional<DynamicObjects::Left> DynamicObjects::leftBefore(const Left& then,
 /** Its speed over the ground, where it left places behind. */
 std::optional<DynamicObjects::Track> DynamicObjects::trackOf(const Object& object) const {
     constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTurn = 0.3F;
-    std::vector<std::uint8_t> alikes;
+    std::vector<std::int32_t> alikes;
     for (std::size_t i = 0; i < views_.size(); ++i) {
         const View& view = views_[i];
         const auto later_s = static_cast<float>(latest_.stamp_s - view.stamp_s);

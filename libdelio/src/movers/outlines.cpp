@@ -28,13 +28,13 @@ std::pair<std::size_t, std::size_t> Outlines::about(float x, float reach) const 
 }
 
 void Outlines::findAlike(const std::pair<std::size_t, std::size_t>& numbers,
-                         const Eigen::Vector3f& size, std::vector<std::uint8_t>& found) const {
+                         const Eigen::Vector3f& size, std::vector<std::int32_t>& found) const {
     found.resize(this->size());
     const float x = size.x(), y = size.y(), z = size.z();
     const float *xs = sizes_[0].data(), *ys = sizes_[1].data(), *zs = sizes_[2].data();
-    std::uint8_t* const to = found.data();
-    // Without branches: vector instructions.
+    std::int32_t* const to = found.data();
+    // Without branches, in numbers as wide as the sizes: vector instructions.
     for (std::size_t i = numbers.first; i < numbers.second; ++i)
-        to[i] = static_cast<std::uint8_t>(alike(xs[i], x) & alike(ys[i], y) & alike(zs[i], z));
+        to[i] = alike(xs[i], x) & alike(ys[i], y) & alike(zs[i], z);
 }
 }  // namespace delio::movers

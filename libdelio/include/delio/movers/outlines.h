@@ -33,7 +33,7 @@ class Outlines {
 
     /** 1 for each object, of those numbers, that is alike in size; by their numbers. */
     void findAlike(const std::pair<std::size_t, std::size_t>& numbers, const Eigen::Vector3f& size,
-                   std::vector<std::uint8_t>& found) const;
+                   std::vector<std::int32_t>& found) const;
 
  private:
     std::array<std::vector<float>, 3> places_, sizes_;  //!< an axis each
