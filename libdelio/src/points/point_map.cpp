@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
+#include "delio/scan/voxel_ball.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio::points {
@@ -31,22 +33,27 @@ void PointMap::Cell::set(std::uint32_t number, const Eigen::Vector3f& point) {
     group.z[i] = point.z();
 }
 
+/** False where it is full, or has one that is too near. */
+bool PointMap::Cell::add(const Eigen::Vector3d& point, float squaredSpacing) {
+    if (count == kMost) return false;
+    if (count == 0) origin = point;
+    const Eigen::Vector3f local = (point - origin).cast<float>();
+    const bool isNew =
+        std::all_of(groups.begin(), groups.begin() + groupsTaken(), [&](const Group& group) {
+            return group.squaredDistances(local).minCoeff() >= squaredSpacing;
+        });
+    if (isNew) set(count++, local);
+    return isNew;
+}
+
 void PointMap::add(const Eigen::Matrix3Xd& points) {
     const auto squaredSpacing = static_cast<float>(options_.spacing * options_.spacing);
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const Eigen::Vector3d point = points.col(i);
-        Cell& cell = cells_[cells_.insert(scan::voxelKey(point, options_.voxel_size))];
-        if (cell.count == Cell::kMost) continue;
-        if (cell.count == 0) cell.origin = point;
-        const Eigen::Vector3f local = (point - cell.origin).cast<float>();
-        const bool isNew = std::all_of(
-            cell.groups.begin(), cell.groups.begin() + cell.groupsTaken(), [&](const Group& group) {
-                return group.squaredDistances(local).minCoeff() >= squaredSpacing;
-            });
-        if (!isNew) continue;
-        cell.set(cell.count++, local);
-        ++size_;
-    }
+    std::vector<std::uint64_t> voxels(static_cast<std::size_t>(points.cols()));
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        voxels[static_cast<std::size_t>(i)] = scan::voxelKey(points.col(i), options_.voxel_size);
+    cells_.forEach(cells_.insert(voxels), [&](std::size_t i, Cell& cell) {
+        size_ += cell.add(points.col(static_cast<Eigen::Index>(i)), squaredSpacing);
+    });
 }
 
 void PointMap::erase(const Eigen::Matrix3Xd& points) {
@@ -70,10 +77,13 @@ void PointMap::erase(const Eigen::Matrix3Xd& points) {
 }
 
 void PointMap::forgetFarFrom(const Eigen::Vector3d& centre) {
-    cells_.eraseIf(
-        [&](const Cell& cell) { return (cell.origin - centre).norm() > options_.radius; });
-    size_ = 0;
-    for (std::uint32_t i = 0; i < cells_.size(); ++i) size_ += cells_[i].count;
+    const scan::VoxelBall near(centre, options_.radius, options_.voxel_size);
+    const auto isFar = [&](std::uint64_t voxel, const Cell& cell) {
+        const bool far = !near.holds(voxel) && (cell.origin - centre).norm() > options_.radius;
+        if (far) size_ -= cell.count;
+        return far;
+    };
+    cells_.eraseIf(isFar, [](std::uint32_t, std::uint32_t) {});
 }
 
 void PointMap::clear() {
@@ -109,17 +119,19 @@ PointMap::Nearest PointMap::nearest(const Eigen::Vector3d& point, double reach) 
     // own first, as what is found there leaves out most others.
     std::array<std::int64_t, 3> own;
     std::array<std::array<double, 3>, 3> squares;
+    double margin = size;  // to the nearest side of the own voxel
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double inVoxels = point[static_cast<Eigen::Index>(axis)] / size;
         own[axis] = scan::floorOf(inVoxels);
         const double before = size * (inVoxels - static_cast<double>(own[axis])),
                      behind = size - before;
         squares[axis] = {0, before * before, behind * behind};
+        margin = std::min({margin, before, behind});
     }
     constexpr std::array<std::int64_t, 3> kOffsets = {0, -1, 1};
     const auto most = static_cast<float>(std::min(reach * reach, size * size));
-    Search search{most, most};
-    double passedOver = most;
+    Search search{most, std::numeric_limits<float>::infinity()};
+    double passedOver = (size + margin) * (size + margin);  // whatever is no neighbour is so far
     for (std::size_t x = 0; x < 3; ++x)
         for (std::size_t y = 0; y < 3; ++y) {
             const double flat = squares[0][x] + squares[1][y];
@@ -138,6 +150,8 @@ PointMap::Nearest PointMap::nearest(const Eigen::Vector3d& point, double reach) 
                 if (cell) cell->nearest(point, search);
             }
         }
-    return {search.any, search.found, std::sqrt(std::min(passedOver, double{search.others}))};
+    double others = std::min(passedOver, double{search.others});
+    if (search.any) others = std::min(others, double{most});
+    return {search.any, search.found, std::sqrt(others)};
 }
 }  // namespace delio::points
