@@ -29,10 +29,10 @@ class Pairing {
     /** What was found of a point, and where it was then. */
     struct Latest {
         PointMap::Nearest nearest;
-        Eigen::Vector3d at = Eigen::Vector3d::Zero();
+        Eigen::Vector3d at;
     };
-    static bool hasLeft(const Latest& latest, const Eigen::Vector3d& placed, double reach);
-    void find(std::size_t begin, std::size_t end, const Eigen::Isometry3d& pose, double reach);
+    const PointMap::Nearest& nearest(std::size_t point, const Eigen::Vector3d& placed,
+                                     double reach);
 
     const PointMap& map_;
     const Eigen::Matrix3Xd& points_;

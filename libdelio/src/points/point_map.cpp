@@ -119,19 +119,17 @@ PointMap::Nearest PointMap::nearest(const Eigen::Vector3d& point, double reach) 
     // own first, as what is found there leaves out most others.
     std::array<std::int64_t, 3> own;
     std::array<std::array<double, 3>, 3> squares;
-    double margin = size;  // to the nearest side of the own voxel
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double inVoxels = point[static_cast<Eigen::Index>(axis)] / size;
         own[axis] = scan::floorOf(inVoxels);
         const double before = size * (inVoxels - static_cast<double>(own[axis])),
                      behind = size - before;
         squares[axis] = {0, before * before, behind * behind};
-        margin = std::min({margin, before, behind});
     }
     constexpr std::array<std::int64_t, 3> kOffsets = {0, -1, 1};
     const auto most = static_cast<float>(std::min(reach * reach, size * size));
-    Search search{most, std::numeric_limits<float>::infinity()};
-    double passedOver = (size + margin) * (size + margin);  // whatever is no neighbour is so far
+    Search search{most, most};
+    double passedOver = most;
     for (std::size_t x = 0; x < 3; ++x)
         for (std::size_t y = 0; y < 3; ++y) {
             const double flat = squares[0][x] + squares[1][y];
@@ -150,8 +148,6 @@ PointMap::Nearest PointMap::nearest(const Eigen::Vector3d& point, double reach) 
                 if (cell) cell->nearest(point, search);
             }
         }
-    double others = std::min(passedOver, double{search.others});
-    if (search.any) others = std::min(others, double{most});
-    return {search.any, search.found, std::sqrt(others)};
+    return {search.any, search.found, std::sqrt(std::min(passedOver, double{search.others}))};
 }
 }  // namespace delio::points

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "delio/core/stage_options.h"
-#include "delio/scan/voxel_grid.h"
 #include "delio/scan/voxel_table.h"
 
 namespace delio::points {
@@ -45,21 +44,11 @@ class PointMap {
     struct Nearest {
         bool any = false;                                 //!< there is one
         Eigen::Vector3d point = Eigen::Vector3d::Zero();  //!< metres, the map's frame
-        double others_m = 0;                              //!< all others are at least so far away
+        double others_m = 0;                              //!< all others are farther away
     };
     /** The nearest point within `reach` metres, which are at most a voxel's edge, if there is any;
      *  and a distance, metres, within which no other one lies. */
     Nearest nearest(const Eigen::Vector3d& point, double reach) const;
-
-    /** Soon prefetchCell() is called, and after that nearest(). */
-    void prefetch(const Eigen::Vector3d& point) const {
-        cells_.prefetch(scan::voxelKey(point, options_.voxel_size));
-    }
-    /** See prefetch(). */
-    void prefetchCell(const Eigen::Vector3d& point) const {
-        const auto cell = cells_.numberOf(scan::voxelKey(point, options_.voxel_size));
-        if (cell != scan::VoxelIndex::kNone) cells_.prefetchValue(cell);
-    }
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
