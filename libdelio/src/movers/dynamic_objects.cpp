@@ -4,17 +4,8 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delio::movers {
-namespace {
-/** As alike as two views of one thing from about the same side. */
-bool alike(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-    constexpr float kMetres = 0.5F, kShare = 0.3F;
-    return ((a - b).array().abs() < kMetres + kShare * a.cwiseMax(b).array()).all();
-}
-}  // namespace
-
 std::vector<OptionField> DynamicObjectsOptions::fields() const {
     return {{"enabled", &DynamicObjectsOptions::enabled,
              "true: what moves is kept out of registration and map"},
@@ -59,52 +50,65 @@ bool DynamicObjects::came(const Object& object) const {
     return witnesses > 0 && witnesses == views_.size();
 }
 
-/** Those whose places are within `reach` of `x` along the map's first axis. */
-DynamicObjects::Range DynamicObjects::View::objectsAbout(float x, float reach) const {
-    return {std::partition_point(objects.begin(), objects.end(),
-                                 [&](const Object& o) { return o.place.x() < x - reach; }),
-            std::partition_point(objects.begin(), objects.end(),
-                                 [&](const Object& o) { return o.place.x() <= x + reach; })};
+void DynamicObjects::View::outline() {
+    outlines = {};
+    for (const auto& object : objects) outlines.add(object.place, object.size);
+}
+
+bool DynamicObjects::isGone(const Left& left) const {
+    constexpr double kLeastKnown = 0.05;  // near the vehicle places are left below all beams
+    const View& view = views_[left.view];
+    return isFree(view.objects[left.object], view, latest_, kLeastKnown);
+}
+
+/** The place that it left before `then`, from where `step` led to its own. */
+std::optional<DynamicObjects::Left> DynamicObjects::leftBefore(const Left& then,
+                                                               const Eigen::Vector3f& step,
+                                                               const Object& object) const {
+    constexpr float kTolerance_m = 0.3F, kTolerance = 0.15F;
+    const View& second = views_[then.view];
+    const Eigen::Vector3f place = second.outlines.place(then.object);
+    const auto later_s = static_cast<float>(latest_.stamp_s - second.stamp_s);
+    const float tolerance = kTolerance_m + kTolerance * step.norm();
+    for (std::size_t j = then.view + 1; j < views_.size(); ++j) {
+        const View& first = views_[j];
+        const auto earlier_s = static_cast<float>(second.stamp_s - first.stamp_s);
+        if (earlier_s < 0.75F * later_s || earlier_s > 1.5F * later_s) continue;
+        const Eigen::Vector3f expected = place - step * earlier_s / later_s;
+        const auto& outlines = first.outlines;
+        const auto [from, to] = outlines.about(expected.x(), tolerance);
+        for (std::size_t start = from; start < to; ++start)
+            if ((outlines.place(start) - expected).norm() < tolerance &&
+                alike(outlines.sizeOf(start), object.size) && isGone({j, start}) && isGone(then))
+                return Left{j, start};
+    }
+    return {};
 }
 
 /** Its speed over the ground, where it left places behind. */
 std::optional<DynamicObjects::Track> DynamicObjects::trackOf(const Object& object) const {
-    constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTolerance = 0.15F, kTurn = 0.3F;
-    constexpr double kLeastKnown = 0.05;  // near the vehicle places are left below all beams
-    const auto gone = [&](const Object& earlier, const View& view) {
-        return isFree(earlier, view, latest_, kLeastKnown);
-    };
-    const auto numberOf = [](const View& view, const Object& one) {
-        return static_cast<std::size_t>(&one - view.objects.data());
-    };
+    constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTurn = 0.3F;
+    std::vector<std::int32_t> alikes;
     for (std::size_t i = 0; i < views_.size(); ++i) {
-        const View& second = views_[i];
-        const auto later_s = static_cast<float>(latest_.stamp_s - second.stamp_s);
+        const View& view = views_[i];
+        const auto later_s = static_cast<float>(latest_.stamp_s - view.stamp_s);
         const float farthest = kFastest_m_s * later_s;
-        for (const Object& there : second.objectsAbout(object.place.x(), farthest)) {
-            const Eigen::Vector3f step = object.place - there.place;
+        const auto about = view.outlines.about(object.place.x(), farthest);
+        view.outlines.findAlike(about, object.size, alikes);
+        for (std::size_t there = about.first; there < about.second; ++there) {
+            if (!alikes[there]) continue;
+            const Eigen::Vector3f step = object.place - view.outlines.place(there);
             const float length = step.norm();
-            if (length < static_cast<float>(options_.margin) || length > farthest ||
-                !alike(there.size, object.size))
-                continue;
+            if (length < static_cast<float>(options_.margin) || length > farthest) continue;
+            const Left then{i, there};
             // It goes on as it did.
-            if (there.velocity &&
-                (step - later_s * *there.velocity).norm() < kTolerance_m + kTurn * length &&
-                gone(there, second))
-                return Track{step / later_s, {{i, numberOf(second, there)}}};
+            const auto& velocity = view.objects[there].velocity;
+            if (velocity && (step - later_s * *velocity).norm() < kTolerance_m + kTurn * length &&
+                isGone(then))
+                return Track{step / later_s, {then}};
             // Or it comes from a place before that one.
-            for (std::size_t j = i + 1; j < views_.size(); ++j) {
-                const View& first = views_[j];
-                const auto earlier_s = static_cast<float>(second.stamp_s - first.stamp_s);
-                if (earlier_s < 0.75F * later_s || earlier_s > 1.5F * later_s) continue;
-                const Eigen::Vector3f expected = there.place - step * earlier_s / later_s;
-                const float tolerance = kTolerance_m + kTolerance * length;
-                for (const Object& start : first.objectsAbout(expected.x(), tolerance))
-                    if ((start.place - expected).norm() < tolerance &&
-                        alike(start.size, object.size) && gone(start, first) && gone(there, second))
-                        return Track{step / later_s,
-                                     {{i, numberOf(second, there)}, {j, numberOf(first, start)}}};
-            }
+            if (const auto before = leftBefore(then, step, object))
+                return Track{step / later_s, {then, *before}};
         }
     }
     return {};
@@ -145,7 +149,7 @@ std::vector<std::uint8_t> DynamicObjects::detect(Sight sight, const Eigen::Isome
                                                  double stamp_s) {
     while (!views_.empty() && stamp_s - views_.back().stamp_s > options_.memory_s)
         views_.pop_back();
-    latest_ = {stamp_s, pose.cast<float>(), std::move(sight.image_), std::move(sight.objects_)};
+    latest_ = {stamp_s, pose.cast<float>(), std::move(sight.image_), std::move(sight.objects_), {}};
     for (auto& object : latest_.objects) object.place = latest_.toMap * object.centre;
     const auto& segments = sight.segments_;
     std::vector<std::optional<Track>> tracks(segments.size());
@@ -175,6 +179,7 @@ void DynamicObjects::remember(const Eigen::Isometry3d& pose) {
     for (auto& object : latest_.objects) object.place = latest_.toMap * object.centre;
     std::sort(latest_.objects.begin(), latest_.objects.end(),
               [](const Object& a, const Object& b) { return a.place.x() < b.place.x(); });
+    latest_.outline();
     views_.push_front(std::move(latest_));
 }
 }  // namespace delio::movers

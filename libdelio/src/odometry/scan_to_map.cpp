@@ -40,8 +40,8 @@ void ScanToMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pos
     constexpr double kSweep_m = 5;
     if ((pose.translation() - swept_m_).norm() < kSweep_m) return;
     swept_m_ = pose.translation();
-    planes_.forgetFarFrom(swept_m_);
-    points_.forgetFarFrom(swept_m_);
+    tbb::parallel_invoke([&] { planes_.forgetFarFrom(swept_m_); },
+                         [&] { points_.forgetFarFrom(swept_m_); });
 }
 
 void ScanToMap::erase(const Eigen::Matrix3Xf& points) {

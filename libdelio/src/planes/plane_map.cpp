@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "../core/principal_axes.h"
+#include "delio/scan/voxel_ball.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio::planes {
@@ -110,27 +111,17 @@ const Plane* PlaneMap::planeIn(const Level& level, std::uint32_t number) const {
     return now == State::Plane ? &level.planes[number] : nullptr;
 }
 
-void PlaneMap::add(const Eigen::Matrix3Xd& points, const std::vector<std::uint64_t>& voxels,
+void PlaneMap::add(const Eigen::Matrix3Xd& points, std::vector<std::uint64_t> voxels,
                    Level& level) const {
-    constexpr std::size_t kAhead = 16;
-    std::vector<std::uint32_t> numbers(voxels.size());
-    for (std::size_t i = 0; i < voxels.size(); ++i) {
-        if (i + kAhead < voxels.size())
-            level.cells.prefetch(scan::coarserKey(voxels[i + kAhead], level.number));
-        // Many points lie in the voxel of the one before.
-        const std::uint64_t key = scan::coarserKey(voxels[i], level.number);
-        const bool isSame = i > 0 && key == scan::coarserKey(voxels[i - 1], level.number);
-        numbers[i] = isSame ? numbers[i - 1] : level.cells.insert(key);
-    }
+    for (auto& voxel : voxels) voxel = scan::coarserKey(voxel, level.number);
+    const auto numbers = level.cells.insert(voxels);
     level.states.resize(level.cells.size());
     level.planes.resize(level.cells.size());
-    for (std::size_t i = 0; i < voxels.size(); ++i) {
-        if (i + kAhead < voxels.size()) level.cells.prefetchValue(numbers[i + kAhead]);
-        Sums& cell = level.cells[numbers[i]];
-        if (cell.count >= options_.max_points) continue;
+    level.cells.forEach(numbers, [&](std::size_t i, Sums& cell) {
+        if (cell.count >= options_.max_points) return;
         cell.add(points.col(static_cast<Eigen::Index>(i)));
         level.states[numbers[i]].store(State::Unknown, std::memory_order_relaxed);
-    }
+    });
 }
 
 void PlaneMap::add(const Eigen::Matrix3Xd& points) {
@@ -156,16 +147,19 @@ void PlaneMap::erase(const Eigen::Matrix3Xd& points) {
 }
 
 void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
-    for (auto& level : levels_) {
-        const auto kept = level.cells.eraseIf(
-            [&](const Sums& cell) { return (cell.origin - centre).norm() > options_.radius; });
-        for (std::size_t i = 0; i < kept.size(); ++i) {
-            level.states[i] = level.states[kept[i]];
-            if (level.states[i] == State::Plane) level.planes[i] = level.planes[kept[i]];
-        }
-        level.states.resize(kept.size());
-        level.planes.resize(kept.size());
-    }
+    tbb::parallel_for(std::size_t{0}, levels_.size(), [&](std::size_t i) {
+        Level& level = levels_[i];
+        const scan::VoxelBall near(centre, options_.radius, levels_.front().edge, level.number);
+        const auto isFar = [&](std::uint64_t voxel, const Sums& cell) {
+            return !near.holds(voxel) && (cell.origin - centre).norm() > options_.radius;
+        };
+        level.cells.eraseIf(isFar, [&](std::uint32_t from, std::uint32_t to) {
+            level.states[to] = level.states[from];
+            if (level.states[to] == State::Plane) level.planes[to] = level.planes[from];
+        });
+        level.states.resize(level.cells.size());
+        level.planes.resize(level.cells.size());
+    });
 }
 
 void PlaneMap::clear(const Eigen::Vector3d& up) {
@@ -189,6 +183,23 @@ std::size_t PlaneMap::planes() const {
 
 std::uint64_t PlaneMap::voxelAt(const Eigen::Vector3d& point) const {
     return scan::voxelKey(point, levels_.front().edge);
+}
+
+void PlaneMap::prefetch(std::uint64_t voxel) const {
+    for (const auto& level : levels_) level.cells.prefetch(scan::coarserKey(voxel, level.number));
+}
+
+void PlaneMap::prefetchPlanes(std::uint64_t voxel) const {
+    // Larger voxels are few.
+    for (std::size_t i = 0; i < options_.levels; ++i) {
+        const Level& level = levels_[i];
+        const std::uint32_t cell = level.cells.numberOf(scan::coarserKey(voxel, level.number));
+        if (cell == scan::VoxelIndex::kNone) continue;
+        level.cells.prefetchValue(cell);  // which it is fitted from, where it is not yet
+        __builtin_prefetch(&level.states[cell]);
+        __builtin_prefetch(&level.planes[cell]);
+        __builtin_prefetch(&level.planes[cell].variances);
+    }
 }
 
 const Plane* PlaneMap::inVoxel(std::uint64_t voxel) const {

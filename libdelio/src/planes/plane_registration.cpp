@@ -58,9 +58,9 @@ bool iterate(Matcher& matcher, const Prior& known, double kernel,
         const Prior prior = known.times(varianceFactor(matches, pose, options.independent_share));
         const auto turn = rotationFromPlanes(matches, pose, prior);
         pose.linear() = normalised(Eigen::Matrix3d(pose.linear() * rotationExp(turn.step)));
-        const auto move = translationFromPlanes(matches, pose, prior);
-        pose.translation() += move.step;
-        if (turn.step.norm() < options.converged_rad && move.step.norm() < options.converged_m)
+        const Eigen::Vector3d move = stepFromPlanes(matches, pose, prior);
+        pose.translation() += move;
+        if (turn.step.norm() < options.converged_rad && move.norm() < options.converged_m)
             return true;
         if (isAmong(passed, pose, options)) return false;
         passed.push_back(pose);

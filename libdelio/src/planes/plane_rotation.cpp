@@ -9,21 +9,22 @@ PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Is
                                  const Prior& prior) {
     const Eigen::Matrix3d R = pose.linear();
     const Eigen::Vector3d t = pose.translation();
-    Eigen::Matrix3d rr = Eigen::Matrix3d::Zero(), rt = rr, tt = rr;
-    Eigen::Vector3d gr = Eigen::Vector3d::Zero(), gt = gr;
+    // Each match's derivatives by rotation and by translation, side by side: packed instructions.
+    Matrix6 squares = Matrix6::Zero();
+    Vector6 gradients = Vector6::Zero();
     PlaneRotation result;
     for (const auto& match : matches) {
-        // d n.(R exp(w) p) / dw
-        const Eigen::Vector3d a = match.point.cross(R.transpose() * match.normal);
-        const Eigen::Vector3d& n = match.normal;
-        const double r = match.weight * match.residual(R, t);
-        rr += match.weight * a * a.transpose();
-        rt += match.weight * a * n.transpose();
-        tt += match.weight * n * n.transpose();
-        gr += r * a;
-        gt += r * n;
+        Vector6 both;
+        both << match.point.cross(R.transpose() * match.normal), match.normal;
+        const Vector6 weighted = match.weight * both;
+        squares.noalias() += weighted * both.transpose();
+        gradients += match.weight * match.residual(R, t) * both;
         result.weight += match.weight;
     }
+    const Eigen::Matrix3d rr = squares.topLeftCorner<3, 3>(), rt = squares.topRightCorner<3, 3>();
+    const Eigen::Vector3d gr = gradients.head<3>();
+    Eigen::Matrix3d tt = squares.bottomRightCorner<3, 3>();
+    Eigen::Vector3d gt = gradients.tail<3>();
     tt += prior.translation * Eigen::Matrix3d::Identity();
     gt += prior.translation * (t - prior.pose.translation());
     // Directions that no normal looks along constrain nothing: the pseudo-inverse leaves them out.

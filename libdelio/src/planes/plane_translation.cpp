@@ -6,9 +6,7 @@ namespace delio::planes {
 PlaneTranslation translationFromPlanes(const Correspondences& matches,
                                        const Eigen::Isometry3d& pose, const Prior& prior) {
     const Eigen::Matrix3d R = pose.linear();
-    const Eigen::Vector3d t = pose.translation();
     PlaneTranslation result;
-    Eigen::Vector3d gradient = prior.translation * (t - prior.pose.translation());
     for (const auto& match : matches) {
         const Eigen::Vector3d& n = match.normal;
         const Eigen::Vector3d a = match.point.cross(R.transpose() * n);
@@ -17,11 +15,29 @@ PlaneTranslation translationFromPlanes(const Correspondences& matches,
         result.pretended += match.weight * match.tilt * (Eigen::Matrix3d::Identity() - along);
         result.mixed += match.weight * n * a.transpose();
         result.weight += match.weight;
+    }
+    result.step = stepFromPlanes(matches, pose, prior);
+    return result;
+}
+
+Eigen::Vector3d stepFromPlanes(const Correspondences& matches, const Eigen::Isometry3d& pose,
+                               const Prior& prior) {
+    const Eigen::Matrix3d R = pose.linear();
+    const Eigen::Vector3d t = pose.translation();
+    // Of the information xx, yy, zz and xy, yz, zx: it is symmetric.
+    Eigen::Vector3d squares = Eigen::Vector3d::Zero(), products = squares,
+                    gradient = prior.translation * (t - prior.pose.translation());
+    for (const auto& match : matches) {
+        const Eigen::Vector3d& n = match.normal;
+        squares += match.weight * n.cwiseProduct(n);
+        products += match.weight * n.cwiseProduct(Eigen::Vector3d(n.y(), n.z(), n.x()));
         gradient += match.weight * match.residual(R, t) * n;
     }
-    const Eigen::Matrix3d all =
-        result.information + prior.translation * Eigen::Matrix3d::Identity();
-    result.step = -all.completeOrthogonalDecomposition().solve(gradient);
-    return result;
+    Eigen::Matrix3d information;
+    information << squares[0], products[0], products[2],  //
+        products[0], squares[1], products[1],             //
+        products[2], products[1], squares[2];
+    const Eigen::Matrix3d all = information + prior.translation * Eigen::Matrix3d::Identity();
+    return -all.completeOrthogonalDecomposition().solve(gradient);
 }
 }  // namespace delio::planes

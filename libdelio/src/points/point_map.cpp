@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
+#include "delio/scan/voxel_ball.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio::points {
@@ -31,22 +33,27 @@ void PointMap::Cell::set(std::uint32_t number, const Eigen::Vector3f& point) {
     group.z[i] = point.z();
 }
 
+/** False where it is full, or has one that is too near. */
+bool PointMap::Cell::add(const Eigen::Vector3d& point, float squaredSpacing) {
+    if (count == kMost) return false;
+    if (count == 0) origin = point;
+    const Eigen::Vector3f local = (point - origin).cast<float>();
+    const bool isNew =
+        std::all_of(groups.begin(), groups.begin() + groupsTaken(), [&](const Group& group) {
+            return group.squaredDistances(local).minCoeff() >= squaredSpacing;
+        });
+    if (isNew) set(count++, local);
+    return isNew;
+}
+
 void PointMap::add(const Eigen::Matrix3Xd& points) {
     const auto squaredSpacing = static_cast<float>(options_.spacing * options_.spacing);
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const Eigen::Vector3d point = points.col(i);
-        Cell& cell = cells_[cells_.insert(scan::voxelKey(point, options_.voxel_size))];
-        if (cell.count == Cell::kMost) continue;
-        if (cell.count == 0) cell.origin = point;
-        const Eigen::Vector3f local = (point - cell.origin).cast<float>();
-        const bool isNew = std::all_of(
-            cell.groups.begin(), cell.groups.begin() + cell.groupsTaken(), [&](const Group& group) {
-                return group.squaredDistances(local).minCoeff() >= squaredSpacing;
-            });
-        if (!isNew) continue;
-        cell.set(cell.count++, local);
-        ++size_;
-    }
+    std::vector<std::uint64_t> voxels(static_cast<std::size_t>(points.cols()));
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        voxels[static_cast<std::size_t>(i)] = scan::voxelKey(points.col(i), options_.voxel_size);
+    cells_.forEach(cells_.insert(voxels), [&](std::size_t i, Cell& cell) {
+        size_ += cell.add(points.col(static_cast<Eigen::Index>(i)), squaredSpacing);
+    });
 }
 
 void PointMap::erase(const Eigen::Matrix3Xd& points) {
@@ -70,10 +77,13 @@ void PointMap::erase(const Eigen::Matrix3Xd& points) {
 }
 
 void PointMap::forgetFarFrom(const Eigen::Vector3d& centre) {
-    cells_.eraseIf(
-        [&](const Cell& cell) { return (cell.origin - centre).norm() > options_.radius; });
-    size_ = 0;
-    for (std::uint32_t i = 0; i < cells_.size(); ++i) size_ += cells_[i].count;
+    const scan::VoxelBall near(centre, options_.radius, options_.voxel_size);
+    const auto isFar = [&](std::uint64_t voxel, const Cell& cell) {
+        const bool far = !near.holds(voxel) && (cell.origin - centre).norm() > options_.radius;
+        if (far) size_ -= cell.count;
+        return far;
+    };
+    cells_.eraseIf(isFar, [](std::uint32_t, std::uint32_t) {});
 }
 
 void PointMap::clear() {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "delio/core/approximate_atan2.h"
@@ -44,6 +45,7 @@ RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
         float& nearest = nearest_[cellOf(rowsOf[i], columnsOf[i])];
         if (nearest == 0 || ranges[i] < nearest) nearest = ranges[i];
     }
+    summarise();
 }
 
 RangeImage::RangeImage(const PackedRanges& packed, double cell_deg)
@@ -117,18 +119,34 @@ void RangeImage::fillGaps() {
 }
 
 void RangeImage::summarise() {
+    constexpr float kNothing = std::numeric_limits<float>::infinity();
+    const auto columns = static_cast<std::size_t>(columns_);
     leastAbout_.resize(nearest_.size());
-    tbb::parallel_for(std::size_t{0}, rows(), [&](std::size_t r) {
-        for (int c = 0; c < columns_; ++c) {
-            int seen = 0;
-            float least = 0;
-            forNeighbours(firstRow_ + static_cast<int>(r), c, [&](float nearest) {
-                if (seen++ == 0 || nearest < least) least = nearest;
-            });
-            leastAbout_[r * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c)] =
-                seen >= kEnough ? least : -least;
+    // Of three rows first, with a column more on either side, then of three columns: plain loops.
+    std::vector<float> least(columns + 2);
+    std::vector<int> seen(columns + 2);
+    for (std::size_t row = 0; row < rows(); ++row) {
+        std::fill(least.begin(), least.end(), kNothing);
+        std::fill(seen.begin(), seen.end(), 0);
+        for (std::size_t r = row - (row > 0); r < std::min(row + 2, rows()); ++r) {
+            const float* const nearest = nearest_.data() + r * columns;
+            for (std::size_t c = 0; c < columns; ++c) {
+                const bool isSeen = nearest[c] > 0;
+                least[c + 1] = std::min(least[c + 1], isSeen ? nearest[c] : kNothing);
+                seen[c + 1] += isSeen;
+            }
         }
-    });
+        least.front() = least[columns];
+        seen.front() = seen[columns];
+        least.back() = least[1];
+        seen.back() = seen[1];
+        float* const about = leastAbout_.data() + row * columns;
+        for (std::size_t c = 0; c < columns; ++c) {
+            const float all = std::min(std::min(least[c], least[c + 1]), least[c + 2]);
+            const int count = seen[c] + seen[c + 1] + seen[c + 2];
+            about[c] = count >= kEnough ? all : count > 0 ? -all : 0.0F;
+        }
+    }
 }
 
 Place RangeImage::lookAbout(int row, int column, float range, float margin) const {
@@ -148,14 +166,13 @@ Place RangeImage::at(const Eigen::Vector3f& point, float margin) const {
     const float range = rangeOf(x, y, z);
     const int row = rowOf(x, y, z), column = columnOf(x, y);
     const int r = row - firstRow_;
-    if (leastAbout_.empty() || r < 0 || r >= static_cast<int>(rows()))
-        return lookAbout(row, column, range, margin);
+    if (r < 0 || r >= static_cast<int>(rows())) return lookAbout(row, column, range, margin);
     // Mostly the least of the neighbourhood tells all.
     const float about = leastAbout_[cellOf(row, column)];
-    const float least = std::abs(about);
-    if (least > range + margin) return about > 0 ? Place::kFree : Place::kUnknown;
-    if (least == 0) return Place::kUnknown;
-    if (least >= range - margin) return Place::kTaken;
+    if (about == 0) return Place::kUnknown;
+    const float farther = std::abs(about) - range;
+    if (farther > margin) return about > 0 ? Place::kFree : Place::kUnknown;
+    if (farther >= -margin) return Place::kTaken;
     return lookAbout(row, column, range, margin);
 }
 }  // namespace delio::scan

@@ -32,7 +32,20 @@ VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
 }
 
 Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers& numbers) {
-    auto [centroids, counts] = sumsOf<3>(points, numbers);
+    Eigen::Matrix3Xf centroids = Eigen::Matrix3Xf::Zero(3, numbers.voxels);
+    Eigen::RowVectorXf counts = Eigen::RowVectorXf::Zero(numbers.voxels);
+    // Points of one voxel that come after each other are summed up before they are put down.
+    for (Eigen::Index i = 0; i < points.cols();) {
+        const Eigen::Index voxel = numbers.ofPoint[static_cast<std::size_t>(i)];
+        Eigen::Vector3f sum = centroids.col(voxel);
+        float count = counts[voxel];
+        do {
+            sum += points.col(i);
+            count += 1;
+        } while (++i < points.cols() && numbers.ofPoint[static_cast<std::size_t>(i)] == voxel);
+        centroids.col(voxel) = sum;
+        counts[voxel] = count;
+    }
     centroids.array().rowwise() /= counts.array();
     return centroids;
 }

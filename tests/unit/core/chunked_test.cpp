@@ -24,6 +24,23 @@ TEST(Chunked, DoesNotMoveWhatItHolds) {
     EXPECT_EQ(*first, 7);
 }
 
+TEST(Chunked, ShrinksAndGrowsAgainAcrossItsChunks) {
+    Chunked<std::string> all;
+    for (const std::size_t size : {20000U, 1000U, 1024U, 1025U, 0U, 5000U}) {
+        const std::size_t before = all.size();
+        all.resize(size);
+        ASSERT_EQ(all.size(), size);
+        for (std::size_t i = before; i < size; ++i) {
+            EXPECT_EQ(all[i], "");
+            all[i] = std::to_string(i);
+        }
+        for (std::size_t i = 0; i < size; ++i) ASSERT_EQ(all[i], std::to_string(i));
+    }
+    Chunked<std::string> taken = std::move(all), copy = taken;
+    EXPECT_EQ(copy.size(), 5000U);
+    EXPECT_EQ(copy[4999], "4999");
+}
+
 TEST(Chunked, NewOnesAreNotWhatWasTakenAway) {
     Chunked<std::string> all;
     for (int i = 0; i < 10; ++i) all.push_back("old");

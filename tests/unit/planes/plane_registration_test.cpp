@@ -65,6 +65,16 @@ TEST(PlaneRotation, ConvergesToThePlantedRotationFromTenDegrees) {
     EXPECT_LT(degreesBetween(R, truth), 1e-6);
 }
 
+TEST(PlaneTranslation, ItsStepAloneIsTheSame) {
+    test::Noise noise;
+    const auto matches = matchesSeenFrom(rotationAbout({1, 2, 3}, 20), {3, -2, 1}, 0.01, noise);
+    const auto pose = poseAt(1, 2, 3, 0.1);
+    const auto all = planes::translationFromPlanes(matches, pose, priorAt(pose));
+    EXPECT_EQ(all.step, planes::stepFromPlanes(matches, pose, priorAt(pose)));
+    EXPECT_GT(all.step.norm(), 0.1);
+    EXPECT_TRUE(all.information.isApprox(all.information.transpose()));
+}
+
 /** Half the weighted squares of the residuals, with the best translation for each rotation. */
 double reducedCost(const Correspondences& matches, const Eigen::Matrix3d& R) {
     const auto move = planes::translationFromPlanes(matches, isometry(R, {0, 0, 0}));

@@ -17,6 +17,8 @@ TEST(Pairing, DoesNotDependOnWhatWasAskedBefore) {
     for (Eigen::Index i = 0; i < points.cols(); ++i) points.col(i) = 5 * noise.normals();
     map.add(points);
     for (Eigen::Index i = 0; i < points.cols(); ++i) points.col(i) += 0.05 * noise.normals();
+    // Some lie where the map has none, or none so near.
+    for (Eigen::Index i = 0; i < points.cols(); i += 5) points.col(i) += 3 * noise.normals();
     Pairing used(map, points);
     double kernel = 0.4, step_m = 0.5;
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

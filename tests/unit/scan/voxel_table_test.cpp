@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "delio/scan/voxel_grid.h"
 #include "ring_scan.h"
@@ -41,22 +42,45 @@ TEST(VoxelIndex, IsEmptyAtFirstAndOnceCleared) {
     EXPECT_EQ(index.size(), 0U);
 }
 
+TEST(VoxelIndex, FindsTheRestWhenSomeAreErased) {
+    VoxelIndex index;
+    std::vector<std::uint64_t> keys;
+    forCube([&](std::uint64_t key) {
+        index.insert(key);
+        keys.push_back(key);
+    });
+    // In an order of chance, down to the last one.
+    for (std::size_t next = 7; !keys.empty(); next = next * 31 + 11) {
+        const std::size_t gone = next % keys.size();
+        index.erase(keys[gone], keys.back());
+        ASSERT_EQ(index.find(keys[gone]), VoxelIndex::kNone);
+        keys[gone] = keys.back();
+        keys.pop_back();
+        ASSERT_EQ(index.size(), keys.size());
+        if (keys.size() % 1000 == 0)
+            for (std::uint32_t i = 0; i < keys.size(); ++i) ASSERT_EQ(index.find(keys[i]), i);
+    }
+}
+
 TEST(VoxelTable, KeepsTheRestWhenSomeAreErased) {
     VoxelTable<std::uint64_t> table;
-    forCube([&](std::uint64_t key) { table[table.insert(key)] = key; });
+    std::vector<std::uint64_t> beside;  // what is kept by the values' numbers
+    forCube([&](std::uint64_t key) {
+        table[table.insert(key)] = key;
+        beside.push_back(key);
+    });
     const auto all = table.size();
     const auto isOdd = [](std::uint64_t key) { return key % 2 == 1; };
-    const std::uint64_t second = voxelKey(0, 0, 2);
-    const auto before = table.numberOf(second);
-    const auto staying = table.eraseIf(isOdd);
-    EXPECT_EQ(staying.size(), table.size());
-    EXPECT_EQ(staying[table.numberOf(second)], before);
+    table.eraseIf(
+        [&](std::uint64_t key, std::uint64_t value) { return isOdd(key) && isOdd(value); },
+        [&](std::uint32_t from, std::uint32_t to) { beside[to] = beside[from]; });
     EXPECT_EQ(table.size(), all / 2);
     forCube([&](std::uint64_t key) {
         const auto* found = table.find(key);
         ASSERT_EQ(found == nullptr, isOdd(key));
         if (found) {
             EXPECT_EQ(*found, key);
+            EXPECT_EQ(beside[table.numberOf(key)], key);
         }
     });
     // What was erased can come again.

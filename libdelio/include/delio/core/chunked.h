@@ -1,12 +1,16 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <utility>
 #include <vector>
 
+#include "delio/core/large_memory.h"
+
 namespace delio {
 /** A vector that grows without moving what it holds: no scan waits until a map of hundreds of
- *  megabytes is copied, and there never are two of them. */
+ *  megabytes is copied, and there never are two of them. Each chunk has room for as many values as
+ *  all before together. */
 template <typename Value>
 class Chunked {
  public:
@@ -24,19 +28,22 @@ class Chunked {
     Chunked(const Chunked& other) {
         for (std::size_t i = 0; i < other.size(); ++i) push_back(other[i]);
     }
+    ~Chunked() { resize(0); }
 
     std::size_t size() const { return size_; }  //!< values
     /** The value with this number. */
-    Value& operator[](std::size_t i) { return chunks_[i / kChunk][i % kChunk]; }
+    Value& operator[](std::size_t i) { return *placeOf(i); }
     /** The value with this number. */
-    const Value& operator[](std::size_t i) const { return chunks_[i / kChunk][i % kChunk]; }
+    const Value& operator[](std::size_t i) const { return *placeOf(i); }
 
-    /** What new values are is not said. */
+    /** What new values are only their own constructors say. Memory that was needed once is kept. */
     void resize(std::size_t size) {
-        const std::size_t chunks = (size + kChunk - 1) / kChunk;
-        while (chunks_.size() < chunks) chunks_.emplace_back(new Value[kChunk]);
-        chunks_.resize(chunks);
-        size_ = size;
+        while (size_ > size) std::destroy_at(placeOf(--size_));
+        for (; size_ < size; ++size_) {
+            if (size_ + kFirst == kFirst << chunks_.size())
+                chunks_.push_back(largeMemory((kFirst << chunks_.size()) * sizeof(Value)));
+            new (placeOf(size_)) Value;
+        }
     }
     /** One more. */
     void push_back(Value value) {
@@ -54,8 +61,18 @@ class Chunked {
     }
 
  private:
-    static constexpr std::size_t kChunk = 1024;
-    std::vector<std::unique_ptr<Value[]>> chunks_;
+    /** Chunk c has 2^c times as many values as the first one: where a value is follows from the
+     *  highest bit of its number and the first chunk's values together. */
+    Value* placeOf(std::size_t i) const {
+        const std::size_t number = i + kFirst;
+        const auto bit = static_cast<unsigned>(63 - __builtin_clzll(number));
+        return static_cast<Value*>(chunks_[bit - kFirstBit].get()) +
+               (number ^ (std::size_t{1} << bit));
+    }
+
+    static constexpr unsigned kFirstBit = 10;
+    static constexpr std::size_t kFirst = std::size_t{1} << kFirstBit;
+    std::vector<std::unique_ptr<void, FreeMemory>> chunks_;
     std::size_t size_ = 0;
 };
 }  // namespace delio

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "delio/core/stage_options.h"
+#include "delio/movers/outlines.h"
 #include "delio/movers/segments.h"
 #include "delio/scan/range_image.h"
 
@@ -77,30 +78,35 @@ class DynamicObjects {
         }
     };
     using Objects = std::vector<Object>;
+    /** A place that an object left behind. */
+    struct Left {
+        std::size_t view;
+        std::size_t object;  //!< of that view's
+    };
     /** That an object moves, as the places show that it left behind. */
     struct Track {
         Eigen::Vector3f velocity;
-        std::vector<std::pair<std::size_t, std::size_t>> left;  //!< view, object of it
-    };
-    struct Range {
-        Objects::const_iterator first, last;
-        auto begin() const { return first; }
-        auto end() const { return last; }
+        std::vector<Left> left;
     };
     struct View {
         double stamp_s = 0;
         Eigen::Isometry3f toMap = Eigen::Isometry3f::Identity();
         scan::RangeImage image;
-        Objects objects;  //!< of an earlier scan: by their places' x
+        Objects objects;    //!< of an earlier scan: by their places' x
+        Outlines outlines;  //!< of an earlier scan's objects
 
-        Range objectsAbout(float x, float reach) const;
+        void outline();
 
         template <class Archive>
         void serialize(Archive& archive) {
             archive(stamp_s, toMap, image, objects);
+            if constexpr (Archive::is_loading::value) outline();
         }
     };
     bool came(const Object& object) const;
+    bool isGone(const Left& left) const;
+    std::optional<Left> leftBefore(const Left& then, const Eigen::Vector3f& step,
+                                   const Object& object) const;
     std::optional<Track> trackOf(const Object& object) const;
     void unmask(const Track& track);
     /** True where scan `by` saw through the place that `object` took in scan `seen`. `minKnown`:

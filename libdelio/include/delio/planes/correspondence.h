@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -40,7 +41,15 @@ class Matcher {
     double shareAt(const Eigen::Isometry3d& pose, double kernel);
 
  private:
-    const Plane* planeAbout(std::size_t point, const Eigen::Vector3d& placed);
+    /** So many points, one after the other, are looked up together. */
+    static constexpr std::size_t kBlock = 512;
+    std::size_t blocks() const { return (latest_.size() + kBlock - 1) / kBlock; }
+    std::size_t endOf(std::size_t block) const {
+        return std::min(latest_.size(), (block + 1) * kBlock);
+    }
+    void findPlanes(std::size_t block, const Eigen::Isometry3d& pose);
+    Correspondences matchesOf(std::size_t block, const Eigen::Isometry3d& pose,
+                              double kernel) const;
 
     const PlaneMap& map_;
     const Eigen::Matrix3Xd& points_;

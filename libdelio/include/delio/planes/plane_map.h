@@ -71,6 +71,11 @@ class PlaneMap {
     /** See voxelAt(). */
     const Plane* inVoxel(std::uint64_t voxel) const;
 
+    /** Soon prefetchPlanes() is called, and after that inVoxel(). */
+    void prefetch(std::uint64_t voxel) const;
+    /** See prefetch(). */
+    void prefetchPlanes(std::uint64_t voxel) const;
+
     /** Drops everything, for a map in which `up` is up. */
     void clear(const Eigen::Vector3d& up);
 
@@ -133,8 +138,7 @@ class PlaneMap {
         void clear();
         void forgetPlanes();
     };
-    void add(const Eigen::Matrix3Xd& points, const std::vector<std::uint64_t>& voxels,
-             Level& level) const;
+    void add(const Eigen::Matrix3Xd& points, std::vector<std::uint64_t> voxels, Level& level) const;
     State fit(const Level& level, std::uint32_t number) const;
     const Plane* planeIn(const Level& level, std::uint32_t number) const;
 

@@ -18,4 +18,8 @@ struct PlaneTranslation {
  *  is no step. */
 PlaneTranslation translationFromPlanes(const Correspondences& matches,
                                        const Eigen::Isometry3d& pose, const Prior& prior = {});
+
+/** Its step alone: all that is asked for until the last one. */
+Eigen::Vector3d stepFromPlanes(const Correspondences& matches, const Eigen::Isometry3d& pose,
+                               const Prior& prior = {});
 }  // namespace delio::planes

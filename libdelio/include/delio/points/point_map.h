@@ -87,6 +87,7 @@ class PointMap {
         Eigen::Index groupsTaken() const { return (count + Group::kSize - 1) / Group::kSize; }
         Eigen::Vector3f point(std::uint32_t number) const;
         void set(std::uint32_t number, const Eigen::Vector3f& point);
+        bool add(const Eigen::Vector3d& point, float squaredSpacing);
         void nearest(const Eigen::Vector3d& point, Search& search) const;
 
         template <class Archive>

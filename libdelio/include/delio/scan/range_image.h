@@ -43,7 +43,8 @@ class RangeImage {
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
     void serialize(Archive& archive) {
-        archive(perRadian_, ringSpacing_, allRows_, columns_, firstRow_, nearest_, leastAbout_);
+        archive(perRadian_, ringSpacing_, allRows_, columns_, firstRow_, nearest_);
+        if constexpr (Archive::is_loading::value) summarise();
     }
 
  private:
@@ -68,7 +69,7 @@ class RangeImage {
     int firstRow_ = 0;            //!< that is kept
     std::vector<float> nearest_;  //!< metres, row by row from below; 0: nothing was seen
     /** The least of each cell's neighbourhood, negative where too little was seen there to call
-     *  anything free; empty where it was not asked for. */
+     *  anything free, 0 where nothing was. */
     std::vector<float> leastAbout_;
 };
 }  // namespace delio::scan

@@ -1,10 +1,12 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "delio/core/chunked.h"
+#include "delio/core/large_memory.h"
 
 namespace delio::scan {
 /** Numbers the keys of voxels from 0 in the order in which they come. An open-addressing hash table
@@ -21,6 +23,10 @@ class VoxelIndex {
 
     /** The key's number: that of a new key is the size before. */
     std::uint32_t insert(std::uint64_t key);
+
+    /** Takes a key that it has out. `last`, the key with the last number, gets the number that is
+     *  free now. */
+    void erase(std::uint64_t key, std::uint64_t last);
 
     /** The key will be asked for soon: memory is slow, and many keys can be waited for at once. */
     void prefetch(std::uint64_t key) const { __builtin_prefetch(&slots_[firstSlotOf(key)]); }
@@ -46,10 +52,11 @@ class VoxelIndex {
             slot = (slot + 1) & (slots_.size() - 1);
         return slot;
     }
-    void grow();
+    void rehash(unsigned shift);
 
     unsigned shift_ = 60;  //!< 64 less the binary logarithm of the slots
-    std::vector<Slot> slots_ = std::vector<Slot>(16);
+    using Slots = std::vector<Slot, LargeAllocator<Slot>>;
+    Slots slots_ = Slots(16);
     std::size_t size_ = 0;
 };
 
@@ -85,33 +92,62 @@ class VoxelTable {
         return number;
     }
 
+    /** The same of many, which are asked for ahead of time. */
+    std::vector<std::uint32_t> insert(const std::vector<std::uint64_t>& keys) {
+        std::vector<std::uint32_t> numbers(keys.size());
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            if (i + kAhead < keys.size()) index_.prefetch(keys[i + kAhead]);
+            // Many points lie in the voxel of the one before.
+            numbers[i] = i > 0 && keys[i] == keys[i - 1] ? numbers[i - 1] : insert(keys[i]);
+        }
+        return numbers;
+    }
+
+    /** Soon the key's value is asked for. */
+    void prefetch(std::uint64_t key) const { index_.prefetch(key); }
+    /** Soon the number's value is asked for. */
+    void prefetchValue(std::uint32_t number) const {
+        constexpr std::size_t kLine = 64, kMost = 2 * kLine;  // what is asked first lies first
+        const auto* const at = reinterpret_cast<const char*>(&values_[number]);
+        for (std::size_t i = 0; i < std::min(kMost, sizeof(Value)); i += kLine)
+            __builtin_prefetch(at + i);
+    }
+
+    /** Calls visit(i, value) for each of the numbers in turn; values are asked for ahead of time.
+     */
+    template <typename Visit>
+    void forEach(const std::vector<std::uint32_t>& numbers, const Visit& visit) {
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            if (i + kAhead < numbers.size()) prefetchValue(numbers[i + kAhead]);
+            visit(i, values_[numbers[i]]);
+        }
+    }
+
     /** The value with this number. */
     Value& operator[](std::uint32_t number) { return values_[number]; }
     /** The value with this number. */
     const Value& operator[](std::uint32_t number) const { return values_[number]; }
 
-    /** Soon insert(key) is called, or the number's value wanted. */
-    void prefetch(std::uint64_t key) const { index_.prefetch(key); }
-    /** See prefetch(). */
-    void prefetchValue(std::uint32_t number) const { __builtin_prefetch(&values_[number]); }
-
-    /** Gives the numbers, rising, of those that stay: they are numbered anew in this order. */
-    template <typename Predicate>
-    std::vector<std::uint32_t> eraseIf(const Predicate& isGone) {
-        std::vector<std::uint32_t> staying;
-        std::size_t kept = 0;
-        index_.clear();
-        index_.reserve(values_.size());
-        for (std::size_t i = 0; i < values_.size(); ++i) {
-            if (isGone(values_[i])) continue;
-            index_.insert(keys_[i]);
-            staying.push_back(static_cast<std::uint32_t>(i));
-            if (kept != i) values_[kept] = std::move(values_[i]);
-            keys_[kept++] = keys_[i];
+    /** Erases the values of which `isGone(key, value)`. The last one takes the place of each: then
+     *  `moved(from, to)` is called with both its numbers. What stays is not touched, as most of a
+     *  map does. */
+    template <typename Predicate, typename Moved>
+    void eraseIf(const Predicate& isGone, const Moved& moved) {
+        for (std::size_t i = 0; i < keys_.size();) {
+            if (!isGone(keys_[i], values_[i])) {
+                ++i;
+                continue;
+            }
+            const std::size_t last = keys_.size() - 1;
+            index_.erase(keys_[i], keys_[last]);
+            if (i != last) {
+                values_[i] = std::move(values_[last]);
+                keys_[i] = keys_[last];
+                moved(static_cast<std::uint32_t>(last), static_cast<std::uint32_t>(i));
+            }
+            values_.resize(last);
+            keys_.pop_back();
         }
-        values_.resize(kept);
-        keys_.resize(kept);
-        return staying;
     }
 
     /** Drops everything. */
@@ -129,6 +165,8 @@ class VoxelTable {
     }
 
  private:
+    static constexpr std::size_t kAhead = 16;
+
     VoxelIndex index_;
     Chunked<Value> values_;
     std::vector<std::uint64_t> keys_;  //!< of the values

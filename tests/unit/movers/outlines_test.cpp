@@ -1,0 +1,42 @@
+#include "delio/movers/outlines.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using movers::Outlines;
+
+TEST(Outlines, ThoseAboutAPlaceAreFoundByTheirX) {
+    Outlines outlines;
+    for (int i = 0; i < 10; ++i)
+        outlines.add({static_cast<float>(i), static_cast<float>(-i), 1}, {4, 2, 1.5F});
+    const std::pair<std::size_t, std::size_t> middle(3, 6), none(10, 10);
+    EXPECT_EQ(outlines.about(4, 1), middle);  // both ends are within reach
+    EXPECT_EQ(outlines.about(20, 1), none);
+    EXPECT_EQ(Outlines().about(0, 1).second, 0U);
+    EXPECT_EQ(outlines.place(7), Eigen::Vector3f(7, -7, 1));
+    EXPECT_EQ(outlines.sizeOf(7), Eigen::Vector3f(4, 2, 1.5F));
+}
+
+TEST(Outlines, AllAtOnceAreAsAlikeAsOneByOne) {
+    test::Noise noise;
+    Outlines outlines;
+    std::vector<Eigen::Vector3f> sizes;
+    for (int i = 0; i < 1000; ++i) {
+        sizes.push_back((Eigen::Vector3d(3, 2, 2) + noise.normals()).cast<float>());
+        outlines.add(Eigen::Vector3f(static_cast<float>(i), 0, 0), sizes.back());
+    }
+    const Eigen::Vector3f asked(3, 2, 2);
+    std::vector<std::int32_t> found;
+    outlines.findAlike({100, 900}, asked, found);
+    for (std::size_t i = 100; i < 900; ++i)
+        EXPECT_EQ(found[i] == 1, movers::alike(sizes[i], asked)) << i;
+    EXPECT_GT(std::count(found.begin() + 100, found.begin() + 900, 1), 100);
+    EXPECT_GT(std::count(found.begin() + 100, found.begin() + 900, 0), 100);
+}
+}  // namespace
