@@ -7,7 +7,7 @@
 namespace delio {
 /** Gives back what largeMemory() gave. */
 struct FreeMemory {
-    void operator()(void* memory) const { std::free(memory); }
+    void operator()(void* memory) const { std::free(memory); }  //!< free()
 };
 /** So many bytes, of which none is set; std::bad_alloc where there are not as many. Megabytes lie
  * in pages of 2 MB each, where the system has them: a table that is asked for places all over costs
@@ -18,7 +18,7 @@ std::unique_ptr<void, FreeMemory> largeMemory(std::size_t bytes);
 /** The same for containers. */
 template <typename Value>
 struct LargeAllocator {
-    using value_type = Value;
+    using value_type = Value;  //!< what there is room for
     LargeAllocator() = default;
     /** They all are the same. */
     template <typename Other>
@@ -30,7 +30,7 @@ struct LargeAllocator {
     /** What allocate() gave. */
     void deallocate(Value* memory, std::size_t) { FreeMemory()(memory); }
 
-    friend bool operator==(const LargeAllocator&, const LargeAllocator&) { return true; }
-    friend bool operator!=(const LargeAllocator&, const LargeAllocator&) { return false; }
+    friend bool operator==(const LargeAllocator&, const LargeAllocator&) { return true; }  //!< all
+    friend bool operator!=(const LargeAllocator&, const LargeAllocator&) { return false; }  //!< none
 };
 }  // namespace delio
