@@ -31,6 +31,6 @@ struct LargeAllocator {
     void deallocate(Value* memory, std::size_t) { FreeMemory()(memory); }
 
     friend bool operator==(const LargeAllocator&, const LargeAllocator&) { return true; }  //!< all
-    friend bool operator!=(const LargeAllocator&, const LargeAllocator&) { return false; }  //!< none
+    friend bool operator!=(const LargeAllocator&, const LargeAllocator&) { return false; }  //!< no
 };
 }  // namespace delio
