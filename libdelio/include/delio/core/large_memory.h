@@ -30,7 +30,7 @@ struct LargeAllocator {
     /** What allocate() gave. */
     void deallocate(Value* memory, std::size_t) { FreeMemory()(memory); }
 
-    friend bool operator==(const LargeAllocator&, const LargeAllocator&) { return true; }  //!< all
+    friend bool operator==(const LargeAllocator&, const LargeAllocator&) { return true; }   //!< all
     friend bool operator!=(const LargeAllocator&, const LargeAllocator&) { return false; }  //!< no
 };
 }  // namespace delio
