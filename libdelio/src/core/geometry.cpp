@@ -16,6 +16,11 @@ Eigen::Matrix3d meanRotation(const Eigen::Vector3d& w) {
     const Eigen::Matrix3d W = hat(w);
     return Eigen::Matrix3d::Identity() + a * W + b * W * W;
 }
+
+/** Of the turn, from 0 to pi. */
+double angleOf(const Eigen::Quaterniond& q) {
+    return 2 * portable::atan2(q.vec().stableNorm(), std::abs(q.w()));
+}
 }  // namespace
 
 Eigen::Matrix3d hat(const Eigen::Vector3d& v) {
@@ -36,11 +41,11 @@ Eigen::Vector3d rotationLog(const Eigen::Matrix3d& R) {
     const Eigen::Quaterniond q(R);
     const double sine = q.vec().stableNorm();  // of half the angle
     if (sine == 0) return Eigen::Vector3d::Zero();
-    const double angle = 2 * portable::atan2(sine, std::abs(q.w()));
-    return (q.w() < 0 ? -angle : angle) / sine * q.vec();
+    const Eigen::Vector3d axis = q.vec() / sine;
+    return (q.w() < 0 ? -1 : 1) * angleOf(q) * axis;
 }
 
-double angleOf(const Eigen::Matrix3d& R) { return rotationLog(R).norm(); }
+double angleOf(const Eigen::Matrix3d& R) { return angleOf(Eigen::Quaterniond(R)); }
 
 Eigen::Matrix3d inverseRightJacobian(const Eigen::Vector3d& w) {
     const double half = w.norm() / 2;

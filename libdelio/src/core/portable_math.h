@@ -13,12 +13,14 @@ struct SineAndCosine {
     double sine, cosine;
 };
 
-/** Of angles whose number of quarter turns is an int. */
+/** Of angles of less than a million quarter turns. */
 inline SineAndCosine sineAndCosine(double angle) {
-    // What is left of whole quarter turns, in two parts that are as good as twice the digits.
-    constexpr double kQuarter = 0x1.921fb54442d18p+0, kRest = 0x1.1a62633145c07p-54;
-    const auto quarters = static_cast<int>(std::lrint(angle / kQuarter));
-    const double x = (angle - quarters * kQuarter) - quarters * kRest, s = x * x;
+    // A quarter turn in three parts: the first two have 33 digits, so that their multiples are
+    // exact.
+    constexpr double kFirst = 0x1.921fb544p+0, kSecond = 0x1.0b4611a6p-34, kThird = 0x1.3198a2ep-69;
+    const auto quarters = static_cast<int>(std::lrint(angle / kFirst));
+    const double x = ((angle - quarters * kFirst) - quarters * kSecond) - quarters * kThird,
+                 s = x * x;
     // Taylor's series, |x| <= pi / 4.
     const double sine =
         x *
@@ -55,15 +57,19 @@ inline double cos(double angle) { return sineAndCosine(angle).cosine; }
 
 /** From -pi to pi; of (0, 0): 0. */
 inline double atan2(double y, double x) {
-    const double most = std::max(std::abs(x), std::abs(y));
+    // Half of pi, and what is left of it behind its digits.
+    constexpr double kQuarter = 0x1.921fb54442d18p+0, kRest = 0x1.1a62633145c07p-54;
+    const double ahead = std::abs(x), up = std::abs(y), most = std::max(ahead, up);
     if (!(most > 0)) return 0;
-    const double up = y / most, ahead = x / most;
-    // The vector, turned back by nearly its angle, has what is left of it as its slope.
-    const auto nearly = double{approximateAtan2(static_cast<float>(up), static_cast<float>(ahead))};
+    // Turned back by nearly its angle, the vector (1, slope) has what is left of it as its slope.
+    const double slope = std::min(ahead, up) / most;
+    const auto nearly = double{approximateAtan2(static_cast<float>(slope), 1.0F)};
     const auto turned = sineAndCosine(nearly);
-    const double slope =
-        (up * turned.cosine - ahead * turned.sine) / (ahead * turned.cosine + up * turned.sine);
-    return nearly + slope * (1 - slope * slope / 3);
+    const double left =
+        (slope * turned.cosine - turned.sine) / (turned.cosine + slope * turned.sine);
+    const double eighth = nearly + left * (1 - left * left / 3);
+    const double quarter = up > ahead ? kQuarter - (eighth - kRest) : eighth;
+    return std::copysign(x < 0 ? 2 * kQuarter - (quarter - 2 * kRest) : quarter, y);
 }
 
 /** A kernel's exp(x), x <= 0: of floats; 0 below -80. */
