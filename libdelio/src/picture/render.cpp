@@ -12,6 +12,7 @@
 #include "bands.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
+#include "delio/core/large_memory.h"
 #include "delio/picture/png.h"
 #include "eye_dome.h"
 #include "framing.h"
@@ -66,6 +67,14 @@ mrpt::opengl::CCamera cameraOf(const View& view, const Raster& raster, bool orth
 /** The first EGL device that can be used: where there is a GPU that this user may not open, a later
  *  one is the software renderer. */
 std::unique_ptr<CFBORender> openRenderer(unsigned width, unsigned height) {
+    // Mesa and its compiler do not look whether they got memory, and end the program where they did
+    // not: what they take at most is asked for first.
+    constexpr std::size_t kTaken = std::size_t{96} << 20;
+    try {
+        largeMemory(kTaken);
+    } catch (const std::bad_alloc& e) {
+        throw Error("cannot render: " + plainMessage(e));
+    }
     constexpr int kDevicesTried = 8;
     for (int device = 0; device < kDevicesTried; ++device) {
         CFBORender::Parameters parameters(width, height);
