@@ -14,7 +14,6 @@ class Real {
     Real(double value) : value_(value) {}
     explicit operator double() const { return value_; }
 
-    friend Real operator-(Real a) { return -a.value_; }
     friend Real operator+(Real a, Real b) { return a.value_ + b.value_; }
     friend Real operator-(Real a, Real b) { return a.value_ - b.value_; }
     friend Real operator*(Real a, Real b) { return a.value_ * b.value_; }
@@ -26,9 +25,6 @@ class Real {
     friend bool operator<(Real a, Real b) { return a.value_ < b.value_; }
     friend bool operator>(Real a, Real b) { return a.value_ > b.value_; }
     friend bool operator<=(Real a, Real b) { return a.value_ <= b.value_; }
-    friend bool operator>=(Real a, Real b) { return a.value_ >= b.value_; }
-    friend bool operator==(Real a, Real b) { return a.value_ == b.value_; }
-    friend bool operator!=(Real a, Real b) { return a.value_ != b.value_; }
 
     friend Real abs(Real a) { return std::abs(a.value_); }
     friend Real sqrt(Real a) { return std::sqrt(a.value_); }
