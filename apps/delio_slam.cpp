@@ -19,6 +19,7 @@
 #include "delio/picture/illustrate.h"
 #include "delio/run/keeper.h"
 #include "delio/run/run_folder.h"
+#include "heap.h"
 #include "initial_pose.h"
 #include "live_view.h"
 #include "output_folder.h"
@@ -254,11 +255,7 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    // What maps had goes back to the system when they are dropped, whichever thread made them; what
-    // a scan had is there for the next one: to ask for it anew takes a tenth of the time.
-    mallopt(M_MMAP_THRESHOLD, 8 << 20);
-    mallopt(M_TRIM_THRESHOLD, 64 << 20);
-    mallopt(M_TOP_PAD, 16 << 20);
+    prepareHeap();
     const bool runs = std::none_of(
         argv, argv + argc, [](const char* word) { return std::string(word) == "--print-config"; });
     SlamCommandLine line(runs);

@@ -70,6 +70,7 @@ std::string readPart(std::istream& in, const Label& label);
 class Bytes : public std::streambuf {
  public:
     const std::string& text() const { return text_; }
+    std::string take() { return std::move(text_); }
 
  private:
     std::streamsize xsputn(const char* from, std::streamsize count) override {

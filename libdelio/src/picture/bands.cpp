@@ -6,16 +6,18 @@ namespace delio::picture {
 namespace {
 unsigned even(unsigned rows) { return rows / 2 * 2; }
 
-/** So many that the memory is small beside the rest, but no more: each draws the whole scene. */
-unsigned rowsOfBand(unsigned width, unsigned height, unsigned margin) {
-    constexpr unsigned kMostBands = 32, kSmall = 1 << 18;  // pixels
-    const unsigned wanted = std::max(height / kMostBands, kSmall / width);
+/** So few that the memory is small beside the rest. */
+unsigned rowsOfBand(unsigned width, unsigned height, unsigned margin, std::size_t scenePoints) {
+    constexpr std::size_t kSmall = 1 << 18, kMost = std::size_t{1} << 31;  // pixels
+    constexpr unsigned kMostBands = 32;
+    const auto pixels = static_cast<unsigned>(std::clamp(scenePoints, kSmall, kMost));
+    const unsigned wanted = std::max(height / kMostBands, std::min(height, pixels / width));
     return std::min(height, even(wanted) + 2 + 2 * margin);
 }
 }  // namespace
 
-Bands::Bands(unsigned width, unsigned height, unsigned margin)
-    : rows(rowsOfBand(width, height, margin)) {
+Bands::Bands(unsigned width, unsigned height, unsigned margin, std::size_t scenePoints)
+    : rows(rowsOfBand(width, height, margin, scenePoints)) {
     for (unsigned begin = 0; begin < height; begin = all.back().end) {
         const unsigned first = std::min(begin - std::min(begin, margin), height - rows);
         const bool isLast = first + rows == height;

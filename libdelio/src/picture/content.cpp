@@ -27,10 +27,11 @@ void add(const mrpt::math::TPoint3D& point, const Isometry3d& pose, std::vector<
 }
 
 template <typename Cloud>
-void sample(const Cloud& cloud, const Isometry3d& pose, std::vector<Vector3d>& to) {
+void sample(const Cloud& cloud, const Isometry3d& pose, Content& content) {
+    content.cloudSize += cloud.size();
     const std::size_t step = cloud.size() / kMaxSamples + 1;
     for (std::size_t i = 0; i < cloud.size(); i += step)
-        add(mrpt::math::TPoint3D(cloud.getPoint3Df(i)), pose, to);
+        add(mrpt::math::TPoint3D(cloud.getPoint3Df(i)), pose, content.points);
 }
 
 void sampleLines(const mrpt::opengl::CSetOfLines& lines, const Isometry3d& pose,
@@ -59,9 +60,9 @@ void collect(const CRenderizable::Ptr& object, const Isometry3d& parent, Content
         for (const auto& child : *set) collect(child, pose, content);
     } else if (const auto coloured =
                    std::dynamic_pointer_cast<mrpt::opengl::CPointCloudColoured>(object)) {
-        sample(*coloured, pose, content.points);
+        sample(*coloured, pose, content);
     } else if (const auto plain = std::dynamic_pointer_cast<mrpt::opengl::CPointCloud>(object)) {
-        sample(*plain, pose, content.points);
+        sample(*plain, pose, content);
     } else if (const auto lines = std::dynamic_pointer_cast<mrpt::opengl::CSetOfLines>(object)) {
         sampleLines(*lines, pose, content.lines);
     } else if (std::dynamic_pointer_cast<mrpt::opengl::CGridPlaneXY>(object)) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 namespace mrpt::opengl {
@@ -12,6 +13,7 @@ struct Content {
     std::vector<Eigen::Vector3d> points;  //!< a few of which may be strays
     std::vector<Eigen::Vector3d> lines;   //!< ends of lines: none is left out
     std::vector<Eigen::Vector3d> grids;   //!< corners: shown where they fall into the picture
+    std::size_t cloudSize = 0;            //!< of all clouds of points, sampled or not
     bool empty() const { return points.empty() && lines.empty(); }
 };
 

@@ -112,13 +112,14 @@ void copyRows(const CImage& band, unsigned first, CImage& picture) {
 /** Draws a scene as it is prepared, band after band. */
 class Painter {
  public:
-    Painter(COpenGLScene& scene, const SnapshotOptions& options, const Raster& raster)
+    Painter(COpenGLScene& scene, std::size_t scenePoints, const SnapshotOptions& options,
+            const Raster& raster)
         : scene_(scene),
           options_(options),
           raster_(raster),
           shading_(eyeDomeOf(options, raster.scale)),
           isShaded_(options.shading > 0 && scene.getByName(kMapName) != nullptr),
-          bands_(raster.padded, raster.height, isShaded_ ? reachOf(shading_) : 0),
+          bands_(raster.padded, raster.height, isShaded_ ? reachOf(shading_) : 0, scenePoints),
           renderer_(openRenderer(raster.padded, bands_.rows)) {}
 
     CImage paint(const View& view) {
@@ -158,7 +159,7 @@ void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned picture
     if (content.empty()) throw Error("the scene is empty, so there is nothing to show");
 
     const Raster raster(options);
-    Painter painter(scene, options, raster);
+    Painter painter(scene, content.cloudSize, options, raster);
     const auto views = viewsOf(content, options, pictures);
     PreparedScene prepared(scene, options, static_cast<float>(raster.scale), views[0]);
     for (unsigned i = 0; i < pictures; ++i) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
-#include <sstream>
+#include <ostream>
 
 #include "core/checkpoint.h"
 #include "delio/core/error.h"
@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 namespace {
 constexpr std::chrono::seconds kInterval{1};
 
-void replaceState(const std::string& path, const std::string& state) {
+/** By value: what was written is dropped at once. */
+void replaceState(const std::string& path, std::string state) {
     io::replaceFile(path, [&](const std::string& temporary) {
         std::ofstream out(temporary, std::ios::binary);
         out.write(state.data(), static_cast<std::streamsize>(state.size()));
@@ -75,12 +76,13 @@ void Keeper::addRows(const Run& run) {
 void Keeper::writeState(const Run& run) {
     if (writing_.valid()) writing_.get();
     const auto begin = Clock::now();
-    std::ostringstream state;
+    checkpoint::Bytes bytes;
+    std::ostream state(&bytes);
     checkpoint::writePart(state, {"drive", drive_}, "");
     run.save(state);
     constexpr int kShare = 20;
     keepAt_ = begin + std::max<Clock::duration>(kInterval, kShare * (Clock::now() - begin));
-    writing_ = std::async(std::launch::async, replaceState, state_.string(), state.str());
+    writing_ = std::async(std::launch::async, replaceState, state_.string(), bytes.take());
 }
 
 template <typename Work>
