@@ -28,15 +28,19 @@ bool DynamicObjects::isFree(const Object& object, const View& seen, const View& 
     // A part of the points of something large tells as much.
     constexpr Eigen::Index kEnough = 64;
     const Eigen::Index stride = std::max<Eigen::Index>(1, object.points.cols() / kEnough);
-    int free = 0, taken = 0, asked = 0;
-    for (Eigen::Index i = 0; i < object.points.cols(); i += stride, ++asked) {
+    const Eigen::Index asked = (object.points.cols() + stride - 1) / stride;
+    Eigen::Index free = 0, taken = 0;
+    for (Eigen::Index i = 0, left = asked - 1; i < object.points.cols(); i += stride, --left) {
         const scan::Place place = by.image.at(toSensor * Eigen::Vector3f(object.points.col(i)),
                                               static_cast<float>(options_.margin));
         free += place == scan::Place::kFree;
         taken += place == scan::Place::kTaken;
+        // Mostly few points tell that all those that are left cannot make it free.
+        const auto most = static_cast<double>(free + left), known = most + double(taken);
+        if (most == 0 || most < options_.min_share * known || known < minKnown * double(asked))
+            return false;
     }
-    const double known = free + taken;
-    return free > 0 && free >= options_.min_share * known && known >= minKnown * asked;
+    return asked > 0;
 }
 
 bool DynamicObjects::came(const Object& object) const {
