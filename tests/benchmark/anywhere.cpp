@@ -99,9 +99,10 @@ Row measure(const Cell& cell, const Settings& settings) {
     if (!settings.drivesOnly) {
         row.run =
             test::runOn(drive, settings.work / cell.name() / settings.profile, settings.profile);
-        std::printf(" %9.3f %9.3f %9zu %5zu %-6s %6.0f", row.run.endError_percent, row.peer_percent,
-                    row.run.predicted, row.run.weak, row.run.warned ? "yes" : "no",
-                    row.run.ms_per_scan);
+        std::printf(" %9.3f", row.run.endError_percent);
+        if (!settings.peer.empty()) std::printf(" %9.3f", row.peer_percent);
+        std::printf(" %9zu %5zu %-6s %6.0f", row.run.predicted, row.run.weak,
+                    row.run.warned ? "yes" : "no", row.run.ms_per_scan);
     }
     std::printf("\n");
     std::fflush(stdout);
@@ -109,7 +110,7 @@ Row measure(const Cell& cell, const Settings& settings) {
 }
 
 /** Gives how many cells were lost without a word. */
-std::size_t summarise(const std::vector<Row>& rows) {
+std::size_t summarise(const std::vector<Row>& rows, bool hasPeer) {
     std::size_t good = 0, better = 0, both = 0, silent = 0;
     for (const auto& row : rows) {
         const bool isGood = row.run.endError_percent < 1;
@@ -126,8 +127,10 @@ std::size_t summarise(const std::vector<Row>& rows) {
     std::printf("\n");
     say("cells", rows.size());
     say("below 1 %", good);
-    say("below the peer", better);
-    say("both", both);
+    if (hasPeer) {
+        say("below the peer", better);
+        say("both", both);
+    }
     say("above 5 % without a warning", silent);
     return silent;
 }
@@ -155,12 +158,12 @@ int main(int argc, char** argv) try {
     const Settings settings{work.getValue(), peer.getValue(), profile.getValue(), scans.getValue(),
                             drivesOnly.getValue()};
     const auto cells = chosen(test::cellsOf(seedsIn(seeds.getValue())), only.getValue());
-    std::printf("%-7s %-8s %-7s %-8s %5s %8s %9s %9s %9s %5s %-6s %6s\n", "sensor", "scene",
-                "start", "mount", "seed", "path m", "DeLiO %", "peer %", "predicted", "weak",
-                "warned", "ms");
+    std::printf("%-7s %-8s %-7s %-8s %5s %8s %9s%s %9s %5s %-6s %6s\n", "sensor", "scene", "start",
+                "mount", "seed", "path m", "DeLiO %", settings.peer.empty() ? "" : "    peer %",
+                "predicted", "weak", "warned", "ms");
     std::vector<Row> rows;
     for (const auto& cell : cells) rows.push_back(measure(cell, settings));
-    return !settings.drivesOnly && summarise(rows) > 0 ? 1 : 0;
+    return !settings.drivesOnly && summarise(rows, !settings.peer.empty()) > 0 ? 1 : 0;
 } catch (const std::exception& e) {
     std::cerr << plainMessage(e) << "\n";
     return 1;

@@ -92,6 +92,8 @@ Poses drifted(const Poses& truth, const Settings& settings, double stretch, doub
 
 /** With the drift that is asked for, in segments. */
 Poses drifted(const Poses& truth, const Settings& settings) {
+    if (evaluation::pathLength_m(truth) <= 100)
+        throw Error("drift is measured in segments of 100 m and more, and this drive is shorter");
     double yaw = settings.planar, pitch = settings.up;
     Poses poses;
     for (int i = 0; i < 5; ++i) {

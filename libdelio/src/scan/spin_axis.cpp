@@ -5,12 +5,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "../core/kd_tree.h"
+#include "delio/scan/voxel_grid.h"
 
 namespace delio::scan {
 namespace {
+/** Of many rays those in some cells of directions, anywhere: what was next to each other is, and
+ *  few of them say what all do. */
+Eigen::Matrix3Xf partOf(const Eigen::Matrix3Xf& rays) {
+    constexpr Eigen::Index kEnough = 16000;
+    constexpr double kCell = 0.1;  // rad, about
+    if (rays.cols() <= kEnough) return rays;
+    constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;  // spreads neighbours
+    const double share = static_cast<double>(kEnough) / static_cast<double>(rays.cols());
+    const auto most = static_cast<std::uint64_t>(std::ldexp(share, 64));
+    Eigen::Matrix3Xf part(3, rays.cols());
+    Eigen::Index kept = 0;
+    for (Eigen::Index i = 0; i < rays.cols(); ++i)
+        if (voxelKey(rays.col(i).cast<double>(), kCell) * kGolden < most)
+            part.col(kept++) = rays.col(i);
+    return part.leftCols(kept);
+}
+
 /** Directions from rays to the two next to them, which are enough to tell: unit vectors. */
 std::vector<Eigen::Vector3d> stepsToNeighbours(const Eigen::Matrix3Xf& rays) {
     constexpr Eigen::Index kAsked = 3000;
@@ -36,7 +55,7 @@ std::vector<Eigen::Vector3d> stepsToNeighbours(const Eigen::Matrix3Xf& rays) {
 std::optional<Eigen::Vector3d> spinAxisOf(const Eigen::Matrix3Xf& points) {
     constexpr std::size_t kLeast = 300;
     constexpr double kFirst = 0.5, kLast = 0.02, kAcross = 0.05, kShare = 0.7;
-    const auto steps = stepsToNeighbours(points.colwise().normalized());
+    const auto steps = stepsToNeighbours(partOf(points.colwise().normalized()));
     if (steps.size() < kLeast) return {};
     Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // at first all steps count alike
     for (double width = kFirst;; width /= 2) {
