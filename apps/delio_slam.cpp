@@ -148,7 +148,7 @@ std::string finish(const std::string& input, const std::string& folder, run::Run
                  "' could be used: " + record.rows.front().report.step.reason);
     run.finish(record.fault.empty() && !cli::interrupted());
     malloc_trim(0);  // pictures take a lot
-    const std::string fault = run::RunFolder(folder).write(
+    std::string fault = run::RunFolder(folder).write(
         record, anyUsed ? run.maps() : run::RunMaps{}, picture::illustrate);
     printTable(record, folder, std::cout);
     return fault;

@@ -4,8 +4,9 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <cstdint>
+#include <cstddef>
 #include <cstdlib>
+#include <memory>
 
 namespace delio {
 namespace {
@@ -13,14 +14,15 @@ constexpr int kHeap = 192 << 20;  // of which memory is taken as it is written t
 
 /** Lets the heap's end grow, in large pages. */
 void growInLargePages() {
-    constexpr std::uintptr_t kPage = 2 << 20;
-    const auto end = [] { return reinterpret_cast<std::uintptr_t>(sbrk(0)); };
-    const std::uintptr_t before = end();
+    constexpr std::size_t kPage = 2 << 20;
+    const auto end = [] { return static_cast<char*>(sbrk(0)); };
+    char* const before = end();
     void* volatile any = std::malloc(kPage);  // volatile: is not left out
     std::free(any);
-    const std::uintptr_t from = (before + kPage - 1) / kPage * kPage, to = end() / kPage * kPage;
+    void* from = before;
+    auto room = static_cast<std::size_t>(end() - before);
     // Where the system does not know of such pages it says so, and all else is the same.
-    if (to > from) madvise(reinterpret_cast<void*>(from), to - from, MADV_HUGEPAGE);
+    if (std::align(kPage, kPage, from, room)) madvise(from, room, MADV_HUGEPAGE);
 }
 }  // namespace
 
