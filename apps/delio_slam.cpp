@@ -148,8 +148,8 @@ std::string finish(const std::string& input, const std::string& folder, run::Run
                  "' could be used: " + record.rows.front().report.step.reason);
     run.finish(record.fault.empty() && !cli::interrupted());
     malloc_trim(0);  // pictures take a lot
-    std::string fault = run::RunFolder(folder).write(
-        record, anyUsed ? run.maps() : run::RunMaps{}, picture::illustrate);
+    std::string fault = run::RunFolder(folder).write(record, anyUsed ? run.maps() : run::RunMaps{},
+                                                     picture::illustrate);
     printTable(record, folder, std::cout);
     return fault;
 }

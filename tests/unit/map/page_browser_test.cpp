@@ -93,26 +93,18 @@ class PageInBrowser : public testing::Test {
     Shot open(const std::string& state, const std::string& size = "1280,800",
               const std::string& more = "--enable-unsafe-swiftshader") const {
         const std::string picture = folder_ / "shot.png";
-        const std::vector<std::string> arguments = {
-            "60",
-            "chromium",
-            "--headless=new",
-            "--no-sandbox",
-            "--use-gl=angle",
-            "--use-angle=swiftshader",
-            more,
-            "--window-size=" + size,
-            "--hide-scrollbars",
-            "--user-data-dir=" + std::string(folder_ / "chromium"),
-            "--enable-logging=stderr",
-            "--virtual-time-budget=3000",
-            "--dump-dom",
-            "--screenshot=" + picture,
-            "file://" + std::string(folder_ / "map.html") + "#" + state};
-        auto run = test::runTool("timeout", arguments);
-        // Chromium itself hangs once in a while.
+        const auto browse = [&] {
+            return test::runTool(
+                "timeout",
+                {"60", "chromium", "--headless=new", "--no-sandbox", "--use-gl=angle",
+                 "--use-angle=swiftshader", more, "--window-size=" + size, "--hide-scrollbars",
+                 "--user-data-dir=" + std::string(folder_ / "chromium"), "--enable-logging=stderr",
+                 "--virtual-time-budget=3000", "--dump-dom", "--screenshot=" + picture,
+                 "file://" + std::string(folder_ / "map.html") + "#" + state});
+        };
         constexpr int kTimeout = 124;
-        if (run.exitCode == kTimeout) run = test::runTool("timeout", arguments);
+        auto run = browse();
+        if (run.exitCode == kTimeout) run = browse();  // Chromium itself hangs once in a while
         EXPECT_EQ(run.exitCode, 0) << run.err;
         EXPECT_EQ(run.err.find("CONSOLE"), std::string::npos) << run.err;
         Shot shot;
