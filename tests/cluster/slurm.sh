@@ -59,23 +59,22 @@ CONF
         --pid-file="$cluster/munge/pid" --log-file="$cluster/munge/log" --seed-file="$cluster/munge/seed" \
         >"$cluster/munge/said" 2>&1 &
     munge_pid=$!
-    wait_until 10 "munged" test -S "$cluster/munge/socket"
+    wait_until 60 "munged" test -S "$cluster/munge/socket"
     slurmctld -D -c >"$cluster/ctld.said" 2>&1 &
     ctld_pid=$!
     node_up n1
     node_up n2
-    wait_until 30 "two nodes" both_idle
+    wait_until 60 "two nodes" both_idle
 }
 
 both_idle() { [ "$(sinfo -h -N -o '%N %t' 2>/dev/null | grep -c ' idle$')" = 2 ]; }
 
 # wait_until SECONDS WHAT COMMAND...
 wait_until() {
-    left=$(($1 * 10)) what=$2
+    until=$(($(date +%s) + $1)) what=$2
     shift 2
     until "$@"; do
-        left=$((left - 1))
-        if [ $left -le 0 ]; then
+        if [ "$(date +%s)" -gt "$until" ]; then
             echo "$what: not there in time" >&2
             return 1
         fi
@@ -99,8 +98,9 @@ node_down() {
 
 # Processes that slurmd NODE has started: slurmstepd detaches itself, its log tells whose it is.
 steps_of() {
-    for step in /proc/[0-9]*; do
-        [ "$(cat "$step/comm" 2>/dev/null)" = slurmstepd ] || continue
+    # shellcheck disable=SC2013 # words are wanted
+    for comm in $(grep -lx slurmstepd /proc/[0-9]*/comm 2>/dev/null); do
+        step=${comm%/comm}
         for file in "$step"/fd/*; do
             [ "$(readlink "$file" 2>/dev/null)" != "$cluster/$1.log" ] || echo "${step#/proc/}"
         done
