@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../paper/line_matches.h"
 #include "delio/core/geometry.h"
 #include "delio/core/motion.h"
 #include "delio/core/stopwatch.h"
@@ -34,7 +35,7 @@ void note(const PaperRegistration& found, Step& step) {
 }
 
 /** Rotation and translation again, now that it is known which normals were found at one place. */
-void refineInPlace(const PaperFeatures& from, const PaperFeatures& to,
+void refineInPlace(const PaperFeatures& from, const PaperFeatures& to, paper::LineMatcher& matcher,
                    const PaperOdometryOptions& options, PaperRegistration& found) {
     for (unsigned round = 0; round < options.inPlace.rounds; ++round) {
         if (!found.rotation.valid || !found.translation.valid) return;
@@ -44,9 +45,8 @@ void refineInPlace(const PaperFeatures& from, const PaperFeatures& to,
                                           options.inPlace);
         });
         found.translation = timed(found.translation_ms, [&] {
-            return paper::registerLines(from.lines,
-                                        paper::rotated(to.lines, found.rotation.rotation), t,
-                                        options.lineRegistration);
+            return paper::registerLines(matcher, paper::rotated(to.lines, found.rotation.rotation),
+                                        t, options.lineRegistration);
         });
     }
 }
@@ -58,15 +58,14 @@ PaperRegistration byPatternAndLines(const PaperFeatures& from, const PaperFeatur
     result.rotation = timed(result.rotation_ms, [&] {
         return paper::registerPatterns(from.pattern, to.pattern, guess.linear(), options.pattern);
     });
+    std::optional<paper::LineMatcher> matcher;
     result.translation = timed(result.translation_ms, [&] {
         const auto unrotated = paper::rotated(to.lines, result.rotation.rotation);
-        const Eigen::Vector3d t = guess.translation();
-        return search_m > 0
-                   ? paper::searchTranslation(from.lines, unrotated, t, search_m,
-                                              options.lineRegistration)
-                   : paper::registerLines(from.lines, unrotated, t, options.lineRegistration);
+        matcher.emplace(from.lines);
+        return paper::searchTranslation(*matcher, unrotated, guess.translation(), search_m,
+                                        options.lineRegistration);
     });
-    refineInPlace(from, to, options, result);
+    refineInPlace(from, to, *matcher, options, result);
     if (!result.rotation.valid)
         result.predictedReason = result.rotation.tooFar ? "no rotation found" : "too few normals";
     if (!result.translation.valid)

@@ -12,11 +12,11 @@ CoupledEstimate registerCoupled(const LineCloud& from, const LineCloud& to,
                                 const LineRegistrationOptions& options) {
     CoupledEstimate estimate;
     estimate.pose = predicted;
-    const KdTree tree(from.midpoints);
+    LineMatcher matcher(from);
     while (estimate.iterations < options.max_iterations) {
         const LineCloud turned = rotated(to, estimate.pose.linear());
         const Eigen::Vector3d t = estimate.pose.translation();
-        const auto matches = nearestMidpoints(tree, turned, t, options.max_distance);
+        const auto matches = matcher.matches(turned, t, options.max_distance);
         const double mean = meanDistance(matches);
         std::vector<Eigen::Vector3d> sources, targets;
         for (std::size_t i = 0; i < matches.size(); ++i) {

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "../core/kd_tree.h"
+#include "delio/core/estimates.h"
 #include "delio/paper/line_cloud.h"
+#include "delio/paper/line_registration.h"
 
 namespace delio::paper {
 /** Line of `from` that a line of `to` is paired with. */
@@ -13,10 +15,41 @@ struct Match {
     float distance = -1;  //!< of the midpoints; negative: none
 };
 
-/** For each line of `to` moved by `t`, the line with the nearest midpoint within `farthest`
- *  (metres); `tree` holds the midpoints of `from`. */
-std::vector<Match> nearestMidpoints(const KdTree& tree, const LineCloud& to,
-                                    const Eigen::Vector3d& t, double farthest);
+/** Finds the lines of one cloud whose midpoints are nearest to those of others. The tree is asked
+ *  again only for a line that has moved so far since that another midpoint may be nearer. */
+class LineMatcher {
+ public:
+    /** `from` has to outlive it. */
+    explicit LineMatcher(const LineCloud& from);
+
+    /** For each line of `to` moved by `t`, the line of `from` with the nearest midpoint within
+     *  `farthest` (metres). */
+    std::vector<Match> matches(const LineCloud& to, const Eigen::Vector3d& t, double farthest);
+
+    const LineCloud& from() const { return from_; }  //!< that it finds lines of
+
+ private:
+    /** What was found for a line of `to` where it was then. */
+    struct Found {
+        Eigen::Vector3f at = Eigen::Vector3f::Zero();
+        std::uint32_t from = 0;
+        float reach = -1;  //!< it stays the nearest of what moves less than this; metres
+    };
+    Found find(const Eigen::Vector3f& at) const;
+
+    const LineCloud& from_;
+    KdTree tree_;
+    std::vector<Found> found_;  //!< of each line of the last `to`
+};
+
+/** registerLines() and searchTranslation() with what `matcher` of `from` knows already. */
+TranslationEstimate registerLines(LineMatcher& matcher, const LineCloud& to,
+                                  const Eigen::Vector3d& predicted,
+                                  const LineRegistrationOptions& options);
+/** See registerLines(). */
+TranslationEstimate searchTranslation(LineMatcher& matcher, const LineCloud& to,
+                                      const Eigen::Vector3d& centre, double radius,
+                                      const LineRegistrationOptions& options);
 
 /** Mean of the matches' distances: pairs farther apart are dropped (section IV-B). */
 double meanDistance(const std::vector<Match>& matches);

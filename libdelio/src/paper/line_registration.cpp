@@ -122,10 +122,11 @@ double overlapOf(const std::vector<Match>& matches, double distance) {
 /** Mean distance between each line and the one with the nearest midpoint, metres; a line without
  *  one near it counts as `kFar`. All lines count: registration itself looks only at the better
  *  half, which wherever it ends consists of lines that fit. */
-double meanLineDistance(const LineCloud& from, const KdTree& tree, const LineCloud& to,
-                        const Eigen::Vector3d& t, const LineRegistrationOptions& options) {
+double meanLineDistance(LineMatcher& matcher, const LineCloud& to, const Eigen::Vector3d& t,
+                        const LineRegistrationOptions& options) {
     constexpr double kFar = 0.3;
-    const auto matches = nearestMidpoints(tree, to, t, options.max_distance);
+    const LineCloud& from = matcher.from();
+    const auto matches = matcher.matches(to, t, options.max_distance);
     double sum = 0, weights = 0;
     for (std::size_t i = 0; i < matches.size(); ++i) {
         const auto s = static_cast<Eigen::Index>(i), f = static_cast<Eigen::Index>(matches[i].from);
@@ -210,14 +211,20 @@ ClosestPoints closestPoints(const Eigen::Vector3d& Ps, const Eigen::Vector3d& us
 TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
                                   const Eigen::Vector3d& predicted,
                                   const LineRegistrationOptions& options) {
+    LineMatcher matcher(from);
+    return registerLines(matcher, to, predicted, options);
+}
+
+TranslationEstimate registerLines(LineMatcher& matcher, const LineCloud& to,
+                                  const Eigen::Vector3d& predicted,
+                                  const LineRegistrationOptions& options) {
     TranslationEstimate estimate;
     estimate.translation = predicted;
-    const KdTree tree(from.midpoints);
     Sums sums;
     std::vector<Match> matches;
     while (estimate.iterations < options.max_iterations) {
-        matches = nearestMidpoints(tree, to, estimate.translation, options.max_distance);
-        sums = sumPairs(from, to, estimate.translation, matches, options);
+        matches = matcher.matches(to, estimate.translation, options.max_distance);
+        sums = sumPairs(matcher.from(), to, estimate.translation, matches, options);
         if (sums.pairs < options.min_matches) break;
         ++estimate.iterations;
         const Eigen::Vector3d step = options.centroids
@@ -244,27 +251,32 @@ TranslationEstimate registerLines(const LineCloud& from, const LineCloud& to,
 TranslationEstimate searchTranslation(const LineCloud& from, const LineCloud& to,
                                       const Eigen::Vector3d& centre, double radius,
                                       const LineRegistrationOptions& options) {
+    LineMatcher matcher(from);
+    return searchTranslation(matcher, to, centre, radius, options);
+}
+
+TranslationEstimate searchTranslation(LineMatcher& matcher, const LineCloud& to,
+                                      const Eigen::Vector3d& centre, double radius,
+                                      const LineRegistrationOptions& options) {
     const int steps = static_cast<int>(radius / options.search_step);
-    if (steps == 0) return registerLines(from, to, centre, options);
+    if (steps == 0) return registerLines(matcher, to, centre, options);
     LineRegistrationOptions coarse = options;
     coarse.max_iterations = std::min(options.max_iterations, 10U);
     coarse.min_matches = (options.min_matches + kCoarseStep - 1) / kCoarseStep;
     const LineCloud some = everyNth(to, kCoarseStep);
-    const KdTree tree(from.midpoints);
     Eigen::Vector3d best = centre;
     double bestDistance = std::numeric_limits<double>::infinity();
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y) {
             const Eigen::Vector3d offset(x * options.search_step, y * options.search_step, 0);
             if (offset.norm() > radius) continue;
-            const auto estimate = registerLines(from, some, centre + offset, coarse);
+            const auto estimate = registerLines(matcher, some, centre + offset, coarse);
             if (!estimate.valid) continue;
-            const double distance =
-                meanLineDistance(from, tree, some, estimate.translation, options);
+            const double distance = meanLineDistance(matcher, some, estimate.translation, options);
             if (distance >= bestDistance) continue;
             best = estimate.translation;
             bestDistance = distance;
         }
-    return registerLines(from, to, best, options);
+    return registerLines(matcher, to, best, options);
 }
 }  // namespace delio::paper

@@ -38,8 +38,9 @@ Pairing pairAll(Eigen::Index count, const PairOne& pairOne) {
     std::vector<Pairing> blocks(static_cast<std::size_t>((count + kBlock - 1) / kBlock));
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
         const Eigen::Index begin = static_cast<Eigen::Index>(b) * kBlock;
+        std::vector<std::pair<std::uint32_t, float>> partners;
         for (Eigen::Index i = begin; i < std::min(count, begin + kBlock); ++i)
-            pairOne(i, blocks[b]);
+            pairOne(i, partners, blocks[b]);
     });
     Pairing total;
     for (const auto& block : blocks) {
@@ -54,7 +55,7 @@ Pairing pairAll(Eigen::Index count, const PairOne& pairOne) {
 
 Pairing pairNearest(const Pattern& from, const KdTree& tree, const Pattern& to,
                     const Eigen::Matrix3d& R) {
-    return pairAll(to.directions.cols(), [&](Eigen::Index i, Pairing& sum) {
+    return pairAll(to.directions.cols(), [&](Eigen::Index i, auto& /*partners*/, Pairing& sum) {
         const Eigen::Vector3f turned = R.cast<float>() * to.directions.col(i);
         std::uint32_t index = 0;
         float squared = 0;
@@ -74,9 +75,8 @@ Pairing pairDensities(const Pattern& from, const KdTree& tree, const Pattern& to
                       const Eigen::Matrix3d& R, double sigma_rad) {
     const auto reach = static_cast<float>(2.5 * 2.5 * sigma_rad * sigma_rad);
     const auto scale = static_cast<float>(-0.5 / (sigma_rad * sigma_rad));
-    return pairAll(to.directions.cols(), [&](Eigen::Index i, Pairing& sum) {
+    return pairAll(to.directions.cols(), [&](Eigen::Index i, auto& partners, Pairing& sum) {
         const Eigen::Vector3f turned = R.cast<float>() * to.directions.col(i);
-        std::vector<std::pair<std::uint32_t, float>> partners;
         tree.within(turned, reach, partners);
         if (partners.empty()) return;
         Eigen::Vector3f mean = Eigen::Vector3f::Zero();

@@ -17,30 +17,42 @@ namespace delio::paper {
 namespace {
 constexpr double kDeg = M_PI / 180;
 
-struct Pair {
-    Eigen::Index from, to;
+/** A normal of `from` that lies near one of `to`. */
+struct Partner {
+    Eigen::Index from;
     float weight;
 };
 
-/** Pairs of normals within two standard deviations of each other's place. */
-std::vector<Pair> pairsInPlace(const Pattern& from, const Pattern& to,
-                               const Eigen::Isometry3d& pose, double sigma) {
+/** Of each normal of `to`, those of `from` within two standard deviations of its place. */
+using Partners = std::vector<std::vector<Partner>>;
+
+Partners partnersInPlace(const Pattern& from, const Pattern& to, const Eigen::Isometry3d& pose,
+                         double sigma) {
     const KdTree tree(from.points);
     const auto reach = static_cast<float>(4 * sigma * sigma);
     const auto scale = static_cast<float>(-0.5 / (sigma * sigma));
     const Eigen::Isometry3f moved = pose.cast<float>();
-    std::vector<std::vector<Pair>> found(static_cast<std::size_t>(to.points.cols()));
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
-        const auto i = static_cast<Eigen::Index>(k);
-        std::vector<std::pair<std::uint32_t, float>> partners;
-        tree.within(moved * to.points.col(i), reach, partners);
-        for (const auto& [index, squared] : partners)
-            found[k].push_back(
-                {index, i, from.weights[index] * to.weights[i] * portable::exp(scale * squared)});
-    });
-    std::vector<Pair> pairs;
-    for (const auto& some : found) pairs.insert(pairs.end(), some.begin(), some.end());
-    return pairs;
+    Partners partners(static_cast<std::size_t>(to.points.cols()));
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, partners.size(), 64),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            std::vector<std::pair<std::uint32_t, float>> near;
+            for (std::size_t k = range.begin(); k != range.end(); ++k) {
+                const auto i = static_cast<Eigen::Index>(k);
+                tree.within(moved * to.points.col(i), reach, near);
+                partners[k].reserve(near.size());
+                for (const auto& [index, squared] : near)
+                    partners[k].push_back({index, from.weights[index] * to.weights[i] *
+                                                      portable::exp(scale * squared)});
+            }
+        });
+    return partners;
+}
+
+std::size_t countOf(const Partners& partners) {
+    std::size_t count = 0;
+    for (const auto& some : partners) count += some.size();
+    return count;
 }
 
 struct Moment {
@@ -53,24 +65,30 @@ Moment operator+(const Moment& a, const Moment& b) {
 }
 
 /** Of all pairs, weighted by how well they agree. */
-Moment momentOf(const Pattern& from, const Pattern& to, const std::vector<Pair>& pairs,
+Moment momentOf(const Pattern& from, const Pattern& to, const Partners& partners,
                 const Eigen::Matrix3d& R, double kernel_rad) {
     const auto scale = static_cast<float>(-0.5 / (kernel_rad * kernel_rad));
     const Eigen::Matrix3Xf turned = R.cast<float>() * to.directions;
     // The same bytes for any number of threads: this way of splitting and adding is a fixed one.
     return tbb::parallel_deterministic_reduce(
-        tbb::blocked_range<std::size_t>(0, pairs.size(), 2048), Moment(),
+        tbb::blocked_range<std::size_t>(0, partners.size(), 256), Moment(),
         [&](const tbb::blocked_range<std::size_t>& range, Moment sum) {
             for (std::size_t k = range.begin(); k != range.end(); ++k) {
-                const Pair& pair = pairs[k];
-                const float squared =
-                    (from.directions.col(pair.from) - turned.col(pair.to)).squaredNorm();
-                const auto weight =
-                    static_cast<double>(pair.weight * portable::exp(scale * squared));
-                sum.moment += weight * from.directions.col(pair.from).cast<double>() *
-                              to.directions.col(pair.to).cast<double>().transpose();
-                sum.weight += weight;
-                sum.squaredAngles += weight * static_cast<double>(squared);
+                const auto i = static_cast<Eigen::Index>(k);
+                const Eigen::Vector3f direction = turned.col(i);
+                Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+                float weights = 0, squaredAngles = 0;
+                for (const Partner& partner : partners[k]) {
+                    const Eigen::Vector3f other = from.directions.col(partner.from);
+                    const float squared = (other - direction).squaredNorm();
+                    const float weight = partner.weight * portable::exp(scale * squared);
+                    mean += weight * other;
+                    weights += weight;
+                    squaredAngles += weight * squared;
+                }
+                sum.moment += mean.cast<double>() * to.directions.col(i).cast<double>().transpose();
+                sum.weight += double{weights};
+                sum.squaredAngles += double{squaredAngles};
             }
             return sum;
         },
@@ -118,15 +136,16 @@ RotationEstimate registerInPlace(const Pattern& from, const Pattern& to,
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.linear() = found.rotation;
     pose.translation() = translation;
-    const auto pairs = pairsInPlace(from, to, pose, options.place_sigma);
-    if (pairs.size() < options.min_pairs) return found;
+    const auto partners = partnersInPlace(from, to, pose, options.place_sigma);
+    const std::size_t pairs = countOf(partners);
+    if (pairs < options.min_pairs) return found;
     RotationEstimate estimate = found;
     unsigned iterations = 0;
     for (double kernel_deg = options.kernel_deg;; kernel_deg /= 2) {
         kernel_deg = std::max(kernel_deg, options.last_kernel_deg);
         double step = M_PI;
         while (iterations < options.max_iterations && step > options.converged_deg * kDeg) {
-            const Moment sum = momentOf(from, to, pairs, estimate.rotation, kernel_deg * kDeg);
+            const Moment sum = momentOf(from, to, partners, estimate.rotation, kernel_deg * kDeg);
             if (!(sum.weight > 0)) return found;
             const Eigen::Matrix3d next = rotationOf(sum.moment);
             step = angleOf(estimate.rotation.transpose() * next);
@@ -138,7 +157,7 @@ RotationEstimate registerInPlace(const Pattern& from, const Pattern& to,
         if (kernel_deg <= options.last_kernel_deg) break;
     }
     estimate.iterations += iterations;
-    estimate.matches = pairs.size();
+    estimate.matches = pairs;
     estimate.rotation = keepOpenAxes(found, estimate.rotation);
     return estimate;
 }

@@ -140,8 +140,7 @@ COpenGLScene::Ptr matchScene(const paper::LineCloud& from, const paper::LineClou
     auto scene = emptyScene();
     scene->insert(linesOf(from, Eigen::Vector3d::Zero(), kBlue));
     scene->insert(linesOf(to, t, kRed));
-    const KdTree tree(from.midpoints);
-    const auto matches = paper::nearestMidpoints(tree, to, t, 5);
+    const auto matches = paper::LineMatcher(from).matches(to, t, 5);
     const double mean = paper::meanDistance(matches);
     auto joins = wideLines(kGreen, kWidth_px);
     for (std::size_t i = 0; i < matches.size(); ++i) {
