@@ -79,7 +79,7 @@ test::CellDrive driveOf(const Cell& cell, const Settings& settings) {
     if (fs::exists(scans / last)) return {(folder / "d.rawlog").string()};
     fs::remove_all(folder);
     fs::create_directories(scans);
-    const auto drive = test::makeDrive(cell, settings.scans, folder);
+    auto drive = test::makeDrive(cell, settings.scans, folder);
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(folder / "d_Images"))
         if (entry.path().extension() == ".bin") files.push_back(entry.path());
@@ -162,6 +162,7 @@ int main(int argc, char** argv) try {
                 "mount", "seed", "path m", "DeLiO %", settings.peer.empty() ? "" : "    peer %",
                 "predicted", "weak", "warned", "ms");
     std::vector<Row> rows;
+    rows.reserve(cells.size());
     for (const auto& cell : cells) rows.push_back(measure(cell, settings));
     return !settings.drivesOnly && summarise(rows, !settings.peer.empty()) > 0 ? 1 : 0;
 } catch (const std::exception& e) {

@@ -94,8 +94,7 @@ std::optional<Eigen::Matrix3f> uprightOf(const Eigen::Matrix3Xf& points) {
 
 Eigen::Matrix3f uprightOf(const Eigen::Isometry3d& sensorPose, const Eigen::Matrix3Xf& points) {
     const Eigen::Matrix3f mounted = turnedUp(sensorPose.linear().row(2));
-    if (!mounted.isIdentity()) return mounted;
-    return uprightOf(points).value_or(mounted);
+    return mounted.isIdentity() ? uprightOf(points).value_or(mounted) : mounted;
 }
 
 Eigen::Vector3d upIn(const Eigen::Isometry3d& sensorPose, const Eigen::Matrix3Xf& points) {
