@@ -6,11 +6,11 @@ namespace delio::picture {
 namespace {
 unsigned even(unsigned rows) { return rows / 2 * 2; }
 
-/** So few that the memory is small beside the rest. */
+/** So few that the memory is small beside the rest: a pixel of them for two points of the scene. */
 unsigned rowsOfBand(unsigned width, unsigned height, unsigned margin, std::size_t scenePoints) {
     constexpr std::size_t kSmall = 1 << 18, kMost = std::size_t{1} << 31;  // pixels
     constexpr unsigned kMostBands = 32;
-    const auto pixels = static_cast<unsigned>(std::clamp(scenePoints, kSmall, kMost));
+    const auto pixels = static_cast<unsigned>(std::clamp(scenePoints / 2, kSmall, kMost));
     const unsigned wanted = std::max(height / kMostBands, std::min(height, pixels / width));
     return std::min(height, even(wanted) + 2 + 2 * margin);
 }

@@ -11,7 +11,7 @@ struct Band {
 
 /** A picture that is drawn in bands of the same height, in buffers of one band: OpenGL's and ours
  * take some 25 bytes a pixel, and a picture is drawn at twice its size. Each band draws the whole
- * scene: a scene of many points, which takes as much by itself, is drawn in fewer. */
+ * scene: one of many points, which takes more by itself, is drawn in fewer. */
 struct Bands {
     /** @param margin rows that are drawn on either side of those that are wanted, unless the
      * picture ends there; begin and end are even where margin and height are */

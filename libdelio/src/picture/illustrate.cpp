@@ -16,6 +16,13 @@ CImage sideBySide(const CImage& left, const CImage& right) {
     return sheet;
 }
 
+void drawMap(const run::RunRecord& record, const map::BuiltMap& map, const run::RunFolder& folder) {
+    const auto scene = mapScene(
+        map.points, {record.final.poses, record.truth, map.keyPoses, record.closedLoops()});
+    saveScene(*scene, folder.path(run::RunFolder::kScene));
+    savePicture(*scene, SnapshotOptions(), folder.path(run::RunFolder::kMapPicture));
+}
+
 void drawRemoval(const run::RunRecord& record, const map::BuiltMap& map, const std::string& path) {
     const auto pictureOf = [&](const std::string& caption, bool before) {
         SceneOptions options;
@@ -48,10 +55,7 @@ void illustrate(const run::RunRecord& record, const map::BuiltMap& map,
                 const run::RunFolder& folder) {
     using run::RunFolder;
     if (!map.points.empty()) {
-        const auto scene = mapScene(
-            map.points, {record.final.poses, record.truth, map.keyPoses, record.closedLoops()});
-        saveScene(*scene, folder.path(RunFolder::kScene));
-        savePicture(*scene, SnapshotOptions(), folder.path(RunFolder::kMapPicture));
+        drawMap(record, map, folder);
         if (!map.dynamic.empty()) drawRemoval(record, map, folder.path(RunFolder::kRemovalPicture));
     }
     drawTrajectory(record, folder.path(RunFolder::kTrajectoryPicture));

@@ -1,7 +1,5 @@
 #include "delio/run/run_folder.h"
 
-#include <mrpt/core/format.h>
-
 #include <filesystem>
 #include <fstream>
 #include <ostream>
@@ -20,7 +18,6 @@
 
 namespace delio::run {
 namespace fs = std::filesystem;
-using mrpt::format;
 
 namespace {
 /** The one that marks the whole first. */
@@ -114,6 +111,7 @@ void RunFolder::writeMaps(const RunRecord& record, const RunMaps& maps,
     if (maps.points) {
         map = maps.points->build(record.final.poses);
         map::saveSimplemap(map.simplemap, path(kSimplemap));
+        map.simplemap.clear();  // and what scans say of places: pictures want the memory
         map::savePly(map.points, path(kPly));
         if (maps.keepDynamic) map::savePly(map.dynamic, path(kDynamicPly));
         map::savePage(pageOf(record, map), path(kMapPage));

@@ -34,8 +34,8 @@ TEST(Bands, ALargePictureIsInSeveral) {
 }
 
 TEST(Bands, ASceneOfManyPointsIsDrawnInFewer) {
-    EXPECT_EQ(Bands(3840, 2160, 4, 1000000).all.size(), 9U);
-    EXPECT_EQ(Bands(3840, 2160, 4, 5000000).all.size(), 2U);
+    EXPECT_EQ(Bands(3840, 2160, 4, 1000000).all.size(), 17U);
+    EXPECT_EQ(Bands(3840, 2160, 4, 5000000).all.size(), 4U);
     EXPECT_EQ(Bands(3840, 2160, 4, std::size_t{1} << 40).all.size(), 1U);
 }
 }  // namespace
