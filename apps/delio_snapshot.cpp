@@ -197,6 +197,7 @@ void save(mrpt::opengl::COpenGLScene& scene, const picture::SnapshotOptions& vie
           const std::string& output, const std::vector<std::string>& files) {
     delio::io::PartialFolder partial(delio::io::folderOf(output), output);
     std::vector<std::string> names;
+    names.reserve(files.size());
     for (const auto& file : files) names.push_back(std::filesystem::path(file).filename().string());
     try {
         picture::orbit(scene, view, static_cast<unsigned>(names.size()),

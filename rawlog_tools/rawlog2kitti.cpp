@@ -62,6 +62,7 @@ void refuseItself(Arguments& args, const fs::path& target) {
     auto inputs = cli::filesOfRawlog(args.input.getValue());
     inputs.push_back(args.images.getValue());
     std::vector<std::string> outputs;
+    outputs.reserve(std::size(kNames));
     for (const auto& name : kNames) outputs.push_back((target / name).string());
     cli::refuseOverlap(inputs, outputs);
 }

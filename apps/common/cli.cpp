@@ -117,6 +117,7 @@ int run(TCLAP::CmdLine& cmd, const HelpText& help, int argc, const char* const* 
     cmd.setOutput(&output);
     const auto words = wordsOf(cmd, argc, argv);
     std::vector<const char*> plainWords;
+    plainWords.reserve(words.size());
     for (const auto& word : words) plainWords.push_back(word.c_str());
     if (!cmd.parse(static_cast<int>(plainWords.size()), plainWords.data()))
         return output.hasFailed() ? kExitBadCommandLine : kExitSuccess;

@@ -56,7 +56,7 @@ class DelioEval : public testing::Test {
 
     std::string in(const std::string& name) const { return folder_ / name; }
 
-    CommandResult eval(std::vector<std::string> arguments) const {
+    CommandResult eval(const std::vector<std::string>& arguments) const {
         return runTool("delio-eval", arguments);
     }
     CommandResult tsvOf(const std::string& ref, const std::string& est) const {

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 using test::readText;
 using test::runTool;
 using test::Words;
-using test::operator+;  // NOLINT(misc-unused-using-decls): clang-tidy does not see its uses
+using test::operator+;
 
 bool isPage(const std::string& text) {
     return text.rfind("<!DOCTYPE html>", 0) == 0 && text.find("THREE") != text.npos;

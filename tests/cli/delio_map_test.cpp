@@ -23,7 +23,7 @@ using test::DelioSlam;
 using test::runTool;
 namespace fs = std::filesystem;
 using test::Words;
-using test::operator+;  // NOLINT(misc-unused-using-decls): clang-tidy does not see its uses
+using test::operator+;
 
 /** A street of 40 m by 20 m with a wall beside it, as a map of which everything is known. */
 map::MapPoints street() {

@@ -12,7 +12,6 @@ using test::readText;
 using test::runTool;
 using test::Words;
 using test::writeText;
-using test::operator+;
 namespace fs = std::filesystem;
 
 TEST_F(DelioSlam, OptimisesAGraphAgain) {

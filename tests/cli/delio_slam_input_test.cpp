@@ -14,7 +14,6 @@
 
 namespace {
 using namespace delio;
-using mrpt::containers::yaml;
 using test::csvColumns;
 using test::DelioSlam;
 using test::Floats;
@@ -22,7 +21,6 @@ using test::readText;
 using test::runTool;
 using test::Words;
 using test::writeText;
-using test::operator+;
 namespace fs = std::filesystem;
 
 TEST_F(DelioSlam, RefusesWhatIsNoRawlog) {

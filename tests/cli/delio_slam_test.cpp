@@ -15,7 +15,6 @@
 
 namespace {
 using namespace delio;
-using mrpt::containers::yaml;
 using test::csvColumns;
 using test::DelioSlam;
 using test::linesOf;

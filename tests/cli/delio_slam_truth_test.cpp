@@ -5,7 +5,6 @@
 
 namespace {
 using namespace delio;
-using mrpt::containers::yaml;
 using test::DelioSlam;
 using test::readText;
 using test::Words;

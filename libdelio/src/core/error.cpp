@@ -55,7 +55,7 @@ std::string plainMessage(const std::exception& e) {
         return ofYaml(what.substr(0, what.find('\n')));
     auto from = what.find(mark);
     from = from == std::string::npos ? 0 : what.find_first_not_of(' ', from + mark.size());
-    const std::string message = what.substr(from, what.find('\n', from) - from);
+    std::string message = what.substr(from, what.find('\n', from) - from);
     if (holds(message, "Assert condition failed")) return "it is damaged, or of an unknown kind";
     return message;
 }

@@ -30,6 +30,7 @@ std::size_t dropUnused(io::Trajectory& reference, const io::ScanTable& table) {
         throw Error(
             format("the true poses have %zu rows but scan %zu was used", rows, scans.back()));
     std::vector<Eigen::Isometry3d> used;
+    used.reserve(scans.size());
     for (const std::size_t scan : scans) used.push_back(reference.poses[scan]);
     reference.poses = std::move(used);
     return rows - scans.size();

@@ -112,7 +112,7 @@ fs::path found(const fs::path& name, const std::vector<std::string>& folders) {
 mrpt::maps::CPointsMap::Ptr readCloud(const std::string& file) {
     GzInput in(file);
     ObjectArchive archive(in, FileOf::Scans);
-    const auto cloud = std::dynamic_pointer_cast<mrpt::maps::CPointsMap>(archive.next());
+    auto cloud = std::dynamic_pointer_cast<mrpt::maps::CPointsMap>(archive.next());
     if (!cloud) throw Error("'" + file + "' holds something else than a cloud");
     return cloud;
 }

@@ -139,8 +139,8 @@ class Decoder {
 
     double shareOf(std::size_t k) const {
         // A VLP-16 fires twice within a block.
-        const std::size_t firings = kReturns / perFiring();
-        return (static_cast<double>(k / perFiring()) + layout_.firing.share(k % perFiring())) /
+        const std::size_t firings = kReturns / perFiring(), before = k / perFiring();
+        return (static_cast<double>(before) + layout_.firing.share(k % perFiring())) /
                static_cast<double>(firings);
     }
 

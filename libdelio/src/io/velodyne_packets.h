@@ -15,7 +15,8 @@ struct FiringTimes {
     std::size_t atOnce = 1;  //!< lasers that fire together
 
     double share(std::size_t laser) const {
-        return static_cast<double>(laser / atOnce) * laser_us / cycle_us;
+        const std::size_t before = laser / atOnce;
+        return static_cast<double>(before) * laser_us / cycle_us;
     }
 };
 

@@ -35,6 +35,7 @@ void Outlines::findAlike(const std::pair<std::size_t, std::size_t>& numbers,
     std::int32_t* const to = found.data();
     // Without branches, in numbers as wide as the sizes: vector instructions.
     for (std::size_t i = numbers.first; i < numbers.second; ++i)
-        to[i] = alike(xs[i], x) & alike(ys[i], y) & alike(zs[i], z);
+        to[i] = std::int32_t{alike(xs[i], x)} & std::int32_t{alike(ys[i], y)} &
+                std::int32_t{alike(zs[i], z)};
 }
 }  // namespace delio::movers

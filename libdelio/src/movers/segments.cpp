@@ -15,7 +15,7 @@ class Grid {
           half_(static_cast<int>(std::ceil(radius / cell))),
           width_(2 * half_ + 1) {}
 
-    std::size_t size() const { return static_cast<std::size_t>(width_ * width_); }
+    std::size_t size() const { return cells(width_) * cells(width_); }
     /** The cell's number, or size() outside. */
     std::size_t at(float x, float y) const {
         const int i = static_cast<int>(std::lround(x / cell_)) + half_;
@@ -32,7 +32,8 @@ class Grid {
 
  private:
     bool inside(int i, int j) const { return i >= 0 && j >= 0 && i < width_ && j < width_; }
-    std::size_t number(int i, int j) const { return static_cast<std::size_t>(i * width_ + j); }
+    static std::size_t cells(int count) { return static_cast<std::size_t>(count); }
+    std::size_t number(int i, int j) const { return cells(i) * cells(width_) + cells(j); }
 
     float cell_;
     int half_, width_;

@@ -171,7 +171,7 @@ void PlaneOdometry::insert(const ScanView& view, const Eigen::Isometry3d& pose) 
 /** At pose_, while the next scan is thinned. */
 void PlaneOdometry::insertLater(ScanView& view) {
     reference_ = {view.points, pose_, timeline_.sinceStart_s()};
-    awaited_ = Placed{std::move(view.fine), pose_};
+    awaited_ = PlacedPoints{std::move(view.fine), pose_};
 }
 
 /** Puts into the map what waits for it. */

@@ -58,7 +58,7 @@ Doubts doubtsOf(const RunRows& rows) {
 }
 
 std::string textOf(const Stretches& found, std::size_t scans) {
-    const auto count = std::to_string(scans);
+    auto count = std::to_string(scans);
     if (found.longest == 0) return count;
     return count +
            mrpt::format(", at most %zu in a row (from scan %zu)", found.longest, found.from);

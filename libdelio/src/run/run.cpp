@@ -2,7 +2,6 @@
 
 #include <mrpt/core/format.h>
 
-#include <filesystem>
 #include <limits>
 #include <sstream>
 
@@ -16,7 +15,6 @@
 #include "io/side_file.h"
 
 namespace delio::run {
-namespace fs = std::filesystem;
 
 namespace {
 graph::PoseGraphOptions graphOptions(const Options& options, const RunSettings& settings) {

@@ -7,6 +7,7 @@ namespace delio::run {
 namespace {
 std::vector<std::string> namesOf(const std::vector<Named>& figures) {
     std::vector<std::string> names;
+    names.reserve(figures.size());
     for (const auto& figure : figures) names.push_back(figure.first);
     return names;
 }
@@ -33,6 +34,7 @@ class Cursor {
     bool flag() { return number() != 0; }
     std::vector<Named> figures(const std::vector<std::string>& names) {
         std::vector<Named> result;
+        result.reserve(names.size());
         for (const auto& name : names) result.emplace_back(name, number());
         return result;
     }

@@ -61,7 +61,7 @@ std::vector<double> modesOf(const Histogram& counts, std::size_t reach) {
     for (std::size_t i = 0; i < kBins; ++i) {
         const double high = rises ? density[extreme] : density[i];
         const double low = rises ? density[i] : density[extreme];
-        if (rises ? low > high : low > high) extreme = i;
+        if (low > high) extreme = i;
         if (!above(high, low)) continue;
         if (rises) add(extreme);
         rises = !rises;

@@ -8,6 +8,18 @@
 #include "delio/scan/voxel_grid.h"
 
 namespace delio {
+/** Points that wait to come into the map. */
+struct PlacedPoints {
+    Eigen::Matrix3Xf points;                                 //!< sensor's frame
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(points, pose);
+    }
+};
+
 /** Scan against map, rotation and translation decoupled: first against the points of the scans
  *  before, from the prediction on, then against their planes (ScanToMap). Dynamic objects, found at
  *  the pose by points, are left out of the planes and of the map. Where three scans in a row that
@@ -34,16 +46,6 @@ class PlaneOdometry : public Odometry {
     }
 
  private:
-    /** Points of a scan and its pose. */
-    struct Placed {
-        Eigen::Matrix3Xf points;
-        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(points, pose);
-        }
-    };
     void takeScale(double scale);
     bool isOtherScale();
     void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
@@ -91,6 +93,6 @@ class PlaneOdometry : public Odometry {
     /** The scan that the map began with, while the motion during it is not known. */
     std::optional<scan::PointCloud> skewed_;
     /** The latest scan, where it is not in the map yet: the next one is thinned meanwhile. */
-    std::optional<Placed> awaited_;
+    std::optional<PlacedPoints> awaited_;
 };
 }  // namespace delio

@@ -125,6 +125,7 @@ void writeReportFolder(const std::vector<Comparison>& comparisons,
 
 std::vector<std::string> reportFiles(const std::string& folder) {
     std::vector<std::string> files;
+    files.reserve(std::size(kNames));
     for (const auto& name : kNames) files.push_back((fs::path(folder) / name).string());
     return files;
 }

@@ -89,7 +89,8 @@ void unpackZstd(const Buffer& packed, std::uint64_t size, Buffer& out) {
     unpackBy("zstd", packed, size, out,
              [&](const std::uint8_t* from, std::size_t bytes, std::uint8_t* to, std::size_t room) {
                  ZSTD_inBuffer in{from, bytes, 0};
-                 ZSTD_outBuffer free{to, room, 0};
+                 ZSTD_outBuffer free{nullptr, room, 0};
+                 free.dst = to;
                  const std::size_t code = ZSTD_decompressStream(context.get(), &free, &in);
                  if (ZSTD_isError(code)) damaged("zstd");
                  return Progress{in.pos, free.pos, code == 0};

@@ -43,6 +43,7 @@ std::string restOf(RecordFile& file, std::size_t bytes) {
 
 CloudRecords readLines(RecordFile& file, const std::vector<Column>& columns, std::size_t count) {
     std::vector<std::string> names;
+    names.reserve(columns.size());
     for (const auto& column : columns) names.push_back(column.name);
     CloudRecords records{layoutOfDoubles(names), {}, count, 1};
     const std::size_t width = columns.size();
@@ -85,6 +86,7 @@ PointLayout layoutOf(const std::vector<Column>& columns) {
 
 PointLayout layoutOfDoubles(const std::vector<std::string>& names) {
     std::vector<Column> columns;
+    columns.reserve(names.size());
     for (const auto& name : names) columns.push_back({name, 'F', 8});
     return layoutOf(columns);
 }

@@ -229,7 +229,7 @@ void readRawDrive(const fs::path& folder, KittiDrive& drive) {
 
 fs::path kittiFolderOf(const fs::path& folder) {
     const fs::path whole = wholePath(folder);
-    const fs::path above = whole.parent_path();
+    fs::path above = whole.parent_path();
     if (whole.filename() == "data" && above.filename() == "velodyne_points")
         return above.parent_path();
     if (whole.filename() == "velodyne_points") return above;

@@ -43,7 +43,8 @@ double secondsOf(std::string_view text, double ticks) {
     const auto whole = numberIn<std::uint64_t>(text);
     if (!whole || ticks == 1) return *numberIn<double>(text) / ticks;
     const auto unit = static_cast<std::uint64_t>(ticks);
-    return static_cast<double>(*whole / unit) + static_cast<double>(*whole % unit) / ticks;
+    const std::uint64_t seconds = *whole / unit;
+    return static_cast<double>(seconds) + static_cast<double>(*whole % unit) / ticks;
 }
 
 std::vector<double> readTimesFile(const fs::path& file) {

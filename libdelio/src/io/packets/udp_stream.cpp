@@ -128,10 +128,10 @@ std::optional<UdpStream::View> UdpStream::ipOf(const View& frame) const {
 std::optional<UdpPacket> UdpStream::udpOf(const View& ip) {
     constexpr std::size_t kShortest = 20;
     if (ip.count < kShortest || ip.byte(0) >> 4 != 4 || ip.byte(9) != kUdp) return {};
-    const std::size_t header = 4 * (ip.byte(0) & 0xFU), total = ip.two(2);
+    const std::size_t header = std::size_t{4} * (ip.byte(0) & 0xFU), total = ip.two(2);
     if (header < kShortest || total < header || total > ip.count) return {};
     View udp{ip.bytes + header, total - header};
-    const std::size_t offset = 8 * (ip.two(6) & 0x1FFFU);
+    const std::size_t offset = std::size_t{8} * (ip.two(6) & 0x1FFFU);
     const bool more = ip.two(6) & 0x2000U;
     if (offset > 0 || more) {
         auto whole = fragments_.add({ip.four(12), ip.four(16), ip.two(4), kUdp}, offset, !more,

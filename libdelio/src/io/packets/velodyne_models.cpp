@@ -46,9 +46,9 @@ VelodyneCalibration calibrationOf32C() {
  *  upper half. */
 VelodyneCalibration calibrationOfHiRes() {
     VelodyneCalibration calibration;
-    for (int i = 0; i < 16; ++i)
-        calibration.laser_corrections.push_back(
-            laserAt((i % 2 == 0 ? -10 : 2.0 / 3) + i / 2 * 4.0 / 3, 0));
+    for (int pair = 0; pair < 8; ++pair)
+        for (const double lowest_deg : {-10.0, 2.0 / 3})
+            calibration.laser_corrections.push_back(laserAt(lowest_deg + pair * 4.0 / 3, 0));
     return calibration;
 }
 
