@@ -15,7 +15,6 @@
 #include "io/side_file.h"
 
 namespace delio::run {
-
 namespace {
 graph::PoseGraphOptions graphOptions(const Options& options, const RunSettings& settings) {
     auto graph = options.graph;
