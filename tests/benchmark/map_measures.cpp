@@ -109,7 +109,7 @@ MapPoints mapPoints(const std::vector<SplitScan>& scans, const Poses& rough, dou
     const auto numbers = scan::numberVoxels(there, spacing);
     std::vector<Eigen::Index> kept(static_cast<std::size_t>(numbers.voxels), -1);
     for (Eigen::Index i = 0; i < there.cols(); ++i) {
-        auto& best = kept[static_cast<std::size_t>(numbers.ofPoint[static_cast<std::size_t>(i)])];
+        auto& best = kept[numbers.ofPoint[static_cast<std::size_t>(i)]];
         if (best < 0 ||
             mixed(static_cast<std::uint64_t>(i)) < mixed(static_cast<std::uint64_t>(best)))
             best = i;

@@ -8,7 +8,8 @@ struct PrincipalAxes {
     Eigen::Matrix3d axes;       //!< their eigenvectors
 };
 
-/** Eigen's direct way, with one result on every processor (portable_math.h).
+/** Of the cubic equation one root, by Newton's steps; of what lies across its axis a square root:
+ * no sine or arc of the C library, which has others for each processor.
  *  @param scatter symmetric */
 PrincipalAxes principalAxes(const Eigen::Matrix3d& scatter);
 }  // namespace delio

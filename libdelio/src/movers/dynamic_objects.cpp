@@ -132,16 +132,18 @@ void DynamicObjects::unmask(const Track& track) {
 }
 
 DynamicObjects::Sight DynamicObjects::see(const Eigen::Matrix3Xf& points,
-                                          const Eigen::Matrix3Xf& all) const {
+                                          const Eigen::Matrix3Xf& all,
+                                          const Eigen::Matrix3f& upright) const {
     Sight sight;
+    const Eigen::Matrix3Xf level = upright * points;
     sight.points_ = static_cast<std::size_t>(points.cols());
-    tbb::parallel_invoke([&] { sight.image_ = scan::RangeImage(all, options_.cell_deg); },
-                         [&] { sight.segments_ = segmentsOf(points, segmentOptions_); });
+    tbb::parallel_invoke([&] { sight.image_ = scan::RangeImage(all, options_.cell_deg, upright); },
+                         [&] { sight.segments_ = segmentsOf(level, segmentOptions_); });
     for (const auto& segment : sight.segments_) {
         Object object;
         object.points.resize(3, static_cast<Eigen::Index>(segment.points.size()));
         for (std::size_t i = 0; i < segment.points.size(); ++i)
-            object.points.col(static_cast<Eigen::Index>(i)) = points.col(segment.points[i]);
+            object.points.col(static_cast<Eigen::Index>(i)) = level.col(segment.points[i]);
         object.centre = segment.box.center();
         object.size = segment.box.sizes();
         sight.objects_.push_back(std::move(object));

@@ -96,7 +96,7 @@ void PlaneOdometry::leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
         dynamics_.detect(std::move(sight), pose * turnedBack(upright_), timeline_.sinceStart_s());
     map_.erase(dynamics_.unmasked());
     for (std::size_t i = 0; i < view.dynamic.size(); ++i)
-        view.dynamic[i] = dynamic[static_cast<std::size_t>(voxels.ofPoint[i])];
+        view.dynamic[i] = dynamic[voxels.ofPoint[i]];
     view.fine = unmarked(view.fine, dynamic);
 }
 
@@ -232,8 +232,7 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
         tbb::parallel_invoke([&] { placement = placeScan(map_, view, expected, options_); },
                              [&] {
                                  if (looking)
-                                     sight = dynamics_.see(upright_ * view.fine,
-                                                           upright_ * view.points);
+                                     sight = dynamics_.see(view.fine, view.points, upright_);
                              });
     });
     const PointEstimate& placed = placement.estimate;

@@ -37,7 +37,7 @@ void ScanToMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pos
         (pose.linear() * points.cast<double>()).colwise() + pose.translation();
     tbb::parallel_invoke([&] { planes_.add(placed); }, [&] { points_.add(placed); });
     // Each sweep goes through all that is known: not with every scan.
-    constexpr double kSweep_m = 5;
+    constexpr double kSweep_m = 10;
     if ((pose.translation() - swept_m_).norm() < kSweep_m) return;
     swept_m_ = pose.translation();
     tbb::parallel_invoke([&] { planes_.forgetFarFrom(swept_m_); },

@@ -17,14 +17,18 @@ Matcher::Matcher(const PlaneMap& map, const Eigen::Matrix3Xd& points, double poi
       point_sigma_(point_sigma),
       latest_(static_cast<std::size_t>(points.cols())) {}
 
-/** Those that a block's points are about. What is asked of the map first is asked of it for all of
- *  them before the next: memory is slow, and many places can be waited for at once. */
-void Matcher::findPlanes(std::size_t block, const Eigen::Isometry3d& pose) {
-    const Eigen::Matrix3d R = pose.linear();
-    const Eigen::Vector3d t = pose.translation();
+/** Where a block's points are, and the planes about them. What is asked of the map first is asked
+ * of it for all of them before the next: memory is slow, and many places can be waited for at once.
+ */
+Matcher::Placed Matcher::findPlanes(std::size_t block, const Eigen::Isometry3d& pose) {
+    const std::size_t first = block * kBlock;
+    Placed placed =
+        pose.linear() * points_.middleCols(static_cast<Eigen::Index>(first),
+                                           static_cast<Eigen::Index>(endOf(block) - first));
+    placed.colwise() += pose.translation();
     std::vector<std::size_t> moved;
-    for (std::size_t i = block * kBlock; i < endOf(block); ++i) {
-        const std::uint64_t voxel = map_.voxelAt(R * points_.col(static_cast<Eigen::Index>(i)) + t);
+    for (std::size_t i = first; i < endOf(block); ++i) {
+        const std::uint64_t voxel = map_.voxelAt(placed.col(static_cast<Eigen::Index>(i - first)));
         if (voxel == latest_[i].voxel) continue;
         latest_[i].voxel = voxel;
         map_.prefetch(voxel);
@@ -32,26 +36,22 @@ void Matcher::findPlanes(std::size_t block, const Eigen::Isometry3d& pose) {
     }
     for (const std::size_t i : moved) map_.prefetchPlanes(latest_[i].voxel);
     for (const std::size_t i : moved) latest_[i].plane = map_.inVoxel(latest_[i].voxel);
+    return placed;
 }
 
-Correspondences Matcher::matchesOf(std::size_t block, const Eigen::Isometry3d& pose,
-                                   double kernel) const {
-    const Eigen::Matrix3d R = pose.linear();
-    const Eigen::Vector3d t = pose.translation();
+Correspondences Matcher::matchesOf(std::size_t block, const Placed& placed, double kernel) const {
     Correspondences matches;
     matches.reserve(kBlock);
     for (std::size_t i = block * kBlock; i < endOf(block); ++i) {
         const Plane* plane = latest_[i].plane;
         if (!plane) continue;
-        const Eigen::Vector3d point = points_.col(static_cast<Eigen::Index>(i));
-        const Eigen::Vector3d placed = R * point + t;
-        const double r = plane->normal().dot(placed - plane->mean);
+        const Eigen::Vector3d at = placed.col(static_cast<Eigen::Index>(i - block * kBlock));
+        const double r = plane->normal().dot(at - plane->mean);
         if (std::abs(r) > kReach * kernel) continue;
         const double robust = 1 / (1 + r * r / (kernel * kernel));
-        matches.push_back(
-            {point, plane->normal(), plane->mean,
-             robust * robust / (plane->varianceAt(placed) + point_sigma_ * point_sigma_),
-             plane->tilt()});
+        matches.push_back({points_.col(static_cast<Eigen::Index>(i)), plane->normal(), plane->mean,
+                           robust * robust / (plane->varianceAt(at) + point_sigma_ * point_sigma_),
+                           plane->tilt()});
     }
     return matches;
 }
@@ -59,8 +59,7 @@ Correspondences Matcher::matchesOf(std::size_t block, const Eigen::Isometry3d& p
 Correspondences Matcher::at(const Eigen::Isometry3d& pose, double kernel) {
     std::vector<Correspondences> found(blocks());
     tbb::parallel_for(std::size_t{0}, blocks(), [&](std::size_t block) {
-        findPlanes(block, pose);
-        found[block] = matchesOf(block, pose, kernel);
+        found[block] = matchesOf(block, findPlanes(block, pose), kernel);
     });
     Correspondences all;
     all.reserve(latest_.size());
@@ -69,17 +68,27 @@ Correspondences Matcher::at(const Eigen::Isometry3d& pose, double kernel) {
 }
 
 double Matcher::shareAt(const Eigen::Isometry3d& pose, double kernel) {
-    tbb::parallel_for(std::size_t{0}, blocks(),
-                      [&](std::size_t block) { findPlanes(block, pose); });
-    double sum = 0, count = 0;
-    for (std::size_t i = 0; i < latest_.size(); ++i) {
-        const Plane* plane = latest_[i].plane;
-        if (!plane) continue;
-        const Eigen::Vector3d placed = pose * points_.col(static_cast<Eigen::Index>(i));
-        const double r = plane->normal().dot(placed - plane->mean) / kernel;
-        sum += 1 / (1 + r * r);
-        ++count;
+    struct Share {
+        double sum = 0, count = 0;
+    };
+    std::vector<Share> shares(blocks());
+    tbb::parallel_for(std::size_t{0}, blocks(), [&](std::size_t block) {
+        const Placed placed = findPlanes(block, pose);
+        Share share;
+        for (Eigen::Index i = 0; i < placed.cols(); ++i) {
+            const Plane* plane = latest_[block * kBlock + static_cast<std::size_t>(i)].plane;
+            if (!plane) continue;
+            const double r = plane->normal().dot(placed.col(i) - plane->mean) / kernel;
+            share.sum += 1 / (1 + r * r);
+            ++share.count;
+        }
+        shares[block] = share;
+    });
+    Share all;
+    for (const Share& share : shares) {
+        all.sum += share.sum;
+        all.count += share.count;
     }
-    return count > 0 ? sum / count : 0;
+    return all.count > 0 ? all.sum / all.count : 0;
 }
 }  // namespace delio::planes

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/characteristic_polynomial.h"
 #include "../core/principal_axes.h"
 #include "delio/scan/voxel_ball.h"
 #include "delio/scan/voxel_grid.h"
@@ -56,6 +57,21 @@ void PlaneMap::Sums::add(const Eigen::Vector3d& point) {
     ++count;
 }
 
+/** Those of `other` as seen from here. */
+void PlaneMap::Sums::add(const Sums& other) {
+    if (count == 0) origin = other.origin;
+    const Eigen::Vector3d d = other.origin - origin, end = other.sum + other.count * d;
+    const auto turned = [](const Eigen::Vector3d& a) {
+        return Eigen::Vector3d(a.y(), a.z(), a.x());
+    };
+    // (p + d) (p + d)^T over all p.
+    squares += other.squares;
+    squares.head<3>() += d.cwiseProduct(other.sum + end);
+    squares.tail<3>() += d.cwiseProduct(turned(other.sum)) + end.cwiseProduct(turned(d));
+    sum += end;
+    count += other.count;
+}
+
 /** Its origin stays: what is far is forgotten by it. */
 void PlaneMap::Sums::clear() {
     sum.setZero();
@@ -84,15 +100,23 @@ void PlaneMap::Level::forgetPlanes() {
 PlaneMap::State PlaneMap::fit(const Level& level, std::uint32_t number) const {
     const Sums& cell = level.cells[number];
     if (cell.count < options_.min_points) return State::None;
-    const Eigen::Vector3d mean = cell.sum / cell.count;
-    const auto pca = principalAxes(cell.scatter() / cell.count - mean * mean.transpose());
+    const double share = 1.0 / cell.count, least = options_.min_breadth * level.edge,
+                 most = options_.max_thickness * options_.max_thickness;
+    const Eigen::Vector3d mean = share * cell.sum;
+    const Eigen::Matrix3d scatter = share * cell.scatter() - mean * mean.transpose();
+    // Of ten cells one has a plane: most are told to have none before their axes are known. The
+    // smallest variance is no less than the determinant over the minors; the middle one no more
+    // than the minors over the largest, and that no less than any on the diagonal.
+    const CharacteristicPolynomial roots(scatter);
+    const bool isRound = roots.determinant() * scatter.diagonal().maxCoeff() >
+                         options_.max_flatness * roots.minors() * roots.minors();
+    if (isRound || roots.above(least * least) < 2 || roots.above(most) == 3) return State::None;
+    const auto pca = principalAxes(scatter);
     // Never thinner than rounding allows.
     const Eigen::Vector3d variances = pca.variances.cwiseMax(1e-9);
-    const double least = options_.min_breadth * level.edge;
-    const bool isPlane = std::sqrt(variances[0]) < options_.max_thickness &&
-                         variances[0] < options_.max_flatness * variances[1] &&
-                         variances[1] > least * least &&
-                         std::abs(pca.axes.col(0).dot(up_)) >= level.steepest;
+    const bool isPlane =
+        variances[0] < most && variances[0] < options_.max_flatness * variances[1] &&
+        variances[1] > least * least && std::abs(pca.axes.col(0).dot(up_)) >= level.steepest;
     if (!isPlane) return State::None;
     level.planes[number] = {cell.origin + mean, pca.axes, variances,
                             static_cast<double>(cell.count)};
@@ -111,26 +135,45 @@ const Plane* PlaneMap::planeIn(const Level& level, std::uint32_t number) const {
     return now == State::Plane ? &level.planes[number] : nullptr;
 }
 
-void PlaneMap::add(const Eigen::Matrix3Xd& points, std::vector<std::uint64_t> voxels,
-                   Level& level) const {
-    for (auto& voxel : voxels) voxel = scan::coarserKey(voxel, level.number);
+/** A scan's points in each of the smallest voxels, in the order in which these are first met. */
+PlaneMap::Batch PlaneMap::batchOf(const Eigen::Matrix3Xd& points) const {
+    constexpr Eigen::Index kTypical = 2;  // points a voxel
+    const auto typical = static_cast<std::size_t>(points.cols() / kTypical);
+    scan::VoxelIndex numbers;
+    numbers.reserve(typical);
+    Batch batch;
+    batch.voxels.reserve(typical);
+    batch.sums.reserve(typical);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const std::uint64_t voxel = voxelAt(points.col(i));
+        const std::uint32_t number = numbers.insert(voxel);
+        if (number == batch.sums.size()) {
+            batch.voxels.push_back(voxel);
+            batch.sums.emplace_back();
+        }
+        batch.sums[number].add(points.col(i));
+    }
+    return batch;
+}
+
+void PlaneMap::add(const Batch& batch, Level& level) const {
+    std::vector<std::uint64_t> voxels(batch.voxels.size());
+    std::transform(batch.voxels.begin(), batch.voxels.end(), voxels.begin(),
+                   [&](std::uint64_t voxel) { return scan::coarserKey(voxel, level.number); });
     const auto numbers = level.cells.insert(voxels);
     level.states.resize(level.cells.size());
     level.planes.resize(level.cells.size());
     level.cells.forEach(numbers, [&](std::size_t i, Sums& cell) {
         if (cell.count >= options_.max_points) return;
-        cell.add(points.col(static_cast<Eigen::Index>(i)));
+        cell.add(batch.sums[i]);
         level.states[numbers[i]].store(State::Unknown, std::memory_order_relaxed);
     });
 }
 
 void PlaneMap::add(const Eigen::Matrix3Xd& points) {
-    std::vector<std::uint64_t> voxels(static_cast<std::size_t>(points.cols()));
-    tbb::parallel_for(std::size_t{0}, voxels.size(), [&](std::size_t i) {
-        voxels[i] = voxelAt(points.col(static_cast<Eigen::Index>(i)));
-    });
+    const Batch batch = batchOf(points);
     tbb::parallel_for(std::size_t{0}, levels_.size(),
-                      [&](std::size_t i) { add(points, voxels, levels_[i]); });
+                      [&](std::size_t i) { add(batch, levels_[i]); });
 }
 
 void PlaneMap::erase(const Eigen::Matrix3Xd& points) {

@@ -8,6 +8,7 @@
 #include "delio/planes/correspondence.h"
 #include "delio/planes/plane_rotation.h"
 #include "delio/planes/plane_translation.h"
+#include "sum_over.h"
 
 namespace delio::planes {
 namespace {
@@ -19,11 +20,10 @@ double varianceFactor(const Correspondences& matches, const Eigen::Isometry3d& p
                       double independent_share) {
     const Eigen::Matrix3d R = pose.linear();
     const Eigen::Vector3d t = pose.translation();
-    double weighted = 0;
-    for (const auto& match : matches) {
+    const double weighted = sumOver<double>(matches, [&](const Correspondence& match, double& sum) {
         const double r = match.residual(R, t);
-        weighted += match.weight * r * r;
-    }
+        sum += match.weight * r * r;
+    });
     constexpr double kLeast = 0.01;  // of simulated scans without any noise
     return std::max(weighted / static_cast<double>(matches.size()), kLeast) / independent_share;
 }

@@ -3,24 +3,41 @@
 #include <Eigen/Dense>
 
 #include "delio/core/geometry.h"
+#include "sum_over.h"
 
 namespace delio::planes {
+namespace {
+/** Of each match's derivatives by rotation and by translation, side by side: packed instructions.
+ */
+struct Sums {
+    Matrix6 squares = Matrix6::Zero();
+    Vector6 gradients = Vector6::Zero();  //!< times the residuals
+    double weight = 0;
+
+    void operator+=(const Sums& other) {
+        squares += other.squares;
+        gradients += other.gradients;
+        weight += other.weight;
+    }
+};
+}  // namespace
+
 PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Isometry3d& pose,
                                  const Prior& prior) {
     const Eigen::Matrix3d R = pose.linear();
     const Eigen::Vector3d t = pose.translation();
-    // Each match's derivatives by rotation and by translation, side by side: packed instructions.
-    Matrix6 squares = Matrix6::Zero();
-    Vector6 gradients = Vector6::Zero();
-    PlaneRotation result;
-    for (const auto& match : matches) {
+    const Sums sums = sumOver<Sums>(matches, [&](const Correspondence& match, Sums& sum) {
         Vector6 both;
         both << match.point.cross(R.transpose() * match.normal), match.normal;
         const Vector6 weighted = match.weight * both;
-        squares.noalias() += weighted * both.transpose();
-        gradients += match.weight * match.residual(R, t) * both;
-        result.weight += match.weight;
-    }
+        sum.squares.noalias() += weighted * both.transpose();
+        sum.gradients += match.residual(R, t) * weighted;
+        sum.weight += match.weight;
+    });
+    const Matrix6& squares = sums.squares;
+    const Vector6& gradients = sums.gradients;
+    PlaneRotation result;
+    result.weight = sums.weight;
     const Eigen::Matrix3d rr = squares.topLeftCorner<3, 3>(), rt = squares.topRightCorner<3, 3>();
     const Eigen::Vector3d gr = gradients.head<3>();
     Eigen::Matrix3d tt = squares.bottomRightCorner<3, 3>();

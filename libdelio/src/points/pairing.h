@@ -7,6 +7,7 @@
 namespace delio::points {
 /** A point of a scan, by its place in the order, with the nearest one of the map. */
 struct Pair {
+    Eigen::Index point = 0;
     Eigen::Vector3d inMap = Eigen::Vector3d::Zero();
     double squaredDistance = 0;
     double weight = 0;  //!< 0: none
@@ -20,8 +21,8 @@ class Pairing {
     /** Map and points (the sensor's frame) have to stay as they are. */
     Pairing(const PointMap& map, const Eigen::Matrix3Xd& points);
 
-    /** `kernel`: metres; pairs are at most three of them apart. */
-    Pairs at(const Eigen::Isometry3d& pose, double kernel);
+    /** Of each `every`-th point. `kernel`: metres; pairs are at most three of them apart. */
+    Pairs at(const Eigen::Isometry3d& pose, double kernel, Eigen::Index every = 1);
 
     const Eigen::Matrix3Xd& points() const { return points_; }
 
@@ -29,7 +30,7 @@ class Pairing {
     /** What was found of a point, and where it was then. */
     struct Latest {
         PointMap::Nearest nearest;
-        Eigen::Vector3d at;
+        Eigen::Vector3d at = Eigen::Vector3d::Zero();
     };
     const PointMap::Nearest& nearest(std::size_t point, const Eigen::Vector3d& placed,
                                      double reach);

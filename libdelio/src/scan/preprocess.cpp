@@ -51,25 +51,26 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     const bool timed = options.deskew && !scan.times_s.empty();
     PointCloud cloud;
     cloud.points.resize(3, all);
-    cloud.indices.reserve(x.size());
+    cloud.indices.resize(x.size());
     Eigen::Index kept = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const auto k = static_cast<Eigen::Index>(i);
-        const bool finite = std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i]);
-        if (!finite || (timed && !std::isfinite(scan.times_s[i]))) {
-            ++cloud.notFinite;
+    for (Eigen::Index i = 0; i < all; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const bool isTimed = !timed || std::isfinite(scan.times_s[k]);
+        if (!(squaredRanges[i] >= near && squaredRanges[i] <= far) || !isTimed) {
+            const bool finite = std::isfinite(x[k]) && std::isfinite(y[k]) && std::isfinite(z[k]);
+            ++(finite && isTimed ? cloud.outOfRange : cloud.notFinite);
             continue;
         }
-        if (squaredRanges[k] < near || squaredRanges[k] > far) {
-            ++cloud.outOfRange;
-            continue;
-        }
-        cloud.points.col(kept) << x[i] * factors[k], y[i] * factors[k], heights[k];
-        if (!scan.rings.empty()) cloud.rings.push_back(scan.rings[i]);
-        if (timed) cloud.times_s.push_back(scan.times_s[i]);
-        cloud.indices.push_back(static_cast<std::uint32_t>(i));
+        float* const point = cloud.points.data() + 3 * kept;
+        point[0] = x[k] * factors[i];
+        point[1] = y[k] * factors[i];
+        point[2] = heights[i];
+        if (!scan.rings.empty()) cloud.rings.push_back(scan.rings[k]);
+        if (timed) cloud.times_s.push_back(scan.times_s[k]);
+        cloud.indices[static_cast<std::size_t>(kept)] = static_cast<std::uint32_t>(k);
         ++kept;
     }
+    cloud.indices.resize(static_cast<std::size_t>(kept));
     cloud.points.conservativeResize(3, kept);
     if (options.deskew && scan.times_s.empty() && options.sweep_s > 0)
         cloud.times_s = azimuthTimes(cloud.points, options.sweep_s);

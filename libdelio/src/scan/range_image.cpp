@@ -20,31 +20,62 @@ constexpr float kWidestGap = 3.0F * static_cast<float>(M_PI) / 180;  // between 
 float rangeOf(float x, float y, float z) { return std::sqrt(x * x + (y * y + z * z)); }
 }  // namespace
 
-RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
-    : perRadian_(static_cast<float>(180 / M_PI / cell_deg)),
-      allRows_(static_cast<int>(std::lround(180 / cell_deg))),
-      columns_(static_cast<int>(std::lround(360 / cell_deg))) {
-    // Each in a row of its own, in plain loops: vector instructions.
+inline int RangeImage::Directions::rowOf(float x, float y, float z) const {
+    const float elevation = approximateAtan2(z, std::sqrt(x * x + y * y));
+    const int row = static_cast<int>((elevation + static_cast<float>(M_PI_2)) * perRadian);
+    return std::clamp(row, 0, rows - 1);
+}
+
+inline int RangeImage::Directions::columnOf(float x, float y) const {
+    const float azimuth = approximateAtan2(y, x) + static_cast<float>(M_PI);
+    const int column = static_cast<int>(azimuth * perRadian);
+    return column < columns ? column : column - columns;  // at most one turn
+}
+
+/** Cells, counted from the lowest row that there can be, and ranges of a few points. */
+void RangeImage::Directions::see(const Eigen::Ref<const Eigen::Matrix3Xf>& points,
+                                 const Eigen::Matrix3f& turn, int* cells, float* ranges) const {
+    // Each coordinate in a row of its own, and a plain loop: vector instructions.
+    const Eigen::ArrayXf xs = points.row(0), ys = points.row(1), zs = points.row(2);
+    const Directions our = *this;    // nothing that is written can change it
+    const Eigen::Matrix3f R = turn;  // likewise
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const float px = xs.data()[i], py = ys.data()[i], pz = zs.data()[i];
+        const float x = R(0, 0) * px + R(0, 1) * py + R(0, 2) * pz,
+                    y = R(1, 0) * px + R(1, 1) * py + R(1, 2) * pz,
+                    z = R(2, 0) * px + R(2, 1) * py + R(2, 2) * pz;
+        cells[i] = our.rowOf(x, y, z) * our.columns + our.columnOf(x, y);
+        ranges[i] = rangeOf(x, y, z);
+    }
+}
+
+RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg, const Eigen::Matrix3f& turn)
+    : directions_{static_cast<float>(180 / M_PI / cell_deg),
+                  static_cast<int>(std::lround(180 / cell_deg)),
+                  static_cast<int>(std::lround(360 / cell_deg))} {
+    if (points.cols() == 0) return;
     using Range = tbb::blocked_range<Eigen::Index>;
-    Eigen::ArrayXi rowsOf(points.cols()), columnsOf(points.cols());
+    Eigen::ArrayXi cells(points.cols());
     Eigen::ArrayXf ranges(points.cols());
-    constexpr std::size_t kBlock = 4096;
+    constexpr Eigen::Index kBlock = 1024;
     tbb::parallel_for(Range(0, points.cols(), kBlock), [&](const Range& block) {
-        const float* at = points.data();
-        for (Eigen::Index i = block.begin(); i < block.end(); ++i) {
-            const float x = at[3 * i], y = at[3 * i + 1], z = at[3 * i + 2];
-            rowsOf[i] = rowOf(x, y, z);
-            columnsOf[i] = columnOf(x, y);
-            ranges[i] = rangeOf(x, y, z);
+        for (Eigen::Index first = block.begin(); first < block.end(); first += kBlock) {
+            const Eigen::Index count = std::min(kBlock, block.end() - first);
+            directions_.see(points.middleCols(first, count), turn, cells.data() + first,
+                            ranges.data() + first);
         }
     });
-    if (points.cols() == 0) return;
-    firstRow_ = rowsOf.minCoeff();
-    nearest_.resize(cellOf(rowsOf.maxCoeff() + 1, 0));
+    const int columns = directions_.columns;
+    firstRow_ = cells.minCoeff() / columns;
+    // The least without a branch, which would be a guess for most of the points.
+    constexpr float kNothing = std::numeric_limits<float>::infinity();
+    nearest_.resize(cellOf(cells.maxCoeff() / columns + 1, 0), kNothing);
+    const Eigen::Index before = Eigen::Index{firstRow_} * columns;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        float& nearest = nearest_[cellOf(rowsOf[i], columnsOf[i])];
-        if (nearest == 0 || ranges[i] < nearest) nearest = ranges[i];
+        float& nearest = nearest_[static_cast<std::size_t>(cells[i] - before)];
+        nearest = std::min(nearest, ranges[i]);
     }
+    for (float& nearest : nearest_) nearest = nearest < kNothing ? nearest : 0.0F;
     summarise();
 }
 
@@ -68,22 +99,10 @@ PackedRanges RangeImage::packed() const {
     return packed;
 }
 
-inline int RangeImage::rowOf(float x, float y, float z) const {
-    const float elevation = approximateAtan2(z, std::sqrt(x * x + y * y));
-    const int row = static_cast<int>((elevation + static_cast<float>(M_PI_2)) * perRadian_);
-    return std::clamp(row, 0, allRows_ - 1);
-}
-
-inline int RangeImage::columnOf(float x, float y) const {
-    const float azimuth = approximateAtan2(y, x) + static_cast<float>(M_PI);
-    const int column = static_cast<int>(azimuth * perRadian_);
-    return column < columns_ ? column : column - columns_;  // at most one turn
-}
-
 template <typename Visit>
 void RangeImage::forNeighbours(int row, int column, const Visit& visit) const {
-    const std::array<int, 3> columns = {column == 0 ? columns_ - 1 : column - 1, column,
-                                        column + 1 == columns_ ? 0 : column + 1};
+    const std::array<int, 3> columns = {column == 0 ? directions_.columns - 1 : column - 1, column,
+                                        column + 1 == directions_.columns ? 0 : column + 1};
     const int last = firstRow_ + static_cast<int>(rows()) - 1;
     for (int r = std::max(row - 1, firstRow_); r <= std::min(row + 1, last); ++r)
         for (const int c : columns) {
@@ -94,8 +113,8 @@ void RangeImage::forNeighbours(int row, int column, const Visit& visit) const {
 
 /** Between two rings the nearer one counts. */
 void RangeImage::fillGaps() {
-    const int widest = static_cast<int>(kWidestGap * perRadian_);
-    const auto columns = static_cast<std::size_t>(columns_);
+    const int widest = static_cast<int>(kWidestGap * directions_.perRadian);
+    const auto columns = static_cast<std::size_t>(directions_.columns);
     std::vector<std::size_t> gaps(static_cast<std::size_t>(widest) + 1);  // how many of each width
     for (std::size_t c = 0; c < columns; ++c) {
         int below = -1;  // the last row that saw something
@@ -115,12 +134,12 @@ void RangeImage::fillGaps() {
     std::size_t median = 0;
     for (std::size_t narrower = 0; median < gaps.size(); ++median)
         if ((narrower += gaps[median]) * 2 > all) break;
-    ringSpacing_ = static_cast<float>(median) / perRadian_;
+    ringSpacing_ = static_cast<float>(median) / directions_.perRadian;
 }
 
 void RangeImage::summarise() {
     constexpr float kNothing = std::numeric_limits<float>::infinity();
-    const auto columns = static_cast<std::size_t>(columns_);
+    const auto columns = static_cast<std::size_t>(directions_.columns);
     leastAbout_.resize(nearest_.size());
     // Of three rows first, with a column more on either side, then of three columns: plain loops.
     std::vector<float> least(columns + 2);
@@ -164,7 +183,7 @@ Place RangeImage::lookAbout(int row, int column, float range, float margin) cons
 Place RangeImage::at(const Eigen::Vector3f& point, float margin) const {
     const float x = point.x(), y = point.y(), z = point.z();
     const float range = rangeOf(x, y, z);
-    const int row = rowOf(x, y, z), column = columnOf(x, y);
+    const int row = directions_.rowOf(x, y, z), column = directions_.columnOf(x, y);
     const int r = row - firstRow_;
     if (r < 0 || r >= static_cast<int>(rows())) return lookAbout(row, column, range, margin);
     // Mostly the least of the neighbourhood tells all.

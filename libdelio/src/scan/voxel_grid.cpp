@@ -1,31 +1,56 @@
 #include "delio/scan/voxel_grid.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
 
 #include "delio/scan/voxel_table.h"
 
 namespace delio::scan {
-std::uint64_t voxelKey(const Eigen::Vector3d& point, double size) {
-    return voxelKey(floorOf(point.x() / size), floorOf(point.y() / size),
-                    floorOf(point.z() / size));
+namespace {
+constexpr Eigen::Index kBlock = 512;
+
+/** Of a block of points at most. */
+void findKeys(const float* points, Eigen::Index count, float perVoxel, std::uint64_t* keys) {
+    // All coordinates alike, and in a plain loop: vector instructions.
+    constexpr float kFarthest = 1 << 20;  // what keys have room for
+    std::array<std::int32_t, 3 * kBlock> voxels;
+    for (Eigen::Index i = 0; i < 3 * count; ++i) {
+        const float inVoxels = std::clamp(points[i] * perVoxel, -kFarthest, kFarthest - 1);
+        const auto truncated = static_cast<std::int32_t>(inVoxels);
+        voxels[static_cast<std::size_t>(i)] =
+            truncated - (inVoxels < static_cast<float>(truncated) ? 1 : 0);
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+        keys[i] = voxelKey(voxels[3 * i], voxels[3 * i + 1], voxels[3 * i + 2]);
 }
+}  // namespace
 
 VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
-    std::vector<std::uint64_t> keys(static_cast<std::size_t>(points.cols()));
-    tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
-        keys[static_cast<std::size_t>(i)] = voxelKey(points.col(i).cast<double>(), size);
+    const auto count = static_cast<std::size_t>(points.cols());
+    std::vector<std::uint64_t> keys(count);
+    using Range = tbb::blocked_range<Eigen::Index>;
+    tbb::parallel_for(Range(0, points.cols(), kBlock), [&](const Range& range) {
+        for (Eigen::Index first = range.begin(); first < range.end(); first += kBlock)
+            findKeys(points.data() + 3 * first, std::min(kBlock, range.end() - first),
+                     static_cast<float>(1 / size), keys.data() + first);
     });
     VoxelIndex numbers;
     constexpr std::size_t kTypical = 4;  // points a voxel
-    numbers.reserve(static_cast<std::size_t>(points.cols()) / kTypical);
+    numbers.reserve(count / kTypical);
     VoxelNumbers result;
-    result.ofPoint.reserve(static_cast<std::size_t>(points.cols()));
+    result.ofPoint.resize(count);
     // Most points lie in the voxel of the one before: a sensor gives neighbours after each other.
     constexpr std::size_t kAhead = 16;
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        if (i + kAhead < keys.size()) numbers.prefetch(keys[i + kAhead]);
-        const bool isSame = i > 0 && keys[i] == keys[i - 1];
-        result.ofPoint.push_back(isSame ? result.ofPoint.back() : numbers.insert(keys[i]));
+    for (std::size_t i = 0; i < count;) {
+        const std::uint64_t key = keys[i];
+        const std::uint32_t number = numbers.insert(key);
+        do {
+            result.ofPoint[i] = number;
+            if (i + kAhead < count) numbers.prefetch(keys[i + kAhead]);
+        } while (++i < count && keys[i] == key);
     }
     result.voxels = static_cast<Eigen::Index>(numbers.size());
     return result;
@@ -57,7 +82,7 @@ Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size) {
 Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size) {
     const auto numbers = numberVoxels(points, size);
     Eigen::Matrix3Xf first(3, numbers.voxels);
-    Eigen::Index met = 0;
+    std::uint32_t met = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i)
         if (numbers.ofPoint[static_cast<std::size_t>(i)] == met) first.col(met++) = points.col(i);
     return first;

@@ -1,13 +1,9 @@
 #include "delio/scan/voxel_table.h"
 
 namespace delio::scan {
-std::uint32_t VoxelIndex::insert(std::uint64_t key) {
-    std::size_t slot = slotOf(key);
-    if (slots_[slot].number != kNone) return slots_[slot].number;
-    if (2 * (size_ + 1) > slots_.size()) {
-        rehash(shift_ - 1);
-        slot = slotOf(key);
-    }
+std::uint32_t VoxelIndex::insertNew(std::uint64_t key) {
+    if (2 * (size_ + 1) > slots_.size()) rehash(shift_ - 1);
+    const std::size_t slot = slotOf(key);
     slots_[slot] = {key, static_cast<std::uint32_t>(size_++)};
     return slots_[slot].number;
 }

@@ -1,17 +1,23 @@
 #include "delio/slam/listener.h"
 
-#include "delio/scan/sample.h"
+#include <algorithm>
+#include <cstdint>
 
 namespace delio {
 Eigen::Matrix3Xf stillPoints(const SlamScan& scan) {
     constexpr Eigen::Index kMost = 20000;
-    const auto& used = scan.step.used;
-    Eigen::Matrix3Xf still(3, used.points.cols());
-    Eigen::Index count = 0;
-    for (Eigen::Index i = 0; i < used.points.cols(); ++i)
-        if (used.dynamic.empty() || !used.dynamic[static_cast<std::size_t>(i)])
-            still.col(count++) = used.points.col(i);
-    still.conservativeResize(3, count);
-    return scan.scan.sensorPose.cast<float>() * scan::sample(still, kMost);
+    const auto& points = scan.step.used.points;
+    const auto& dynamic = scan.step.used.dynamic;
+    const auto moving = std::count(dynamic.begin(), dynamic.end(), std::uint8_t{1});
+    // At most so many, evenly over their order: of a scan the same share all around.
+    const Eigen::Index all = points.cols() - moving,
+                       stride = std::max<Eigen::Index>(1, (all + kMost - 1) / kMost);
+    Eigen::Matrix3Xf still(3, (all + stride - 1) / stride);
+    Eigen::Index met = 0, kept = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        if (!dynamic.empty() && dynamic[static_cast<std::size_t>(i)]) continue;
+        if (met++ % stride == 0) still.col(kept++) = points.col(i);
+    }
+    return scan.scan.sensorPose.cast<float>() * still;
 }
 }  // namespace delio

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 
 #include "core/principal_axes.h"
 
@@ -10,10 +11,14 @@ void expectAxesOf(const Eigen::Matrix3d& scatter) {
     const auto [variances, axes] = principalAxes(scatter);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> iterative(scatter);
     const double size = scatter.norm();
-    EXPECT_LE((variances - iterative.eigenvalues()).norm(), 1e-7 * size) << scatter;
-    EXPECT_LE((axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm(), 1e-6) << scatter;
-    EXPECT_LE((axes * variances.asDiagonal() * axes.transpose() - scatter).norm(), 1e-6 * size)
+    EXPECT_LE((variances - iterative.eigenvalues()).norm(), 1e-14 * size) << scatter;
+    EXPECT_LE((axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm(), 1e-14) << scatter;
+    EXPECT_LE((axes * variances.asDiagonal() * axes.transpose() - scatter).norm(), 1e-14 * size)
         << scatter;
+}
+
+Eigen::Matrix3d symmetric(const Eigen::Matrix3d& matrix) {
+    return (matrix + matrix.transpose()) / 2;
 }
 }  // namespace
 
@@ -24,7 +29,13 @@ TEST(PrincipalAxes, OfAnyScatter) {
         expectAxesOf(A * A.transpose());
         const Eigen::Vector3d flat(1e-6, 1, 1 + 1e-3 * i);
         const Eigen::Matrix3d R = Eigen::Quaterniond::UnitRandom().matrix();
-        expectAxesOf(R * flat.asDiagonal() * R.transpose());
+        expectAxesOf(symmetric(R * flat.asDiagonal() * R.transpose()));
+        const Eigen::Vector3d line(1e-8, 1e-8 + 1e-10 * i, 1);
+        expectAxesOf(symmetric(R * line.asDiagonal() * R.transpose()));
+        // Two that are alike, but for rounding: of whatever size.
+        const Eigen::Vector3d round =
+            std::pow(10, i % 40 - 20) * Eigen::Vector3d(1, 1, 1 + 1e-15 * i);
+        expectAxesOf(symmetric(R * round.asDiagonal() * R.transpose()));
     }
 }
 

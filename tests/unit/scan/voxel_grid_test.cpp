@@ -38,9 +38,7 @@ TEST(VoxelGrid, AgreesWithAPlainMap) {
             if (inVoxel.empty()) inOrder.push_back(key);
             inVoxel.push_back(i);
             // Numbered as they are first met.
-            EXPECT_EQ(
-                inOrder[static_cast<std::size_t>(numbers.ofPoint[static_cast<std::size_t>(i)])],
-                key);
+            EXPECT_EQ(inOrder[numbers.ofPoint[static_cast<std::size_t>(i)]], key);
         }
         EXPECT_EQ(numbers.voxels, static_cast<Eigen::Index>(voxels.size()));
         const auto centroids = voxelCentroids(points, size);
@@ -58,7 +56,7 @@ TEST(VoxelGrid, AgreesWithAPlainMap) {
 TEST(VoxelGrid, ZeroIsABorderAndNotTheMiddleOfAVoxel) {
     Eigen::Matrix3Xf points(3, 4);
     points << 0.1F, -0.1F, -0.9F, -1.1F, 0, 0, 0, 0, 0, 0, 0, 0;
-    EXPECT_EQ(numberVoxels(points, 1).ofPoint, (std::vector<Eigen::Index>{0, 1, 1, 2}));
+    EXPECT_EQ(numberVoxels(points, 1).ofPoint, (std::vector<std::uint32_t>{0, 1, 1, 2}));
 }
 
 TEST(VoxelGrid, NeighboursOnEachAxisAreTold) {
@@ -69,6 +67,12 @@ TEST(VoxelGrid, NeighboursOnEachAxisAreTold) {
     points.array() += 0.5F;
     EXPECT_EQ(numberVoxels(points, 1).voxels, 7);
     EXPECT_EQ(numberVoxels(points * 1000, 1).voxels, 7);
+}
+
+TEST(VoxelGrid, WhatIsTooFarForAnyKeyIsTakenForTheFarthest) {
+    Eigen::Matrix3Xf points = Eigen::Matrix3Xf::Zero(3, 4);
+    points.row(1) << 1e7F, 3e38F, -1e7F, -3e38F;
+    EXPECT_EQ(numberVoxels(points, 1).ofPoint, (std::vector<std::uint32_t>{0, 0, 1, 1}));
 }
 
 TEST(VoxelGrid, Empty) {

@@ -39,8 +39,10 @@ class DynamicObjects {
 
     /** What a scan shows while its pose is not known. */
     class Sight;
-    /** `points`: a thinned view of `all` (metres, sensor's frame). */
-    Sight see(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xf& all) const;
+    /** `points`: a thinned view of `all` (metres), of both of which `upright` leads to the sensor's
+     *  frame whose z axis points up. */
+    Sight see(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xf& all,
+              const Eigen::Matrix3f& upright = Eigen::Matrix3f::Identity()) const;
 
     /** Which of the points that see() was given belong to dynamic objects: 1 or 0 each. `pose`:
      *  sensor to map, good to a part of the margin. */

@@ -47,9 +47,10 @@ class Matcher {
     std::size_t endOf(std::size_t block) const {
         return std::min(latest_.size(), (block + 1) * kBlock);
     }
-    void findPlanes(std::size_t block, const Eigen::Isometry3d& pose);
-    Correspondences matchesOf(std::size_t block, const Eigen::Isometry3d& pose,
-                              double kernel) const;
+    /** Of a block's points, metres, the map's frame. */
+    using Placed = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kBlock>;
+    Placed findPlanes(std::size_t block, const Eigen::Isometry3d& pose);
+    Correspondences matchesOf(std::size_t block, const Placed& placed, double kernel) const;
 
     const PlaneMap& map_;
     const Eigen::Matrix3Xd& points_;

@@ -105,6 +105,7 @@ class PlaneMap {
         unsigned count = 0;
 
         void add(const Eigen::Vector3d& point);
+        void add(const Sums& other);
         void clear();
         Eigen::Matrix3d scatter() const;
 
@@ -112,6 +113,11 @@ class PlaneMap {
         void serialize(Archive& archive) {
             archive(origin, sum, squares, count);
         }
+    };
+    /** What comes into the map at once. */
+    struct Batch {
+        std::vector<std::uint64_t> voxels;  //!< the smallest ones
+        std::vector<Sums> sums;             //!< of the points in each of them
     };
     /** Whether there is a plane in a cell. */
     enum class State : std::uint8_t { None, Plane, Unknown, BeingFitted };
@@ -138,7 +144,8 @@ class PlaneMap {
         void clear();
         void forgetPlanes();
     };
-    void add(const Eigen::Matrix3Xd& points, std::vector<std::uint64_t> voxels, Level& level) const;
+    Batch batchOf(const Eigen::Matrix3Xd& points) const;
+    void add(const Batch& batch, Level& level) const;
     State fit(const Level& level, std::uint32_t number) const;
     const Plane* planeIn(const Level& level, std::uint32_t number) const;
 

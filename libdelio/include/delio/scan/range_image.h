@@ -22,9 +22,10 @@ class RangeImage {
  public:
     /** Of no scan: knows nothing. */
     RangeImage() : RangeImage(Eigen::Matrix3Xf(3, 0), 180) {}
-    /** `points`: metres, sensor's frame. Directions are told apart by `cell_deg` (degrees of
-     * azimuth and of elevation). */
-    RangeImage(const Eigen::Matrix3Xf& points, double cell_deg);
+    /** `points`: metres, of which `turn` leads to the sensor's frame. Directions are told apart by
+     *  `cell_deg` (degrees of azimuth and of elevation). */
+    RangeImage(const Eigen::Matrix3Xf& points, double cell_deg,
+               const Eigen::Matrix3f& turn = Eigen::Matrix3f::Identity());
     /** The same image again, to the centimetre, made for many questions: between two rings that are
      *  not far apart the nearer one counts, so that what lies between them is free only where both
      *  went on. */
@@ -43,20 +44,31 @@ class RangeImage {
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
     void serialize(Archive& archive) {
-        archive(perRadian_, ringSpacing_, allRows_, columns_, firstRow_, nearest_);
+        archive(directions_.perRadian, ringSpacing_, directions_.rows, directions_.columns,
+                firstRow_, nearest_);
         if constexpr (Archive::is_loading::value) summarise();
     }
 
  private:
-    /** In the whole sphere. */
-    int rowOf(float x, float y, float z) const;
-    int columnOf(float x, float y) const;
+    /** Rows and columns of the whole sphere. */
+    struct Directions {
+        float perRadian;
+        int rows, columns;
+
+        int rowOf(float x, float y, float z) const;
+        int columnOf(float x, float y) const;
+        void see(const Eigen::Ref<const Eigen::Matrix3Xf>& points, const Eigen::Matrix3f& turn,
+                 int* cells, float* ranges) const;
+    };
     /** Of one of the rows that are kept: its place in nearest_. */
     std::size_t cellOf(int row, int column) const {
-        return static_cast<std::size_t>(row - firstRow_) * static_cast<std::size_t>(columns_) +
+        return static_cast<std::size_t>(row - firstRow_) *
+                   static_cast<std::size_t>(directions_.columns) +
                static_cast<std::size_t>(column);
     }
-    std::size_t rows() const { return nearest_.size() / static_cast<std::size_t>(columns_); }
+    std::size_t rows() const {
+        return nearest_.size() / static_cast<std::size_t>(directions_.columns);
+    }
     /** Of the cells about one and it: calls visit(range) for each where something was seen. */
     template <typename Visit>
     void forNeighbours(int row, int column, const Visit& visit) const;
@@ -64,8 +76,8 @@ class RangeImage {
     void fillGaps();
     void summarise();
 
-    float perRadian_, ringSpacing_ = 0;
-    int allRows_, columns_;
+    Directions directions_;
+    float ringSpacing_ = 0;
     int firstRow_ = 0;            //!< that is kept
     std::vector<float> nearest_;  //!< metres, row by row from below; 0: nothing was seen
     /** The least of each cell's neighbourhood, negative where too little was seen there to call

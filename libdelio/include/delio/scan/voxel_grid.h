@@ -4,10 +4,8 @@
 #include <vector>
 
 namespace delio::scan {
-/** The same number for all points of one voxel and for no others within a million voxels to either
- *  side of the origin. */
-std::uint64_t voxelKey(const Eigen::Vector3d& point, double size);
-/** The same of a voxel by its numbers along the axes, which count from the origin. */
+/** A voxel by its numbers along the axes, which count from the origin: the same key as no other
+ *  within a million voxels to either side. */
 inline std::uint64_t voxelKey(std::int64_t x, std::int64_t y, std::int64_t z) {
     constexpr std::int64_t kHalf = 1 << 20;  // 21 bits for each axis
     const auto part = [](std::int64_t index) {
@@ -26,11 +24,16 @@ inline std::int64_t floorOf(double value) {
     const auto truncated = static_cast<std::int64_t>(value);
     return truncated - (value < static_cast<double>(truncated));
 }
+/** Of the voxel, `size` wide, that a point is in. */
+inline std::uint64_t voxelKey(const Eigen::Vector3d& point, double size) {
+    const Eigen::Vector3d inVoxels = point * (1 / size);
+    return voxelKey(floorOf(inVoxels.x()), floorOf(inVoxels.y()), floorOf(inVoxels.z()));
+}
 /** Which voxel each point is in: voxels are numbered from 0 in the order in which they are first
  *  met. `size` in the unit of the points; also good for directions on the unit sphere. */
 struct VoxelNumbers {
-    std::vector<Eigen::Index> ofPoint;  //!< of each point the number of its voxel
-    Eigen::Index voxels = 0;            //!< how many there are
+    std::vector<std::uint32_t> ofPoint;  //!< of each point the number of its voxel
+    Eigen::Index voxels = 0;             //!< how many there are
 };
 /** See VoxelNumbers. `size`: edge of a voxel. */
 VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size);

@@ -22,7 +22,10 @@ class VoxelIndex {
     std::uint32_t find(std::uint64_t key) const { return slots_[slotOf(key)].number; }
 
     /** The key's number: that of a new key is the size before. */
-    std::uint32_t insert(std::uint64_t key);
+    std::uint32_t insert(std::uint64_t key) {
+        const Slot& slot = slots_[slotOf(key)];
+        return slot.number != kNone ? slot.number : insertNew(key);
+    }
 
     /** Takes a key that it has out. `last`, the key with the last number, gets the number that is
      *  free now. */
@@ -52,6 +55,7 @@ class VoxelIndex {
             slot = (slot + 1) & (slots_.size() - 1);
         return slot;
     }
+    std::uint32_t insertNew(std::uint64_t key);
     void rehash(unsigned shift);
 
     unsigned shift_ = 60;  //!< 64 less the binary logarithm of the slots
