@@ -32,8 +32,10 @@ class Pairing {
         PointMap::Nearest nearest;
         Eigen::Vector3d at = Eigen::Vector3d::Zero();
     };
-    const PointMap::Nearest& nearest(std::size_t point, const Eigen::Vector3d& placed,
-                                     double reach);
+    static constexpr std::size_t kBlock = 64;
+    static bool isStill(const Latest& latest, const Eigen::Vector3d& placed, double reach);
+    void pairBlock(const Eigen::Isometry3d& pose, double kernel, Eigen::Index first,
+                   Eigen::Index every, Pair* pairs, std::size_t count);
 
     const PointMap& map_;
     const Eigen::Matrix3Xd& points_;

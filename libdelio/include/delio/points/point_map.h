@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "delio/core/stage_options.h"
+#include "delio/scan/voxel_grid.h"
 #include "delio/scan/voxel_table.h"
 
 namespace delio::points {
@@ -49,6 +50,16 @@ class PointMap {
     /** The nearest point within `reach` metres, which are at most a voxel's edge, if there is any;
      *  and a distance, metres, within which no other one lies. */
     Nearest nearest(const Eigen::Vector3d& point, double reach) const;
+
+    /** Soon prefetchCell() is called of the point, and after that nearest(). */
+    void prefetch(const Eigen::Vector3d& point) const {
+        cells_.prefetch(scan::voxelKey(point, options_.voxel_size));
+    }
+    /** See prefetch(). */
+    void prefetchCell(const Eigen::Vector3d& point) const {
+        const auto cell = cells_.numberOf(scan::voxelKey(point, options_.voxel_size));
+        if (cell != scan::VoxelIndex::kNone) cells_.prefetchValue(cell);
+    }
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
