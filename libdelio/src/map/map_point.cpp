@@ -6,10 +6,12 @@ using mrpt::maps::CPointsMapXYZI;
 
 CPointsMapXYZI cloudOf(const MapPoints& points) {
     CPointsMapXYZI cloud;
-    cloud.reserve(points.size());
-    for (const auto& point : points)
-        cloud.insertPointRGB(point.position.x(), point.position.y(), point.position.z(),
-                             point.intensity, 0, 0);
+    cloud.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Eigen::Vector3f& p = points[i].position;
+        cloud.setPointFast(i, p.x(), p.y(), p.z());
+        cloud.setPointColor_fast(i, points[i].intensity, 0, 0);  // where MRPT keeps intensities
+    }
     return cloud;
 }
 

@@ -8,17 +8,16 @@ namespace {
 /** The points that were used, with the intensities that the scan came with. */
 mrpt::maps::CPointsMap::Ptr pointsForMap(const Scan& scan, const UsedPoints& used) {
     using mrpt::maps::CPointsMapXYZI;
-    const auto* bright = dynamic_cast<const CPointsMapXYZI*>(scan.points.get());
-    mrpt::maps::CPointsMap::Ptr points = mrpt::maps::CSimplePointsMap::Create();
-    if (bright) points = CPointsMapXYZI::Create();
-    points->reserve(used.indices.size());
+    const auto* from = dynamic_cast<const CPointsMapXYZI*>(scan.points.get());
+    const auto bright = from ? CPointsMapXYZI::Create() : nullptr;
+    mrpt::maps::CPointsMap::Ptr points = bright;
+    if (!points) points = mrpt::maps::CSimplePointsMap::Create();
+    points->resize(used.indices.size());
     for (std::size_t i = 0; i < used.indices.size(); ++i) {
         const Eigen::Vector3f p = used.points.col(static_cast<Eigen::Index>(i));
-        if (bright)
-            points->insertPointRGB(p.x(), p.y(), p.z(),
-                                   bright->getPointIntensity_fast(used.indices[i]), 0, 0);
-        else
-            points->insertPointFast(p.x(), p.y(), p.z());
+        points->setPointFast(i, p.x(), p.y(), p.z());
+        if (bright)  // where MRPT keeps intensities
+            bright->setPointColor_fast(i, from->getPointIntensity_fast(used.indices[i]), 0, 0);
     }
     return points;
 }
