@@ -4,6 +4,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace delio::movers {
 std::vector<OptionField> DynamicObjectsOptions::fields() const {
@@ -56,7 +57,11 @@ bool DynamicObjects::came(const Object& object) const {
 
 void DynamicObjects::View::outline() {
     outlines = {};
-    for (const auto& object : objects) outlines.add(object.place, object.size);
+    moving.clear();
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        outlines.add(objects[i].place, objects[i].size);
+        if (objects[i].velocity) moving.push_back(i);
+    }
 }
 
 bool DynamicObjects::isGone(const Left& left) const {
@@ -64,6 +69,13 @@ bool DynamicObjects::isGone(const Left& left) const {
     const View& view = views_[left.view];
     return isFree(view.objects[left.object], view, latest_, kLeastKnown);
 }
+
+namespace {
+/** Of two steps of one object the earlier one takes about as long as the later one: at least. */
+bool isAsLong(double earlier_s, float later_s) {
+    return static_cast<float>(earlier_s) >= 0.75F * later_s;
+}
+}  // namespace
 
 /** The place that it left before `then`, from where `step` led to its own. */
 std::optional<DynamicObjects::Left> DynamicObjects::leftBefore(const Left& then,
@@ -76,31 +88,46 @@ std::optional<DynamicObjects::Left> DynamicObjects::leftBefore(const Left& then,
     const float tolerance = kTolerance_m + kTolerance * step.norm();
     for (std::size_t j = then.view + 1; j < views_.size(); ++j) {
         const View& first = views_[j];
-        const auto earlier_s = static_cast<float>(second.stamp_s - first.stamp_s);
-        if (earlier_s < 0.75F * later_s || earlier_s > 1.5F * later_s) continue;
+        const double between_s = second.stamp_s - first.stamp_s;
+        const auto earlier_s = static_cast<float>(between_s);
+        if (!isAsLong(between_s, later_s) || earlier_s > 1.5F * later_s) continue;
         const Eigen::Vector3f expected = place - step * earlier_s / later_s;
         const auto& outlines = first.outlines;
         const auto [from, to] = outlines.about(expected.x(), tolerance);
         for (std::size_t start = from; start < to; ++start)
             if ((outlines.place(start) - expected).norm() < tolerance &&
-                alike(outlines.sizeOf(start), object.size) && isGone({j, start}) && isGone(then))
-                return Left{j, start};
+                alike(outlines.sizeOf(start), object.size) && isGone({j, start}))
+                return isGone(then) ? std::optional(Left{j, start}) : std::nullopt;
     }
     return {};
+}
+
+/** The objects of a view that it may have been, by their sizes: all of them, or those that moved.
+ */
+void DynamicObjects::findAlike(const Object& object, const View& view, float farthest, bool all,
+                               std::vector<std::size_t>& found) const {
+    found.clear();
+    if (all)
+        view.outlines.findAlike(view.outlines.about(object.place.x(), farthest), object.size,
+                                found);
+    else
+        std::copy_if(
+            view.moving.begin(), view.moving.end(), std::back_inserter(found),
+            [&](std::size_t number) { return alike(view.outlines.sizeOf(number), object.size); });
 }
 
 /** Its speed over the ground, where it left places behind. */
 std::optional<DynamicObjects::Track> DynamicObjects::trackOf(const Object& object) const {
     constexpr float kFastest_m_s = 60, kTolerance_m = 0.3F, kTurn = 0.3F;
-    std::vector<std::int32_t> alikes;
+    std::vector<std::size_t> alikes;
     for (std::size_t i = 0; i < views_.size(); ++i) {
         const View& view = views_[i];
         const auto later_s = static_cast<float>(latest_.stamp_s - view.stamp_s);
         const float farthest = kFastest_m_s * later_s;
-        const auto about = view.outlines.about(object.place.x(), farthest);
-        view.outlines.findAlike(about, object.size, alikes);
-        for (std::size_t there = about.first; there < about.second; ++there) {
-            if (!alikes[there]) continue;
+        // Of most places where it may have been nothing is known that is early enough.
+        const bool knowsBefore = isAsLong(view.stamp_s - views_.back().stamp_s, later_s);
+        findAlike(object, view, farthest, knowsBefore, alikes);
+        for (const std::size_t there : alikes) {
             const Eigen::Vector3f step = object.place - view.outlines.place(there);
             const float length = step.norm();
             if (length < static_cast<float>(options_.margin) || length > farthest) continue;
@@ -111,6 +138,7 @@ std::optional<DynamicObjects::Track> DynamicObjects::trackOf(const Object& objec
                 isGone(then))
                 return Track{step / later_s, {then}};
             // Or it comes from a place before that one.
+            if (!knowsBefore) continue;
             if (const auto before = leftBefore(then, step, object))
                 return Track{step / later_s, {then, *before}};
         }
@@ -155,7 +183,8 @@ std::vector<std::uint8_t> DynamicObjects::detect(Sight sight, const Eigen::Isome
                                                  double stamp_s) {
     while (!views_.empty() && stamp_s - views_.back().stamp_s > options_.memory_s)
         views_.pop_back();
-    latest_ = {stamp_s, pose.cast<float>(), std::move(sight.image_), std::move(sight.objects_), {}};
+    latest_ = {stamp_s, pose.cast<float>(), std::move(sight.image_), std::move(sight.objects_), {},
+               {}};
     for (auto& object : latest_.objects) object.place = latest_.toMap * object.centre;
     const auto& segments = sight.segments_;
     std::vector<std::optional<Track>> tracks(segments.size());

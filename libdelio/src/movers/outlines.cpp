@@ -28,14 +28,18 @@ std::pair<std::size_t, std::size_t> Outlines::about(float x, float reach) const 
 }
 
 void Outlines::findAlike(const std::pair<std::size_t, std::size_t>& numbers,
-                         const Eigen::Vector3f& size, std::vector<std::int32_t>& found) const {
-    found.resize(this->size());
+                         const Eigen::Vector3f& size, std::vector<std::size_t>& found) const {
     const float x = size.x(), y = size.y(), z = size.z();
     const float *xs = sizes_[0].data(), *ys = sizes_[1].data(), *zs = sizes_[2].data();
-    std::int32_t* const to = found.data();
-    // Without branches, in numbers as wide as the sizes: vector instructions.
-    for (std::size_t i = numbers.first; i < numbers.second; ++i)
-        to[i] = std::int32_t{alike(xs[i], x)} & std::int32_t{alike(ys[i], y)} &
-                std::int32_t{alike(zs[i], z)};
+    // Without branches, in numbers as wide as the sizes, first: vector instructions.
+    std::vector<std::int32_t> isAlike(numbers.second - numbers.first);
+    std::int32_t* const to = isAlike.data();
+    for (std::size_t i = 0; i < isAlike.size(); ++i) {
+        const std::size_t k = numbers.first + i;
+        to[i] = std::int32_t{alike(xs[k], x)} & std::int32_t{alike(ys[k], y)} &
+                std::int32_t{alike(zs[k], z)};
+    }
+    for (std::size_t i = 0; i < isAlike.size(); ++i)
+        if (isAlike[i]) found.push_back(numbers.first + i);
 }
 }  // namespace delio::movers

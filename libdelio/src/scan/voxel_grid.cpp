@@ -42,15 +42,12 @@ VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
     numbers.reserve(count / kTypical);
     VoxelNumbers result;
     result.ofPoint.resize(count);
-    // Most points lie in the voxel of the one before: a sensor gives neighbours after each other.
+    // (Most points lie in the voxel of the one before, but to ask for that is a guess for many of
+    // them, and costs more than to look it up.)
     constexpr std::size_t kAhead = 16;
-    for (std::size_t i = 0; i < count;) {
-        const std::uint64_t key = keys[i];
-        const std::uint32_t number = numbers.insert(key);
-        do {
-            result.ofPoint[i] = number;
-            if (i + kAhead < count) numbers.prefetch(keys[i + kAhead]);
-        } while (++i < count && keys[i] == key);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + kAhead < count) numbers.prefetch(keys[i + kAhead]);
+        result.ofPoint[i] = numbers.insert(keys[i]);
     }
     result.voxels = static_cast<Eigen::Index>(numbers.size());
     return result;

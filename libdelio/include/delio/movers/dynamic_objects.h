@@ -94,8 +94,9 @@ class DynamicObjects {
         double stamp_s = 0;
         Eigen::Isometry3f toMap = Eigen::Isometry3f::Identity();
         scan::RangeImage image;
-        Objects objects;    //!< of an earlier scan: by their places' x
-        Outlines outlines;  //!< of an earlier scan's objects
+        Objects objects;                  //!< of an earlier scan: by their places' x
+        Outlines outlines;                //!< of an earlier scan's objects
+        std::vector<std::size_t> moving;  //!< those of them whose velocity is known
 
         void outline();
 
@@ -109,6 +110,8 @@ class DynamicObjects {
     bool isGone(const Left& left) const;
     std::optional<Left> leftBefore(const Left& then, const Eigen::Vector3f& step,
                                    const Object& object) const;
+    void findAlike(const Object& object, const View& view, float farthest, bool all,
+                   std::vector<std::size_t>& found) const;
     std::optional<Track> trackOf(const Object& object) const;
     void unmask(const Track& track);
     /** True where scan `by` saw through the place that `object` took in scan `seen`. `minKnown`:

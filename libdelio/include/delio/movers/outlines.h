@@ -31,9 +31,9 @@ class Outlines {
      *  `reach` of `x` along the map's first axis. */
     std::pair<std::size_t, std::size_t> about(float x, float reach) const;
 
-    /** 1 for each object, of those numbers, that is alike in size; by their numbers. */
+    /** Adds those of these numbers whose objects are alike in size. */
     void findAlike(const std::pair<std::size_t, std::size_t>& numbers, const Eigen::Vector3f& size,
-                   std::vector<std::int32_t>& found) const;
+                   std::vector<std::size_t>& found) const;
 
  private:
     std::array<std::vector<float>, 3> places_, sizes_;  //!< an axis each
