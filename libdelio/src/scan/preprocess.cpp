@@ -48,7 +48,7 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
         factors[i] = flat > 0 ? flatNow / flat : 1.0F;
         heights[i] = s * flat + c * pz;
     }
-    const bool timed = options.deskew && !scan.times_s.empty();
+    const bool timed = options.deskew && !scan.times_s.empty(), numbered = !scan.rings.empty();
     PointCloud cloud;
     cloud.points.resize(3, all);
     cloud.indices.resize(x.size());
@@ -65,7 +65,7 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
         point[0] = x[k] * factors[i];
         point[1] = y[k] * factors[i];
         point[2] = heights[i];
-        if (!scan.rings.empty()) cloud.rings.push_back(scan.rings[k]);
+        if (numbered) cloud.rings.push_back(scan.rings[k]);
         if (timed) cloud.times_s.push_back(scan.times_s[k]);
         cloud.indices[static_cast<std::size_t>(kept)] = static_cast<std::uint32_t>(k);
         ++kept;
