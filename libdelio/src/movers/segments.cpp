@@ -16,15 +16,11 @@ class Grid {
           width_(2 * half_ + 1) {}
 
     std::size_t size() const { return cells(width_) * cells(width_); }
-    /** Of each point the number of its cell, or size() outside. */
-    std::vector<std::size_t> cellsOf(const Eigen::Matrix3Xf& points) const {
-        std::vector<std::size_t> result(static_cast<std::size_t>(points.cols()));
-        for (std::size_t k = 0; k < result.size(); ++k) {
-            const auto point = static_cast<Eigen::Index>(k);
-            const int i = numberAlong(points(0, point)), j = numberAlong(points(1, point));
-            result[k] = inside(i, j) ? number(i, j) : size();
-        }
-        return result;
+    /** The cell's number, or size() outside. */
+    std::size_t at(float x, float y) const {
+        const int i = static_cast<int>(std::lround(x / cell_)) + half_;
+        const int j = static_cast<int>(std::lround(y / cell_)) + half_;
+        return inside(i, j) ? number(i, j) : size();
     }
     template <typename Visit>
     void forNeighbours(std::size_t cell, const Visit& visit) const {
@@ -35,17 +31,9 @@ class Grid {
     }
 
  private:
-    /** The nearest, counted from the first one; std::lround() is a call. */
-    int numberAlong(float x) const {
-        const float inCells = std::clamp(x / cell_ + 0.5F, -kFarthest, kFarthest);
-        const int truncated = static_cast<int>(inCells);
-        return truncated - (inCells < static_cast<float>(truncated) ? 1 : 0) + half_;
-    }
     bool inside(int i, int j) const { return i >= 0 && j >= 0 && i < width_ && j < width_; }
     static std::size_t cells(int count) { return static_cast<std::size_t>(count); }
     std::size_t number(int i, int j) const { return cells(i) * cells(width_) + cells(j); }
-
-    static constexpr float kFarthest = 1 << 24;
 
     float cell_;
     int half_, width_;
@@ -56,19 +44,19 @@ std::vector<float> heights(const Eigen::Matrix3Xf& points, double radius) {
     constexpr float kNone = std::numeric_limits<float>::max();
     const Grid grid(1, radius);
     std::vector<float> lowest(grid.size() + 1, kNone), about = lowest;
-    const auto cells = grid.cellsOf(points);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        float& low = lowest[cells[i]];
-        low = std::min(low, points(2, static_cast<Eigen::Index>(i)));
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        float& low = lowest[grid.at(points(0, i), points(1, i))];
+        low = std::min(low, points(2, i));
     }
     for (std::size_t cell = 0; cell < grid.size(); ++cell)
         if (lowest[cell] != kNone)
             grid.forNeighbours(cell, [&](std::size_t neighbour) {
                 about[cell] = std::min(about[cell], lowest[neighbour]);
             });
-    std::vector<float> result(cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i)
-        result[i] = points(2, static_cast<Eigen::Index>(i)) - about[cells[i]];
+    std::vector<float> result(static_cast<std::size_t>(points.cols()));
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        result[static_cast<std::size_t>(i)] =
+            points(2, i) - about[grid.at(points(0, i), points(1, i))];
     return result;
 }
 
@@ -87,11 +75,10 @@ Chains chainsOf(const Eigen::Matrix3Xf& points, const std::vector<float>& above,
                   std::vector<std::int32_t>(above.size(), kNone),
                   {}};
     std::vector<std::int32_t> last(grid.size(), kNone);
-    const auto cells = grid.cellsOf(points);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        const auto height = double{above[i]};
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const auto height = double{above[static_cast<std::size_t>(i)]};
         if (height < options.above_ground || height > options.height) continue;
-        const std::size_t cell = cells[i];
+        const std::size_t cell = grid.at(points(0, i), points(1, i));
         if (cell == grid.size()) continue;
         const auto point = static_cast<std::int32_t>(i);
         if (last[cell] == kNone) {

@@ -141,36 +141,29 @@ void RangeImage::summarise() {
     constexpr float kNothing = std::numeric_limits<float>::infinity();
     const auto columns = static_cast<std::size_t>(directions_.columns);
     leastAbout_.resize(nearest_.size());
-    mostAbout_.resize(nearest_.size());
     // Of three rows first, with a column more on either side, then of three columns: plain loops.
-    std::vector<float> least(columns + 2), most(columns + 2);
+    std::vector<float> least(columns + 2);
     std::vector<int> seen(columns + 2);
     for (std::size_t row = 0; row < rows(); ++row) {
         std::fill(least.begin(), least.end(), kNothing);
-        std::fill(most.begin(), most.end(), 0.0F);
         std::fill(seen.begin(), seen.end(), 0);
         for (std::size_t r = row - (row > 0); r < std::min(row + 2, rows()); ++r) {
             const float* const nearest = nearest_.data() + r * columns;
             for (std::size_t c = 0; c < columns; ++c) {
                 const bool isSeen = nearest[c] > 0;
                 least[c + 1] = std::min(least[c + 1], isSeen ? nearest[c] : kNothing);
-                most[c + 1] = std::max(most[c + 1], nearest[c]);
                 seen[c + 1] += isSeen;
             }
         }
         least.front() = least[columns];
-        most.front() = most[columns];
         seen.front() = seen[columns];
         least.back() = least[1];
-        most.back() = most[1];
         seen.back() = seen[1];
         float* const about = leastAbout_.data() + row * columns;
-        float* const farthest = mostAbout_.data() + row * columns;
         for (std::size_t c = 0; c < columns; ++c) {
             const float all = std::min(std::min(least[c], least[c + 1]), least[c + 2]);
             const int count = seen[c] + seen[c + 1] + seen[c + 2];
             about[c] = count >= kEnough ? all : count > 0 ? -all : 0.0F;
-            farthest[c] = std::max(std::max(most[c], most[c + 1]), most[c + 2]);
         }
     }
 }
@@ -193,14 +186,12 @@ Place RangeImage::at(const Eigen::Vector3f& point, float margin) const {
     const int row = directions_.rowOf(x, y, z), column = directions_.columnOf(x, y);
     const int r = row - firstRow_;
     if (r < 0 || r >= static_cast<int>(rows())) return lookAbout(row, column, range, margin);
-    // Mostly the least or the most of the neighbourhood tells all.
-    const std::size_t cell = cellOf(row, column);
-    const float about = leastAbout_[cell];
+    // Mostly the least of the neighbourhood tells all.
+    const float about = leastAbout_[cellOf(row, column)];
     if (about == 0) return Place::kUnknown;
     const float farther = std::abs(about) - range;
     if (farther > margin) return about > 0 ? Place::kFree : Place::kUnknown;
     if (farther >= -margin) return Place::kTaken;
-    if (mostAbout_[cell] < range - margin) return Place::kUnknown;  // all beams ended before it
     return lookAbout(row, column, range, margin);
 }
 }  // namespace delio::scan

@@ -83,6 +83,5 @@ class RangeImage {
     /** The least of each cell's neighbourhood, negative where too little was seen there to call
      *  anything free, 0 where nothing was. */
     std::vector<float> leastAbout_;
-    std::vector<float> mostAbout_;  //!< the most of it
 };
 }  // namespace delio::scan
