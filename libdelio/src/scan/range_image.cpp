@@ -36,14 +36,15 @@ inline int RangeImage::Directions::columnOf(float x, float y) const {
 void RangeImage::Directions::see(const Eigen::Ref<const Eigen::Matrix3Xf>& points,
                                  const Eigen::Matrix3f& turn, int* cells, float* ranges) const {
     // Each coordinate in a row of its own, and a plain loop: vector instructions.
-    const Eigen::ArrayXf xs = points.row(0), ys = points.row(1), zs = points.row(2);
-    const Directions our = *this;    // nothing that is written can change it
-    const Eigen::Matrix3f R = turn;  // likewise
+    const Eigen::Array<float, 3, Eigen::Dynamic, Eigen::RowMajor> given = points.array();
+    const auto turned = [&](Eigen::Index axis) -> Eigen::ArrayXf {
+        return turn(axis, 0) * given.row(0) + turn(axis, 1) * given.row(1) +
+               turn(axis, 2) * given.row(2);
+    };
+    const Eigen::ArrayXf xs = turned(0), ys = turned(1), zs = turned(2);
+    const Directions our = *this;  // nothing that is written can change it
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const float px = xs.data()[i], py = ys.data()[i], pz = zs.data()[i];
-        const float x = R(0, 0) * px + R(0, 1) * py + R(0, 2) * pz,
-                    y = R(1, 0) * px + R(1, 1) * py + R(1, 2) * pz,
-                    z = R(2, 0) * px + R(2, 1) * py + R(2, 2) * pz;
+        const float x = xs.data()[i], y = ys.data()[i], z = zs.data()[i];
         cells[i] = our.rowOf(x, y, z) * our.columns + our.columnOf(x, y);
         ranges[i] = rangeOf(x, y, z);
     }
