@@ -13,10 +13,14 @@ Eigen::Matrix3Xf stillPoints(const SlamScan& scan) {
     const Eigen::Index all = points.cols() - moving,
                        stride = std::max<Eigen::Index>(1, (all + kMost - 1) / kMost);
     Eigen::Matrix3Xf still(3, (all + stride - 1) / stride);
-    Eigen::Index met = 0, kept = 0;
+    Eigen::Index kept = 0, toPass = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         if (!dynamic.empty() && dynamic[static_cast<std::size_t>(i)]) continue;
-        if (met++ % stride == 0) still.col(kept++) = points.col(i);
+        if (toPass == 0) {
+            still.col(kept++) = points.col(i);
+            toPass = stride;
+        }
+        --toPass;
     }
     return scan.scan.sensorPose.cast<float>() * still;
 }
