@@ -47,8 +47,8 @@ class PointMap {
         Eigen::Vector3d point = Eigen::Vector3d::Zero();  //!< metres, the map's frame
         double others_m = 0;                              //!< all others are farther away
     };
-    /** The nearest point within `reach` metres, which are at most a voxel's edge, if there is any;
-     *  and a distance, metres, within which no other one lies. */
+    /** The nearest point within `reach` metres, and never farther than a voxel's edge, if there is
+     *  any; and a distance, metres, within which no other one lies. */
     Nearest nearest(const Eigen::Vector3d& point, double reach) const;
 
     /** Soon prefetchCell() is called of the point, and after that nearest(). */
