@@ -35,7 +35,8 @@ std::vector<OptionField> ScanToMapOptions::fields() const {
 void ScanToMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose) {
     const Eigen::Matrix3Xd placed =
         (pose.linear() * points.cast<double>()).colwise() + pose.translation();
-    // The one that splits up comes last: it is what a thread that has nothing else to do helps with.
+    // The one that splits up comes last: it is what a thread that has nothing else to do helps
+    // with.
     tbb::parallel_invoke([&] { points_.add(placed); }, [&] { planes_.add(placed); });
     // Each sweep goes through all that is known: not with every scan.
     constexpr double kSweep_m = 10;
