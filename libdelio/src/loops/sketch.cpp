@@ -8,8 +8,8 @@
 namespace delio::loops {
 namespace {
 /** Of a levelled cloud a normal a voxel that is flat, which says as much as it has points. (Normals
- *  about each point, from nearest neighbours, find no other loops, and take twenty times as
- *  long.) */
+ *  about each point, from nearest neighbours, found no other loops, and took eight times the
+ *  instructions.) */
 surfaces::SurfaceNormals wallsOf(const Eigen::Matrix3Xf& points) {
     planes::PlaneMapOptions options;
     options.voxel_size = 1;
