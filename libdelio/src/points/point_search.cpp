@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "delio/scan/sample.h"
+#include "level_grid.h"
 
 namespace delio::points {
 namespace {
@@ -48,19 +49,30 @@ std::vector<Eigen::Isometry3d> bestOf(const std::vector<Eigen::Isometry3d>& star
     return best;
 }
 
-/** On a level disc about `guess`. */
+/** On a level disc about `guess`; of many those that seem best in a grid. */
 std::vector<Eigen::Isometry3d> startsAbout(const Eigen::Isometry3d& guess, double reach,
-                                           const Eigen::Matrix3f& upright, double step) {
+                                           const Eigen::Matrix3f& upright, double step,
+                                           const PointMap& map, const Eigen::Matrix3Xd& points) {
+    constexpr std::size_t kFew = 50;
     // (Times between scans are never quite even: half a step is not worth a ring of starts.)
     const auto steps = static_cast<int>(std::lround(reach / step));
-    std::vector<Eigen::Isometry3d> starts;
+    std::vector<Eigen::Array2i> places;
     for (int x = -steps; x <= steps; ++x)
-        for (int y = -steps; y <= steps; ++y) {
-            const Eigen::Vector3d level(x * step, y * step, 0),
-                offset = upright.transpose().cast<double>() * level;
-            if (level.norm() <= steps * step)
-                starts.push_back(guess * Eigen::Translation3d(offset));
-        }
+        for (int y = -steps; y <= steps; ++y)
+            if (x * x + y * y <= steps * steps) places.emplace_back(x, y);
+    if (places.size() > kFew) {
+        const auto counts = countsFrom({guess, upright, step, steps}, map, points);
+        std::stable_sort(places.begin(), places.end(), [&](const auto& a, const auto& b) {
+            return counts(a.x() + steps, a.y() + steps) > counts(b.x() + steps, b.y() + steps);
+        });
+        places.resize(kFew);
+    }
+    std::vector<Eigen::Isometry3d> starts;
+    for (const auto& place : places) {
+        const Eigen::Vector3d level(place.x() * step, place.y() * step, 0),
+            offset = upright.transpose().cast<double>() * level;
+        starts.push_back(guess * Eigen::Translation3d(offset));
+    }
     return starts;
 }
 
@@ -125,7 +137,8 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     // Where a start leads to, a part of the points tells: they are judged by all, each place once.
     const Eigen::Matrix3Xd part = scan::sample(off, kEnough);
     std::vector<Eigen::Isometry3d> judged;
-    const auto starts = bestOf(startsAbout(guess, reach, upright, start), map, part, start / 2);
+    const auto starts =
+        bestOf(startsAbout(guess, reach, upright, start, map, part), map, part, start / 2);
     for (const auto& found : placesFrom(map, part, starts, start, options)) {
         if (!found.valid || found.share <= least || isAmong(judged, found.pose, width)) continue;
         judged.push_back(found.pose);

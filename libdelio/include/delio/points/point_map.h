@@ -61,6 +61,16 @@ class PointMap {
         if (cell != scan::VoxelIndex::kNone) cells_.prefetchValue(cell);
     }
 
+    /** Calls visit(point) of each (metres, the map's frame). */
+    template <typename Visit>
+    void forEachPoint(const Visit& visit) const {
+        for (std::uint32_t number = 0; number < cells_.size(); ++number) {
+            const Cell& cell = cells_[number];
+            for (std::uint32_t i = 0; i < cell.count; ++i)
+                visit(cell.origin + cell.point(i).cast<double>());
+        }
+    }
+
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
     void serialize(Archive& archive) {
