@@ -1,6 +1,7 @@
 #include "delio/points/point_search.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,10 +32,10 @@ PointEstimate registerInSteps(const PointMap& map, const Eigen::Matrix3Xd& point
 }
 
 /** Of the starts the best ones: where most of the points come to lie within `distance` of the
- *  map's. */
+ *  map's, and no smaller share than `least`. */
 std::vector<Eigen::Isometry3d> bestOf(const std::vector<Eigen::Isometry3d>& starts,
                                       const PointMap& map, const Eigen::Matrix3Xd& points,
-                                      double distance) {
+                                      double distance, double least) {
     constexpr std::size_t kBest = 8;
     std::vector<std::pair<double, Eigen::Isometry3d>> all;
     all.reserve(starts.size());
@@ -45,7 +46,8 @@ std::vector<Eigen::Isometry3d> bestOf(const std::vector<Eigen::Isometry3d>& star
     std::stable_sort(all.begin(), all.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<Eigen::Isometry3d> best;
-    for (std::size_t i = 0; i < std::min(kBest, all.size()); ++i) best.push_back(all[i].second);
+    for (std::size_t i = 0; i < std::min(kBest, all.size()) && all[i].first >= least; ++i)
+        best.push_back(all[i].second);
     return best;
 }
 
@@ -115,7 +117,10 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& guess, double reach,
                            const Eigen::Matrix3f& upright,
                            const PointRegistrationOptions& options) {
-    auto best = registerInSteps(map, points, guess, options.least_kernel, options);
+    PointEstimate best, wide;
+    tbb::parallel_invoke(
+        [&] { best = registerInSteps(map, points, guess, options.least_kernel, options); },
+        [&] { wide = registerInSteps(map, points, guess, options.first_kernel, options); });
     const auto off = pointsOff(map, points, guess, options.least_kernel);
     if (off.cols() < options.min_matches) return best;
     const auto shareOf = [&](const PointEstimate& found, double distance) {
@@ -126,7 +131,6 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     constexpr double kAsMuch = 0.7;
     const double width = options.last_kernel, start = options.first_kernel / 2,
                  leastOfAll = kAsMuch * best.share;
-    const auto wide = registerInSteps(map, points, guess, options.first_kernel, options);
     if (wide.valid && wide.share >= leastOfAll && shareOf(wide, width) > shareOf(best, width))
         best = wide;
     // Another start has to explain clearly more; which of them does is told within half the width:
@@ -137,8 +141,9 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     // Where a start leads to, a part of the points tells: they are judged by all, each place once.
     const Eigen::Matrix3Xd part = scan::sample(off, kEnough);
     std::vector<Eigen::Isometry3d> judged;
+    // No start leads where more of them lie on the map than come near it from there.
     const auto starts =
-        bestOf(startsAbout(guess, reach, upright, start, map, part), map, part, start / 2);
+        bestOf(startsAbout(guess, reach, upright, start, map, part), map, part, start / 2, least);
     for (const auto& found : placesFrom(map, part, starts, start, options)) {
         if (!found.valid || found.share <= least || isAmong(judged, found.pose, width)) continue;
         judged.push_back(found.pose);
@@ -158,7 +163,7 @@ PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
     constexpr Eigen::Index kFew = 250;
     const double start = options.first_kernel / 2;
     const auto starts =
-        bestOf(turnsAbout(guess, kReach, kStep), map, scan::sample(points, kFew), start / 2);
+        bestOf(turnsAbout(guess, kReach, kStep), map, scan::sample(points, kFew), start / 2, 0);
     PointEstimate best;
     for (const auto& found : placesFrom(map, scan::sample(points, kEnough), starts, start, options))
         if (found.valid && (!best.valid || found.share > best.share)) best = found;
