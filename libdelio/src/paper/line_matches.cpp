@@ -11,13 +11,28 @@ namespace delio::paper {
 LineMatcher::LineMatcher(const LineCloud& from) : from_(from), tree_(from.midpoints) {}
 
 LineMatcher::Found LineMatcher::find(const Eigen::Vector3f& at) const {
-    std::uint32_t nearest[2] = {0, 0};
-    float squared[2] = {0, 0};
-    const std::size_t count = tree_.nearest(at, 2, nearest, squared);
-    if (count == 0) return {at, 0, -1};
-    const float reach = count == 1 ? std::numeric_limits<float>::infinity()
-                                   : (std::sqrt(squared[1]) - std::sqrt(squared[0])) / 2;
-    return {at, nearest[0], reach};
+    Found found;
+    found.at = at;
+    std::array<float, Found::kMost> squared{};
+    found.count = tree_.nearest(at, Found::kMost, found.nearest.data(), squared.data());
+    found.others_m = found.count == Found::kMost ? std::sqrt(squared.back())
+                                                 : std::numeric_limits<float>::infinity();
+    return found;
+}
+
+Match LineMatcher::nearestOf(const Found& found, const Eigen::Vector3f& at) const {
+    Match best;
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < found.count; ++i) {
+        const std::uint32_t from = found.nearest[i];
+        const float squared =
+            (from_.midpoints.col(static_cast<Eigen::Index>(from)) - at).squaredNorm();
+        if (squared >= least) continue;
+        least = squared;
+        best.from = from;
+    }
+    best.distance = std::sqrt(least);
+    return best;
 }
 
 std::vector<Match> LineMatcher::matches(const LineCloud& to, const Eigen::Vector3d& t,
@@ -27,18 +42,21 @@ std::vector<Match> LineMatcher::matches(const LineCloud& to, const Eigen::Vector
     if (from_.midpoints.cols() == 0) return matches;
     found_.resize(count);
     const Eigen::Vector3f moved = t.cast<float>();
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, count, 128),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                Found& found = found_[i];
-                const Eigen::Vector3f at = to.midpoints.col(static_cast<Eigen::Index>(i)) + moved;
-                if (!((at - found.at).norm() < found.reach)) found = find(at);
-                const float distance =
-                    (from_.midpoints.col(static_cast<Eigen::Index>(found.from)) - at).norm();
-                if (distance <= static_cast<float>(farthest)) matches[i] = {found.from, distance};
-            }
-        });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 128),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                              Found& found = found_[i];
+                              const Eigen::Vector3f at =
+                                  to.midpoints.col(static_cast<Eigen::Index>(i)) + moved;
+                              Match nearest = nearestOf(found, at);
+                              if (!(nearest.distance + (at - found.at).norm() < found.others_m)) {
+                                  found = find(at);
+                                  nearest = nearestOf(found, at);
+                              }
+                              if (nearest.distance <= static_cast<float>(farthest))
+                                  matches[i] = nearest;
+                          }
+                      });
     return matches;
 }
 

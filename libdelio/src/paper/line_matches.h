@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -16,7 +18,8 @@ struct Match {
 };
 
 /** Finds the lines of one cloud whose midpoints are nearest to those of others. The tree is asked
- *  again only for a line that has moved so far since that another midpoint may be nearer. */
+ *  again only for a line that has moved so far since that another midpoint may be nearer than
+ *  those that were found. */
 class LineMatcher {
  public:
     /** `from` has to outlive it. */
@@ -31,11 +34,15 @@ class LineMatcher {
  private:
     /** What was found for a line of `to` where it was then. */
     struct Found {
+        static constexpr std::size_t kMost = 8;
+
         Eigen::Vector3f at = Eigen::Vector3f::Zero();
-        std::uint32_t from = 0;
-        float reach = -1;  //!< it stays the nearest of what moves less than this; metres
+        std::array<std::uint32_t, kMost> nearest;
+        std::size_t count = 0;
+        float others_m = -1;  //!< all others are at least so far away
     };
     Found find(const Eigen::Vector3f& at) const;
+    Match nearestOf(const Found& found, const Eigen::Vector3f& at) const;
 
     const LineCloud& from_;
     KdTree tree_;

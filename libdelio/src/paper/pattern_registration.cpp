@@ -1,21 +1,27 @@
 #include "delio/paper/pattern_registration.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "../core/kd_tree.h"
-#include "../core/portable_math.h"
 #include "delio/core/geometry.h"
 #include "delio/core/kabsch.h"
 #include "delio/scan/voxel_grid.h"
+#include "weighted_directions.h"
 
 namespace delio::paper {
 namespace {
 constexpr double kDeg = M_PI / 180;
+constexpr Eigen::Index kBlock = 128;
+constexpr double kReach = 2.5;  // of the kernel, in standard deviations
 
 /** Pairs are never taken to fit better than this: the same scan twice leaves no residual at all,
  * but a covariance has to be one. */
@@ -34,13 +40,11 @@ struct Pairing {
  *  same bytes for any number of threads. */
 template <typename PairOne>
 Pairing pairAll(Eigen::Index count, const PairOne& pairOne) {
-    constexpr Eigen::Index kBlock = 128;
     std::vector<Pairing> blocks(static_cast<std::size_t>((count + kBlock - 1) / kBlock));
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
         const Eigen::Index begin = static_cast<Eigen::Index>(b) * kBlock;
-        std::vector<std::pair<std::uint32_t, float>> partners;
         for (Eigen::Index i = begin; i < std::min(count, begin + kBlock); ++i)
-            pairOne(i, partners, blocks[b]);
+            pairOne(i, blocks[b]);
     });
     Pairing total;
     for (const auto& block : blocks) {
@@ -55,7 +59,7 @@ Pairing pairAll(Eigen::Index count, const PairOne& pairOne) {
 
 Pairing pairNearest(const Pattern& from, const KdTree& tree, const Pattern& to,
                     const Eigen::Matrix3d& R) {
-    return pairAll(to.directions.cols(), [&](Eigen::Index i, auto& /*partners*/, Pairing& sum) {
+    return pairAll(to.directions.cols(), [&](Eigen::Index i, Pairing& sum) {
         const Eigen::Vector3f turned = R.cast<float>() * to.directions.col(i);
         std::uint32_t index = 0;
         float squared = 0;
@@ -69,28 +73,65 @@ Pairing pairNearest(const Pattern& from, const KdTree& tree, const Pattern& to,
     });
 }
 
+/** Which normals of `from` may be partners of each one of `to`: the tree is asked again only when
+ *  the rotation has turned so far that others may have come near. */
+class Neighbours {
+ public:
+    /** Partners are at most `reach` apart on the unit sphere. */
+    Neighbours(const Pattern& from, const Pattern& to, double reach)
+        : from_(from),
+          to_(to),
+          tree_(from.directions),
+          reach_(reach),
+          of_(static_cast<std::size_t>(to.directions.cols())) {}
+
+    /** Of each normal of `to`, turned by R; some lie a bit farther away. */
+    const std::vector<WeightedDirections>& at(const Eigen::Matrix3d& R) {
+        constexpr double kSpare = 0.15;
+        const double spare = kSpare * reach_;
+        if (asked_ && angleOf(R.transpose() * *asked_) < spare) return of_;
+        asked_ = R;
+        const auto squared = static_cast<float>((reach_ + spare) * (reach_ + spare));
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, of_.size(), kBlock), [&](const auto& block) {
+                std::vector<std::pair<std::uint32_t, float>> near;
+                for (std::size_t i = block.begin(); i != block.end(); ++i) {
+                    const auto column = static_cast<Eigen::Index>(i);
+                    tree_.within(R.cast<float>() * to_.directions.col(column), squared, near);
+                    of_[i].clear();
+                    for (const auto& [number, distance] : near)
+                        of_[i].add(from_.directions.col(number), from_.weights[number]);
+                }
+            });
+        return of_;
+    }
+
+ private:
+    const Pattern &from_, &to_;
+    const KdTree tree_;
+    const double reach_;
+    std::vector<WeightedDirections> of_;
+    std::optional<Eigen::Matrix3d> asked_;
+};
+
 /** Pairs each normal with all of the other pattern within 2.5 sigma. The sum of the pairs' weights
  *  is the correlation of the two densities; its maximum is where pairing and SVD stand still. */
-Pairing pairDensities(const Pattern& from, const KdTree& tree, const Pattern& to,
+Pairing pairDensities(const std::vector<WeightedDirections>& neighbours, const Pattern& to,
                       const Eigen::Matrix3d& R, double sigma_rad) {
-    const auto reach = static_cast<float>(2.5 * 2.5 * sigma_rad * sigma_rad);
-    const auto scale = static_cast<float>(-0.5 / (sigma_rad * sigma_rad));
-    return pairAll(to.directions.cols(), [&](Eigen::Index i, auto& partners, Pairing& sum) {
+    const double reach_rad = kReach * sigma_rad;
+    return pairAll(to.directions.cols(), [&](Eigen::Index i, Pairing& sum) {
         const Eigen::Vector3f turned = R.cast<float>() * to.directions.col(i);
-        tree.within(turned, reach, partners);
-        if (partners.empty()) return;
-        Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-        float weight = 0;
-        for (const auto& [index, squared] : partners) {
-            const float w = from.weights[index] * portable::exp(scale * squared);
-            mean += w * from.directions.col(index);
-            weight += w;
-        }
+        const auto partners =
+            neighbours[static_cast<std::size_t>(i)].under(turned, sigma_rad, reach_rad * reach_rad);
+        const float weight = partners.weight;
+        if (!(weight > 0)) return;
         const double own = to.weights[i];
-        sum.moment += own * mean.cast<double>() * to.directions.col(i).cast<double>().transpose();
+        sum.moment += own * partners.directions.cast<double>() *
+                      to.directions.col(i).cast<double>().transpose();
         sum.weight += own * static_cast<double>(weight);
         sum.squaredAngles +=
-            own * static_cast<double>(weight * (mean / weight - turned).squaredNorm());
+            own *
+            static_cast<double>(weight * (partners.directions / weight - turned).squaredNorm());
         ++sum.matches;
         sum.matched += own;
     });
@@ -111,20 +152,18 @@ Pattern condensed(const Pattern& pattern, double kernel_deg,
     return result;
 }
 
-/** Pairs and turns until the rotation stands still. Not valid where too few normals of `to` find a
- *  partner. */
-void iterate(const Pattern& from, const Pattern& to, double kernel_deg,
-             const PatternRegistrationOptions& options, RotationEstimate& estimate) {
-    const KdTree tree(from.directions);
+/** Pairs, by `pairAt(rotation)`, and turns until the rotation stands still. Not valid where too few
+ *  normals of `to` find a partner. */
+template <typename PairAt>
+void iterate(const Pattern& to, const PatternRegistrationOptions& options, const PairAt& pairAt,
+             RotationEstimate& estimate) {
     // The weight that stands for min_normals, less what rounding takes.
     const double enough = (1 - 1e-6) * options.min_normals * static_cast<double>(to.weights.sum()) /
                           static_cast<double>(to.normals);
     double step = M_PI;
     estimate.converged = false;
     while (estimate.iterations < options.max_iterations && step > options.converged_deg * kDeg) {
-        const Pairing pairs =
-            kernel_deg > 0 ? pairDensities(from, tree, to, estimate.rotation, kernel_deg * kDeg)
-                           : pairNearest(from, tree, to, estimate.rotation);
+        const Pairing pairs = pairAt(estimate.rotation);
         estimate.valid = pairs.matched >= enough;
         if (!estimate.valid) return;
         ++estimate.iterations;
@@ -135,6 +174,23 @@ void iterate(const Pattern& from, const Pattern& to, double kernel_deg,
         estimate.rotation = next;
     }
     estimate.converged = step <= options.converged_deg * kDeg;
+}
+
+void correlate(const Pattern& from, const Pattern& to, double sigma_rad,
+               const PatternRegistrationOptions& options, RotationEstimate& estimate) {
+    Neighbours neighbours(from, to, kReach * sigma_rad);
+    iterate(
+        to, options,
+        [&](const Eigen::Matrix3d& R) { return pairDensities(neighbours.at(R), to, R, sigma_rad); },
+        estimate);
+}
+
+void matchNearest(const Pattern& from, const Pattern& to, const PatternRegistrationOptions& options,
+                  RotationEstimate& estimate) {
+    const KdTree tree(from.directions);
+    iterate(
+        to, options, [&](const Eigen::Matrix3d& R) { return pairNearest(from, tree, to, R); },
+        estimate);
 }
 
 /** Moves the estimate back to the prediction about the axes that the pattern does not fix, or about
@@ -219,12 +275,12 @@ RotationEstimate registerPatterns(const Pattern& from, const Pattern& to,
         estimate.valid = true;
         for (double kernel_deg = options.kernel_deg; estimate.valid; kernel_deg /= 2) {
             kernel_deg = std::max(kernel_deg, options.last_kernel_deg);
-            iterate(condensed(from, kernel_deg, options), condensed(to, kernel_deg, options),
-                    kernel_deg, options, estimate);
+            correlate(condensed(from, kernel_deg, options), condensed(to, kernel_deg, options),
+                      kernel_deg * kDeg, options, estimate);
             if (kernel_deg <= options.last_kernel_deg) break;
         }
     } else if (enough)
-        iterate(from, to, 0, options, estimate);
+        matchNearest(from, to, options, estimate);
     const double correction = angleOf(predicted.transpose() * estimate.rotation);
     if (correction > options.max_correction_deg * kDeg) {
         estimate.tooFar = true;

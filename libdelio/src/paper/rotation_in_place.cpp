@@ -12,19 +12,14 @@
 #include "../core/portable_math.h"
 #include "delio/core/geometry.h"
 #include "delio/core/kabsch.h"
+#include "weighted_directions.h"
 
 namespace delio::paper {
 namespace {
 constexpr double kDeg = M_PI / 180;
 
-/** A normal of `from` that lies near one of `to`. */
-struct Partner {
-    Eigen::Index from;
-    float weight;
-};
-
 /** Of each normal of `to`, those of `from` within two standard deviations of its place. */
-using Partners = std::vector<std::vector<Partner>>;
+using Partners = std::vector<WeightedDirections>;
 
 Partners partnersInPlace(const Pattern& from, const Pattern& to, const Eigen::Isometry3d& pose,
                          double sigma) {
@@ -33,19 +28,18 @@ Partners partnersInPlace(const Pattern& from, const Pattern& to, const Eigen::Is
     const auto scale = static_cast<float>(-0.5 / (sigma * sigma));
     const Eigen::Isometry3f moved = pose.cast<float>();
     Partners partners(static_cast<std::size_t>(to.points.cols()));
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, partners.size(), 64),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            std::vector<std::pair<std::uint32_t, float>> near;
-            for (std::size_t k = range.begin(); k != range.end(); ++k) {
-                const auto i = static_cast<Eigen::Index>(k);
-                tree.within(moved * to.points.col(i), reach, near);
-                partners[k].reserve(near.size());
-                for (const auto& [index, squared] : near)
-                    partners[k].push_back({index, from.weights[index] * to.weights[i] *
-                                                      portable::exp(scale * squared)});
-            }
-        });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, partners.size(), 64),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          std::vector<std::pair<std::uint32_t, float>> near;
+                          for (std::size_t k = range.begin(); k != range.end(); ++k) {
+                              const auto i = static_cast<Eigen::Index>(k);
+                              tree.within(moved * to.points.col(i), reach, near);
+                              for (const auto& [index, squared] : near)
+                                  partners[k].add(from.directions.col(index),
+                                                  from.weights[index] * to.weights[i] *
+                                                      portable::exp(scale * squared));
+                          }
+                      });
     return partners;
 }
 
@@ -65,30 +59,20 @@ Moment operator+(const Moment& a, const Moment& b) {
 }
 
 /** Of all pairs, weighted by how well they agree. */
-Moment momentOf(const Pattern& from, const Pattern& to, const Partners& partners,
-                const Eigen::Matrix3d& R, double kernel_rad) {
-    const auto scale = static_cast<float>(-0.5 / (kernel_rad * kernel_rad));
-    const Eigen::Matrix3Xf turned = R.cast<float>() * to.directions;
+Moment momentOf(const Pattern& to, const Partners& partners, const Eigen::Matrix3d& R,
+                double kernel_rad) {
+    constexpr double kAny = 5;  // no chord is longer
     // The same bytes for any number of threads: this way of splitting and adding is a fixed one.
     return tbb::parallel_deterministic_reduce(
         tbb::blocked_range<std::size_t>(0, partners.size(), 256), Moment(),
         [&](const tbb::blocked_range<std::size_t>& range, Moment sum) {
             for (std::size_t k = range.begin(); k != range.end(); ++k) {
-                const auto i = static_cast<Eigen::Index>(k);
-                const Eigen::Vector3f direction = turned.col(i);
-                Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-                float weights = 0, squaredAngles = 0;
-                for (const Partner& partner : partners[k]) {
-                    const Eigen::Vector3f other = from.directions.col(partner.from);
-                    const float squared = (other - direction).squaredNorm();
-                    const float weight = partner.weight * portable::exp(scale * squared);
-                    mean += weight * other;
-                    weights += weight;
-                    squaredAngles += weight * squared;
-                }
-                sum.moment += mean.cast<double>() * to.directions.col(i).cast<double>().transpose();
-                sum.weight += double{weights};
-                sum.squaredAngles += double{squaredAngles};
+                const Eigen::Vector3f own = to.directions.col(static_cast<Eigen::Index>(k)),
+                                      turned = R.cast<float>() * own;
+                const auto found = partners[k].under(turned, kernel_rad, kAny);
+                sum.moment += found.directions.cast<double>() * own.cast<double>().transpose();
+                sum.weight += double{found.weight};
+                sum.squaredAngles += double{found.squares};
             }
             return sum;
         },
@@ -145,7 +129,7 @@ RotationEstimate registerInPlace(const Pattern& from, const Pattern& to,
         kernel_deg = std::max(kernel_deg, options.last_kernel_deg);
         double step = M_PI;
         while (iterations < options.max_iterations && step > options.converged_deg * kDeg) {
-            const Moment sum = momentOf(from, to, partners, estimate.rotation, kernel_deg * kDeg);
+            const Moment sum = momentOf(to, partners, estimate.rotation, kernel_deg * kDeg);
             if (!(sum.weight > 0)) return found;
             const Eigen::Matrix3d next = rotationOf(sum.moment);
             step = angleOf(estimate.rotation.transpose() * next);
