@@ -1,9 +1,11 @@
 #include "delio/localisation/place_search.h"
 
-#include "delio/core/geometry.h"
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "delio/core/geometry.h"
 
 namespace delio {
 using loops::Shift;
@@ -75,10 +77,13 @@ FoundPlace PlaceSearch::find(const Eigen::Matrix3Xf& cloud,
 std::vector<PlaceSearch::Hypothesis> PlaceSearch::hypotheses(
     const std::vector<loops::Sighting>& sightings, const loops::Sketch& seen) const {
     constexpr std::size_t kMost = 6;
+    std::vector<std::vector<Shift>> shifts(sightings.size());
+    tbb::parallel_for(std::size_t{0}, shifts.size(), [&](std::size_t i) {
+        shifts[i] = refined(sketches_[sightings[i].place], seen, sightings[i].shift);
+    });
     std::vector<Hypothesis> found;
-    for (const auto& sighting : sightings)
-        for (const auto& shift : refined(sketches_[sighting.place], seen, sighting.shift))
-            found.push_back({sighting.place, shift});
+    for (std::size_t i = 0; i < shifts.size(); ++i)
+        for (const auto& shift : shifts[i]) found.push_back({sightings[i].place, shift});
     std::stable_sort(found.begin(), found.end(),
                      [](const auto& a, const auto& b) { return a.shift.share > b.shift.share; });
     const auto isWorse = [&](const Hypothesis& other) {
@@ -90,21 +95,19 @@ std::vector<PlaceSearch::Hypothesis> PlaceSearch::hypotheses(
 }
 
 /** Registers the cloud where a hypothesis puts it, and looks whether it can be there. */
-FoundPlace PlaceSearch::registered(const Hypothesis& hypothesis, const loops::Sketch& seen,
-                                   const loops::Ground& cloud) {
+FoundPlace PlaceSearch::registered(const Hypothesis& hypothesis, const loops::Ground& place,
+                                   const loops::Sketch& seen, const loops::Ground& cloud) const {
     const auto& image = sketches_[hypothesis.place].image;
-    const auto place = grounds_.at(
-        hypothesis.place, [&] { return loops::Ground(map_->points(hypothesis.place), image); });
     loops::ClosureOptions options;
     options.min_overlap = 0;  // it is judged by what the place could have seen
     const loops::Submap itself;
-    const auto closure = closureOf({map_->submaps()[hypothesis.place], place->map},
+    const auto closure = closureOf({map_->submaps()[hypothesis.place], place.map},
                                    {itself, cloud.map}, poseOf(hypothesis.shift), options);
     FoundPlace found;
     found.submap = hypothesis.place;
     found.pose = map_->levelFrames()[hypothesis.place] * closure.level;
-    found.overlap = place->map.support(cloud.map, closure.level);
-    found.bare = std::max(place->free.builtOn(seen.image, closure.level),
+    found.overlap = place.map.support(cloud.map, closure.level);
+    found.bare = std::max(place.free.builtOn(seen.image, closure.level),
                           cloud.free.builtOn(image, closure.level.inverse()));
     found.reason = closure.reason;
     if (found.reason.empty() && found.overlap < options_.min_overlap)
@@ -117,9 +120,16 @@ FoundPlace PlaceSearch::registered(const Hypothesis& hypothesis, const loops::Sk
 FoundPlace PlaceSearch::verified(const std::vector<loops::Sighting>& sightings,
                                  const Eigen::Matrix3Xf& cloud, const loops::Sketch& seen) {
     const loops::Ground ground(cloud, seen.image);
-    std::vector<FoundPlace> places;
-    for (const auto& hypothesis : hypotheses(sightings, seen))
-        places.push_back(registered(hypothesis, seen, ground));
+    const auto found = hypotheses(sightings, seen);
+    std::vector<std::shared_ptr<const loops::Ground>> grounds;
+    for (const auto& [place, shift] : found)
+        grounds.push_back(grounds_.at(place, [&, place = place] {
+            return loops::Ground(map_->points(place), sketches_[place].image);
+        }));
+    std::vector<FoundPlace> places(found.size());
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
+        places[i] = registered(found[i], *grounds[i], seen, ground);
+    });
     FoundPlace best;
     best.reason = "nothing alike";
     for (const auto& place : places) {

@@ -38,18 +38,19 @@ class Best {
 Placement placeScan(const ScanToMap& map, const ScanView& view, const Expectation& expected,
                     const PlaneOdometryOptions& options) {
     const auto& points = view.coarse;
+    constexpr double kUsual = 0.75, kUsualAtFirst = 0.25;
+    const double usual = expected.usualShare, likely = usual > 0 ? kUsual * usual : kUsualAtFirst;
+    // A prediction that is off by more than any kernel (a hand's swings) is no start.
+    const bool isTurned = expected.isShaken && !expected.isGuess;
     Best best{expected.isGuess
                   ? map.placeAnywhere(points, expected.pose, expected.start_m, expected.upright)
-                  : map.place(points, expected.pose, expected.kernel_m)};
-    // A prediction that is off by more than any kernel (a hand's swings) is no start.
-    constexpr double kUsual = 0.75, kUsualAtFirst = 0.25;
-    const double usual = expected.usualShare;
-    const bool isUsual = best.has(usual > 0 ? kUsual * usual : kUsualAtFirst);
-    if (points.cols() == 0 || (isUsual && !expected.isShaken))
-        return {best.estimate, expected.isGuess};
+              : isTurned ? map.placeTurned(points, expected.pose, likely)
+                         : map.place(points, expected.pose, expected.kernel_m)};
+    if (points.cols() == 0 || (best.has(likely) && isTurned == expected.isShaken))
+        return {best.estimate, expected.isGuess || isTurned};
     if (!expected.isGuess)  // of a guess that was a start already
         best.consider(map.place(points, expected.pose, options.points.first_kernel));
-    best.consider(map.placeTurned(points, expected.pose));
+    if (!isTurned) best.consider(map.placeTurned(points, expected.pose, likely));
     // After an interruption it may be anywhere: another place, which shares the ground with the
     // map's, must not be taken for it.
     constexpr double kSomewhere = 0.35;

@@ -68,8 +68,8 @@ PointEstimate ScanToMap::placeAnywhere(const Eigen::Matrix3Xd& coarse,
 }
 
 PointEstimate ScanToMap::placeTurned(const Eigen::Matrix3Xd& coarse,
-                                     const Eigen::Isometry3d& predicted) const {
-    return points::searchTurns(points_, coarse, predicted, pointOptions_);
+                                     const Eigen::Isometry3d& predicted, double enough) const {
+    return points::searchTurns(points_, coarse, predicted, enough, pointOptions_);
 }
 
 /** Of the rotation that points found, rad^2, right tangent. A sensor's rings mislead about all axes

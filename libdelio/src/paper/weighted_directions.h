@@ -31,17 +31,19 @@ class WeightedDirections {
     /** Those whose chord to `middle` is shorter than the root of `reach`, under a Gaussian that is
      *  `sigma` wide. */
     Sum under(const Eigen::Vector3f& middle, double sigma, double reach) const {
-        // Beyond the reach it falls so steeply that nothing is left: a choice would cost more.
-        constexpr float kSteep = 1e6F, kNothing = -60;  // and no number that is too small for floats
+        // Just beyond the reach nothing is left, so steeply does it fall: a choice would cost more.
+        // (Nothing is no number that is too small for floats, which are slow.)
+        constexpr float kSteep = 1e5F, kNothing = -60;
+        const Values nothing = Values::Constant(kNothing).exp();
         const auto scale = static_cast<float>(-0.5 / (sigma * sigma)),
-                   least = static_cast<float>(reach);
+                   inReach = static_cast<float>(1 / reach);
         Values x = Values::Zero(), y = x, z = x, weights = x, squares = x;
         for (const Group& group : groups_) {
             const Values squared = (group.x - middle.x()).square() +
                                    (group.y - middle.y()).square() +
                                    (group.z - middle.z()).square();
-            const Values exponent = scale * squared - kSteep * (squared - least).max(0);
-            const Values weight = group.weight * exponent.max(kNothing).exp();
+            const Values exponent = scale * squared - kSteep * (inReach * squared - 1).max(0);
+            const Values weight = group.weight * (exponent.max(kNothing).exp() - nothing);
             x += weight * group.x;
             y += weight * group.y;
             z += weight * group.z;

@@ -158,15 +158,23 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
 }
 
 PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
-                          const Eigen::Isometry3d& guess, const PointRegistrationOptions& options) {
+                          const Eigen::Isometry3d& guess, double enough,
+                          const PointRegistrationOptions& options) {
     constexpr double kReach = 0.55, kStep = 0.11;  // rad
     constexpr Eigen::Index kFew = 250;
+    constexpr std::ptrdiff_t kTogether = 2;  // for any number of threads
     const double start = options.first_kernel / 2;
     const auto starts =
         bestOf(turnsAbout(guess, kReach, kStep), map, scan::sample(points, kFew), start / 2, 0);
+    const Eigen::Matrix3Xd part = scan::sample(points, kEnough);
     PointEstimate best;
-    for (const auto& found : placesFrom(map, scan::sample(points, kEnough), starts, start, options))
-        if (found.valid && (!best.valid || found.share > best.share)) best = found;
+    for (auto next = starts.begin(); next != starts.end();) {
+        const auto last = next + std::min(kTogether, starts.end() - next);
+        for (const auto& found : placesFrom(map, part, {next, last}, start, options))
+            if (found.valid && (!best.valid || found.share > best.share)) best = found;
+        if (best.valid && best.share >= enough) break;
+        next = last;
+    }
     if (!best.valid) return best;
     return registerToPoints(map, points, best.pose, options.least_kernel, options);
 }

@@ -50,8 +50,8 @@ class PlaceSearch {
     };
     std::vector<Hypothesis> hypotheses(const std::vector<loops::Sighting>& sightings,
                                        const loops::Sketch& seen) const;
-    FoundPlace registered(const Hypothesis& hypothesis, const loops::Sketch& seen,
-                          const loops::Ground& cloud);
+    FoundPlace registered(const Hypothesis& hypothesis, const loops::Ground& place,
+                          const loops::Sketch& seen, const loops::Ground& cloud) const;
     FoundPlace verified(const std::vector<loops::Sighting>& sightings,
                         const Eigen::Matrix3Xf& cloud, const loops::Sketch& seen);
 

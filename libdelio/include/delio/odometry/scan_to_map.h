@@ -58,9 +58,10 @@ class ScanToMap {
                                         const Eigen::Isometry3d& predicted, double reach,
                                         const Eigen::Matrix3f& upright) const;
 
-    /** By points, where the rotation of `predicted` may be off by up to 30 deg about any axis. */
+    /** By points, where the rotation of `predicted` may be off by up to 30 deg about any axis, until
+     *  a share of `enough` fits. */
     points::PointEstimate placeTurned(const Eigen::Matrix3Xd& coarse,
-                                      const Eigen::Isometry3d& predicted) const;
+                                      const Eigen::Isometry3d& predicted, double enough) const;
 
     /** By planes, from where the points were placed; from where planes lead once more, if more
      *  points fit there. An axis that the planes see no better than the

@@ -11,9 +11,10 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Matrix3f& upright, const PointRegistrationOptions& options);
 
 /** Registration where the rotation of `guess` may be off by up to 30 deg about any axis: by the
- * hand that carries the sensor, or a bump. */
+ * hand that carries the sensor, or a bump. Where a share of `enough` fits, no more is tried. */
 PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
-                          const Eigen::Isometry3d& guess, const PointRegistrationOptions& options);
+                          const Eigen::Isometry3d& guess, double enough,
+                          const PointRegistrationOptions& options);
 
 /** True where the points see that direction (a unit vector of the map's frame): the scan comes back
  *  to `pose` from `probe` metres along it to either side. (Rings of a sensor in a tunnel lie on
