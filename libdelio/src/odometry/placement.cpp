@@ -48,9 +48,9 @@ Placement placeScan(const ScanToMap& map, const ScanView& view, const Expectatio
                          : map.place(points, expected.pose, expected.kernel_m)};
     if (points.cols() == 0 || (best.has(likely) && isTurned == expected.isShaken))
         return {best.estimate, expected.isGuess || isTurned};
-    if (!expected.isGuess)  // of a guess that was a start already
-        best.consider(map.place(points, expected.pose, options.points.first_kernel));
     if (!isTurned) best.consider(map.placeTurned(points, expected.pose, likely));
+    if (!expected.isGuess && !best.has(likely))  // of a guess that was a start already
+        best.consider(map.place(points, expected.pose, options.points.first_kernel));
     // After an interruption it may be anywhere: another place, which shares the ground with the
     // map's, must not be taken for it.
     constexpr double kSomewhere = 0.35;

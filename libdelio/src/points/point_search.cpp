@@ -17,6 +17,8 @@ namespace {
 constexpr Eigen::Index kEnough = 1000;
 /** Of sparse scans all are needed: with half of a VLP-16's points a road was taken for a tunnel. */
 constexpr Eigen::Index kDense = 2000;
+/** So many starts are worth registering. */
+constexpr std::size_t kBest = 8;
 
 /** By a part of the points, which may take a hundred iterations, then by all. */
 PointEstimate registerInSteps(const PointMap& map, const Eigen::Matrix3Xd& points,
@@ -31,30 +33,29 @@ PointEstimate registerInSteps(const PointMap& map, const Eigen::Matrix3Xd& point
     return estimate;
 }
 
-/** Of the starts the best ones: where most of the points come to lie within `distance` of the
+using Starts = std::vector<Eigen::Isometry3d>;
+
+/** Of the starts the best `most`: where most of the points come to lie within `distance` of the
  *  map's, and no smaller share than `least`. */
-std::vector<Eigen::Isometry3d> bestOf(const std::vector<Eigen::Isometry3d>& starts,
-                                      const PointMap& map, const Eigen::Matrix3Xd& points,
-                                      double distance, double least) {
-    constexpr std::size_t kBest = 8;
-    std::vector<std::pair<double, Eigen::Isometry3d>> all;
-    all.reserve(starts.size());
-    for (const auto& start : starts) all.emplace_back(0, start);
-    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
-        all[i].first = shareAt(map, points, all[i].second, distance);
+Starts bestOf(const Starts& starts, std::size_t most, const PointMap& map,
+              const Eigen::Matrix3Xd& points, double distance, double least) {
+    std::vector<std::pair<double, std::size_t>> shares(starts.size());
+    tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
+        shares[i] = {shareAt(map, points, starts[i], distance), i};
     });
-    std::stable_sort(all.begin(), all.end(),
+    std::stable_sort(shares.begin(), shares.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::vector<Eigen::Isometry3d> best;
-    for (std::size_t i = 0; i < std::min(kBest, all.size()) && all[i].first >= least; ++i)
-        best.push_back(all[i].second);
+    Starts best;
+    for (const auto& [share, i] : shares) {
+        if (best.size() == most || share < least) break;
+        best.push_back(starts[i]);
+    }
     return best;
 }
 
 /** On a level disc about `guess`; of many those that seem best in a grid. */
-std::vector<Eigen::Isometry3d> startsAbout(const Eigen::Isometry3d& guess, double reach,
-                                           const Eigen::Matrix3f& upright, double step,
-                                           const PointMap& map, const Eigen::Matrix3Xd& points) {
+Starts startsAbout(const Eigen::Isometry3d& guess, double reach, const Eigen::Matrix3f& upright,
+                   double step, const PointMap& map, const Eigen::Matrix3Xd& points) {
     constexpr std::size_t kFew = 50;
     // (Times between scans are never quite even: half a step is not worth a ring of starts.)
     const auto steps = static_cast<int>(std::lround(reach / step));
@@ -69,7 +70,7 @@ std::vector<Eigen::Isometry3d> startsAbout(const Eigen::Isometry3d& guess, doubl
         });
         places.resize(kFew);
     }
-    std::vector<Eigen::Isometry3d> starts;
+    Starts starts;
     for (const auto& place : places) {
         const Eigen::Vector3d level(place.x() * step, place.y() * step, 0),
             offset = upright.transpose().cast<double>() * level;
@@ -79,10 +80,9 @@ std::vector<Eigen::Isometry3d> startsAbout(const Eigen::Isometry3d& guess, doubl
 }
 
 /** Turned about all axes, by up to `reach` (rad). */
-std::vector<Eigen::Isometry3d> turnsAbout(const Eigen::Isometry3d& guess, double reach,
-                                          double step) {
+Starts turnsAbout(const Eigen::Isometry3d& guess, double reach, double step) {
     const int steps = static_cast<int>(reach / step);
-    std::vector<Eigen::Isometry3d> starts;
+    Starts starts;
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y)
             for (int z = -steps; z <= steps; ++z) {
@@ -96,7 +96,7 @@ std::vector<Eigen::Isometry3d> turnsAbout(const Eigen::Isometry3d& guess, double
 
 /** Where the starts lead to. */
 std::vector<PointEstimate> placesFrom(const PointMap& map, const Eigen::Matrix3Xd& points,
-                                      const std::vector<Eigen::Isometry3d>& starts, double kernel,
+                                      const Starts& starts, double kernel,
                                       const PointRegistrationOptions& options) {
     std::vector<PointEstimate> places(starts.size());
     tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
@@ -105,8 +105,7 @@ std::vector<PointEstimate> placesFrom(const PointMap& map, const Eigen::Matrix3X
     return places;
 }
 
-bool isAmong(const std::vector<Eigen::Isometry3d>& places, const Eigen::Isometry3d& place,
-             double within) {
+bool isAmong(const Starts& places, const Eigen::Isometry3d& place, double within) {
     return std::any_of(places.begin(), places.end(), [&](const Eigen::Isometry3d& other) {
         return stepBetween(other, place).norm() < within;
     });
@@ -140,10 +139,10 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     double most = 0;
     // Where a start leads to, a part of the points tells: they are judged by all, each place once.
     const Eigen::Matrix3Xd part = scan::sample(off, kEnough);
-    std::vector<Eigen::Isometry3d> judged;
+    Starts judged;
     // No start leads where more of them lie on the map than come near it from there.
-    const auto starts =
-        bestOf(startsAbout(guess, reach, upright, start, map, part), map, part, start / 2, least);
+    const auto starts = bestOf(startsAbout(guess, reach, upright, start, map, part), kBest, map,
+                               part, start / 2, least);
     for (const auto& found : placesFrom(map, part, starts, start, options)) {
         if (!found.valid || found.share <= least || isAmong(judged, found.pose, width)) continue;
         judged.push_back(found.pose);
@@ -161,11 +160,13 @@ PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
                           const Eigen::Isometry3d& guess, double enough,
                           const PointRegistrationOptions& options) {
     constexpr double kReach = 0.55, kStep = 0.11;  // rad
-    constexpr Eigen::Index kFew = 250;
+    constexpr Eigen::Index kFew = 250, kFewest = 60;
+    constexpr std::size_t kLikely = 60;
     constexpr std::ptrdiff_t kTogether = 2;  // for any number of threads
     const double start = options.first_kernel / 2;
-    const auto starts =
-        bestOf(turnsAbout(guess, kReach, kStep), map, scan::sample(points, kFew), start / 2, 0);
+    const auto likely = bestOf(turnsAbout(guess, kReach, kStep), kLikely, map,
+                               scan::sample(points, kFewest), start / 2, 0),
+               starts = bestOf(likely, kBest, map, scan::sample(points, kFew), start / 2, 0);
     const Eigen::Matrix3Xd part = scan::sample(points, kEnough);
     PointEstimate best;
     for (auto next = starts.begin(); next != starts.end();) {
