@@ -70,7 +70,7 @@ TEST(PointSearch, RingsOnTheGroundDoNotHideAMotionOfMetres) {
 }
 
 TEST(PointSearch, ATurnOfTwentyDegreesAboutAnyAxisIsFound) {
-    constexpr double kFound_m = 0.1, kFound_deg = 1, kMistaken_deg = 3, kTurn = 0.35, kEnough = 0.5;
+    constexpr double kFound_m = 0.1, kFound_deg = 1, kMistaken_deg = 3, kTurn = 0.35;
     for (const Vector3d& axis : {Vector3d(0, 0, 1), Vector3d(0, 1, 0), Vector3d(-1, 0, 0),
                                  Vector3d(1, -1, 1).normalized()}) {
         Isometry3d moved = poseAt(0.1, 0, 0);
@@ -80,12 +80,20 @@ TEST(PointSearch, ATurnOfTwentyDegreesAboutAnyAxisIsFound) {
                                                       kOptions.least_kernel, kOptions);
         EXPECT_GT(test::degreesBetween(nearest.pose, moved), kMistaken_deg)
             << "nothing to search for";
-        const auto found =
-            points::searchTurns(pair.map, pair.scan, Isometry3d::Identity(), kEnough, kOptions);
-        EXPECT_TRUE(found.valid);
-        EXPECT_LT(offBy(found, moved), kFound_m) << axis.transpose();
-        EXPECT_LT(test::degreesBetween(found.pose, moved), kFound_deg) << axis.transpose();
+        for (const double enough : {0.5, 2.0}) {  // with the first that fits, and by all of them
+            const auto found =
+                points::searchTurns(pair.map, pair.scan, Isometry3d::Identity(), enough, kOptions);
+            EXPECT_TRUE(found.valid);
+            EXPECT_LT(offBy(found, moved), kFound_m) << axis.transpose();
+            EXPECT_LT(test::degreesBetween(found.pose, moved), kFound_deg) << axis.transpose();
+        }
     }
+}
+
+TEST(PointSearch, WhereNothingFitsNoTurnIsFound) {
+    const Pair pair = pairIn(test::yard(), Isometry3d::Identity());
+    const Eigen::Matrix3Xd far = pair.scan.colwise() + Vector3d(500, 0, 0);
+    EXPECT_FALSE(points::searchTurns(pair.map, far, Isometry3d::Identity(), 0.5, kOptions).valid);
 }
 
 // The disc of starts lies level, whatever the axes of the points.
