@@ -58,8 +58,8 @@ class ScanToMap {
                                         const Eigen::Isometry3d& predicted, double reach,
                                         const Eigen::Matrix3f& upright) const;
 
-    /** By points, where the rotation of `predicted` may be off by up to 30 deg about any axis, until
-     *  a share of `enough` fits. */
+    /** By points, where the rotation of `predicted` may be off by up to 30 deg about any axis,
+     * until a share of `enough` fits. */
     points::PointEstimate placeTurned(const Eigen::Matrix3Xd& coarse,
                                       const Eigen::Isometry3d& predicted, double enough) const;
 
