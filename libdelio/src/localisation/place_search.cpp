@@ -122,6 +122,7 @@ FoundPlace PlaceSearch::verified(const std::vector<loops::Sighting>& sightings,
     const loops::Ground ground(cloud, seen.image);
     const auto found = hypotheses(sightings, seen);
     std::vector<std::shared_ptr<const loops::Ground>> grounds;
+    grounds.reserve(found.size());
     for (const auto& [place, shift] : found)
         grounds.push_back(grounds_.at(place, [&, place = place] {
             return loops::Ground(map_->points(place), sketches_[place].image);

@@ -58,7 +58,7 @@ class Grid {
  private:
     static constexpr int kLevels = 64, kBelow = 16;
     static std::size_t kindOf(int x, int y) {
-        return static_cast<std::size_t>(2 * (y & 1) + (x & 1));
+        return 2 * static_cast<std::size_t>(y & 1) + static_cast<std::size_t>(x & 1);
     }
     std::uint64_t& word(int x, int y) { return kinds_[kindOf(x, y)](x / 2, y / 2); }
 
