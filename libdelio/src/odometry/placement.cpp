@@ -46,7 +46,8 @@ Placement placeScan(const ScanToMap& map, const ScanView& view, const Expectatio
                   ? map.placeAnywhere(points, expected.pose, expected.start_m, expected.upright)
               : isTurned ? map.placeTurned(points, expected.pose, likely)
                          : map.place(points, expected.pose, expected.kernel_m)};
-    if (points.cols() == 0 || (best.has(likely) && isTurned == expected.isShaken))
+    const bool isTurnedIfShaken = isTurned || !expected.isShaken;
+    if (points.cols() == 0 || (best.has(likely) && isTurnedIfShaken))
         return {best.estimate, expected.isGuess || isTurned};
     if (!isTurned) best.consider(map.placeTurned(points, expected.pose, likely));
     if (!expected.isGuess && !best.has(likely))  // of a guess that was a start already

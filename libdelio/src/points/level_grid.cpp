@@ -34,11 +34,11 @@ class Grid {
 
     /** And those that share a side with it. */
     void mark(const Cell& cell) {
-        constexpr std::uint64_t kOne = 1, kThree = 7;
+        constexpr std::uint64_t kOne = 1, kThreeOnes = 7;
         const Eigen::Array2i at = cell.head<2>() - first_;
         const int bit = cell.z() + kBelow;
         if ((at < 1 || at > size_ - 2).any() || bit < 1 || bit > kLevels - 2) return;
-        word(at.x(), at.y()) |= kThree << (bit - 1);
+        word(at.x(), at.y()) |= kThreeOnes << (bit - 1);
         for (const int aside : {-1, 1}) {
             word(at.x() + aside, at.y()) |= kOne << bit;
             word(at.x(), at.y() + aside) |= kOne << bit;
