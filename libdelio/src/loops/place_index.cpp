@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 #include "bands.h"
@@ -66,30 +67,79 @@ std::vector<PlaceIndex::Turned> PlaceIndex::turnsOf(const HeightImage& cloud) {
     return turns;
 }
 
+/** At each shift, how many bands of a turned image lie on those of the place: a row of shifts is
+ *  eight times `kWords` bytes that are added up as words. */
+class PlaceIndex::Overlaps {
+ public:
+    explicit Overlaps(const Raster& place)
+        : place_(place), area_(place.bands.size()), layers_(kBands * area_) {
+        for (std::size_t band = 0; band < kBands; ++band)
+            for (std::size_t i = 0; i < area_; ++i)
+                layers_[band * area_ + i] = (place.bands[i] >> band) & 1;
+    }
+
+    /** What is looked at from now on. */
+    void take(const Turned& turned) {
+        seen_.clear();
+        for (const auto& cell : turned.cells) {
+            const int x = cell.x - kReach - place_.x0, y = cell.y - kReach - place_.y0;
+            // The place ends in a margin as wide as the shifts.
+            if (x < 0 || x + static_cast<int>(kSide) > place_.width || y < 0 ||
+                y + kRows > place_.height)
+                continue;
+            for (std::size_t band = 0; band < kBands; ++band)
+                if ((cell.bands >> band & 1) != 0) seen_.push_back(band * area_ + place_.at(x, y));
+        }
+    }
+
+    using Row = std::array<std::uint16_t, kSide>;
+    /** Of shifts by `dy` rows. */
+    Row row(int dy) const {
+        constexpr std::size_t kMost = 255;  // that a byte can count
+        Row row{};
+        const std::uint8_t* first = layers_.data() + place_.at(0, dy);
+        for (std::size_t begin = 0; begin < seen_.size(); begin += kMost) {
+            std::array<std::uint64_t, kWords> counts{};
+            for (std::size_t i = begin; i < std::min(begin + kMost, seen_.size()); ++i) {
+                std::array<std::uint64_t, kWords> here;
+                std::memcpy(here.data(), first + seen_[i], kSide);
+                for (std::size_t word = 0; word < kWords; ++word) counts[word] += here[word];
+            }
+            std::array<std::uint8_t, kSide> bytes;
+            std::memcpy(bytes.data(), counts.data(), kSide);
+            for (std::size_t dx = 0; dx < kSide; ++dx)
+                row[dx] = static_cast<std::uint16_t>(row[dx] + bytes[dx]);
+        }
+        return row;
+    }
+
+ private:
+    static constexpr std::size_t kBands = 8, kWords = kSide / sizeof(std::uint64_t);
+
+    const Raster& place_;
+    std::size_t area_;
+    std::vector<std::uint8_t> layers_;  //!< of each band, where the place has it: 0 or 1
+    std::vector<std::size_t> seen_;     //!< in layers_, of each band of each cell, unshifted
+};
+
 Sighting PlaceIndex::best(const Raster& place, const std::vector<Turned>& turns) {
     Sighting best;
+    Overlaps overlaps(place);
     for (const auto& turned : turns) {
-        std::array<std::array<std::uint16_t, kSide>, kRows> sums{};
-        for (const auto& cell : turned.cells) {
-            const int x = cell.x - kReach - place.x0, y = cell.y - kReach - place.y0;
-            if (x < 0 || x + static_cast<int>(kSide) > place.width) continue;
-            for (int dy = std::max(0, -y); dy < kRows && y + dy < place.height; ++dy) {
-                const auto* row = &place.bands[place.at(x, y + dy)];
-                auto& counts = sums[static_cast<std::size_t>(dy)];
-                for (std::size_t dx = 0; dx < kSide; ++dx)
-                    counts[dx] = static_cast<std::uint16_t>(
-                        counts[dx] + bitsOf(static_cast<std::uint8_t>(cell.bands & row[dx])));
-            }
-        }
-        for (int dy = 0; dy < kRows; ++dy)
+        overlaps.take(turned);
+        std::uint16_t most = 0;
+        for (int dy = 0; dy < kRows; ++dy) {
+            const auto row = overlaps.row(dy);
             for (int dx = 0; dx < kRows; ++dx) {
-                const double share =
-                    sums[static_cast<std::size_t>(dy)][static_cast<std::size_t>(dx)] /
-                    std::max(1.0, turned.bits);
+                const std::uint16_t bits = row[static_cast<std::size_t>(dx)];
+                if (bits <= most) continue;
+                most = bits;
+                const double share = bits / std::max(1.0, turned.bits);
                 if (share <= best.shift.share) continue;
                 best.shift = {
                     turned.yaw, {kLarge_m * (dx - kReach), kLarge_m * (dy - kReach), 0}, share};
             }
+        }
     }
     return best;
 }

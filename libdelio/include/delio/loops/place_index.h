@@ -41,6 +41,7 @@ class PlaceIndex {
         std::uint8_t bands;
     };
     struct Turned;
+    class Overlaps;
     static Raster rasterOf(const HeightImage& image, double yaw, int margin);
     static std::vector<Turned> turnsOf(const HeightImage& cloud);
     static Sighting best(const Raster& place, const std::vector<Turned>& turns);
