@@ -5,32 +5,93 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "../core/kd_tree.h"
 
 namespace delio::paper {
 namespace {
-Eigen::VectorXf meanNeighbourDistances(const Eigen::Matrix3Xf& directions, std::size_t neighbours) {
-    const KdTree tree(directions);
-    Eigen::VectorXf means(directions.cols());
-    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, directions.cols(), 128),
-                      [&](const tbb::blocked_range<Eigen::Index>& range) {
-                          // The nearest one is the normal itself.
-                          std::vector<std::uint32_t> indices(neighbours + 1);
-                          std::vector<float> squared(neighbours + 1);
-                          for (Eigen::Index i = range.begin(); i != range.end(); ++i) {
-                              const std::size_t found =
-                                  tree.nearest(directions.col(i), indices.size(), indices.data(),
-                                               squared.data());
-                              float sum = 0;
-                              for (std::size_t j = 0; j < found; ++j) sum += std::sqrt(squared[j]);
-                              means[i] = found > 1 ? sum / static_cast<float>(found - 1) : 0.0F;
-                          }
-                      });
-    return means;
-}
+using Numbers = std::vector<Eigen::Index>;
 
-void keepOnly(const std::vector<Eigen::Index>& kept, Pattern& pattern) {
+/** Of each direction the nearest ones, found once: the nearest of those that are left later are
+ *  among them, too, but for a few. */
+class Nearest {
+ public:
+    /** `directions` have to outlive it; each is one of its own nearest, of which it keeps `most`.
+     */
+    Nearest(const Eigen::Matrix3Xf& directions, std::size_t most)
+        : directions_(directions),
+          most_(std::min(most, static_cast<std::size_t>(directions.cols()))),
+          indices_(most_ * static_cast<std::size_t>(directions.cols())),
+          squared_(indices_.size()) {
+        const KdTree tree(directions_);
+        forEach(directions_.cols(), [&](Eigen::Index i) {
+            const std::size_t first = most_ * static_cast<std::size_t>(i);
+            tree.nearest(directions_.col(i), most_, &indices_[first], &squared_[first]);
+        });
+    }
+
+    /** Of each of those that are `left` the mean chord to the nearest `count` others of them. */
+    Eigen::VectorXf meanDistances(const Numbers& left, std::size_t count) const {
+        std::vector<char> isLeft(static_cast<std::size_t>(directions_.cols()), 0);
+        for (const Eigen::Index i : left) isLeft[static_cast<std::size_t>(i)] = 1;
+        const std::size_t wanted = std::min(count + 1, left.size());
+        Eigen::VectorXf means(static_cast<Eigen::Index>(left.size()));
+        forEach(means.size(), [&](Eigen::Index k) {
+            const std::size_t first =
+                most_ * static_cast<std::size_t>(left[static_cast<std::size_t>(k)]);
+            float sum = 0;
+            std::size_t found = 0;
+            for (std::size_t j = first; j < first + most_ && found < wanted; ++j) {
+                if (!isLeft[indices_[j]]) continue;
+                sum += std::sqrt(squared_[j]);
+                ++found;
+            }
+            means[k] = found < wanted ? kUnknown : meanOf(sum, found);
+        });
+        if ((means.array() == kUnknown).any()) askAgain(left, wanted, means);
+        return means;
+    }
+
+ private:
+    static constexpr float kUnknown = -1;
+
+    template <typename Do>
+    static void forEach(Eigen::Index count, const Do& work) {
+        tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, count, 128), [&](const auto& range) {
+            for (Eigen::Index i = range.begin(); i != range.end(); ++i) work(i);
+        });
+    }
+
+    /** One of them is the direction itself. */
+    static float meanOf(float sum, std::size_t found) {
+        return found > 1 ? sum / static_cast<float>(found - 1) : 0.0F;
+    }
+
+    /** Those of which too few are left. */
+    void askAgain(const Numbers& left, std::size_t wanted, Eigen::VectorXf& means) const {
+        const Eigen::Matrix3Xf others = directions_(Eigen::all, left);
+        const KdTree tree(others);
+        forEach(means.size(), [&](Eigen::Index k) {
+            if (means[k] != kUnknown) return;
+            std::vector<std::uint32_t> indices(wanted);
+            std::vector<float> squared(wanted);
+            tree.nearest(others.col(k), wanted, indices.data(), squared.data());
+            float sum = 0;
+            for (const float chord : squared) sum += std::sqrt(chord);
+            means[k] = meanOf(sum, wanted);
+        });
+    }
+
+    const Eigen::Matrix3Xf& directions_;
+    std::size_t most_;
+    std::vector<std::uint32_t> indices_;
+    std::vector<float> squared_;
+};
+
+void keepOnly(const Numbers& kept, Pattern& pattern) {
     pattern.removed += static_cast<std::size_t>(pattern.directions.cols()) - kept.size();
     pattern.normals = kept.size();
     pattern.directions = pattern.directions(Eigen::all, kept).eval();
@@ -84,17 +145,25 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Pattern& pattern) {
 Pattern removeOutliers(const surfaces::SurfaceNormals& normals,
                        const OutlierRemovalOptions& options) {
     Pattern pattern = patternOf(normals);
-    for (unsigned round = 0; round < options.rounds && pattern.directions.cols() > 1; ++round) {
-        const double neighbours = options.neighboursOf(round);
-        const Eigen::VectorXf means = meanNeighbourDistances(
-            pattern.directions, static_cast<std::size_t>(std::lround(neighbours)));
+    if (options.rounds == 0) return pattern;
+    const auto neighboursOf = [&](unsigned round) {
+        return static_cast<std::size_t>(std::lround(options.neighboursOf(round)));
+    };
+    const Nearest nearest(normals.directions,
+                          1 + std::max(neighboursOf(0), neighboursOf(options.rounds - 1)));
+    Numbers left(pattern.normals);
+    std::iota(left.begin(), left.end(), Eigen::Index{0});
+    for (unsigned round = 0; round < options.rounds && left.size() > 1; ++round) {
+        const Eigen::VectorXf means = nearest.meanDistances(left, neighboursOf(round));
         const float mean = means.mean();
         const float sigma = std::sqrt((means.array() - mean).square().mean());
-        std::vector<Eigen::Index> kept;
+        const float most = mean + static_cast<float>(options.alpha) * sigma;
+        Numbers kept;
         for (Eigen::Index i = 0; i < means.size(); ++i)
-            if (means[i] <= mean + static_cast<float>(options.alpha) * sigma) kept.push_back(i);
-        keepOnly(kept, pattern);
+            if (means[i] <= most) kept.push_back(left[static_cast<std::size_t>(i)]);
+        left = std::move(kept);
     }
+    keepOnly(left, pattern);
     return pattern;
 }
 }  // namespace delio::paper

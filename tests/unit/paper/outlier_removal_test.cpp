@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "ring_scan.h"
 
@@ -90,25 +91,37 @@ TEST(OutlierRemoval, OneRoundAgreesWithThePlainestWay) {
         }
 }
 
-TEST(OutlierRemoval, RoundsGoFromTheFirstToTheLastNumber) {
-    SurfaceNormals normals = blobAndScattered();
-    const auto pattern = removeOutliers(normals, rounds(3, 40, 10));
-    for (const std::size_t k : {40, 25, 10}) {
-        const auto kept = keptOfOneRound(normals, k, 2);
-        SurfaceNormals next;
-        next.directions.resize(3, static_cast<Eigen::Index>(kept.size()));
-        next.planarity.resize(static_cast<Eigen::Index>(kept.size()));
-        const auto all = blobAndScattered();
+/** The same as removeOutliers(), the plainest way. */
+std::vector<float> keptOfRounds(SurfaceNormals normals, const OutlierRemovalOptions& options) {
+    const auto all = normals;
+    std::vector<float> kept;
+    for (unsigned round = 0; round < options.rounds; ++round) {
+        kept = keptOfOneRound(normals,
+                              static_cast<std::size_t>(std::lround(options.neighboursOf(round))),
+                              options.alpha);
+        normals.directions.resize(3, static_cast<Eigen::Index>(kept.size()));
+        normals.planarity.resize(static_cast<Eigen::Index>(kept.size()));
         for (std::size_t i = 0; i < kept.size(); ++i) {
-            next.directions.col(static_cast<Eigen::Index>(i)) =
-                all.directions.col(static_cast<Eigen::Index>(kept[i]));
-            next.planarity[static_cast<Eigen::Index>(i)] = kept[i];
+            const auto column = static_cast<Eigen::Index>(i);
+            normals.directions.col(column) = all.directions.col(static_cast<Eigen::Index>(kept[i]));
+            normals.planarity[column] = kept[i];
         }
-        normals = next;
     }
-    EXPECT_EQ(keptOf(pattern),
-              std::vector<float>(normals.planarity.data(),
-                                 normals.planarity.data() + normals.planarity.size()));
+    return kept;
+}
+
+TEST(OutlierRemoval, RoundsGoFromTheFirstToTheLastNumber) {
+    const auto normals = blobAndScattered();
+    EXPECT_EQ(rounds(3, 40, 10).neighboursOf(1), 25);
+    // The last ones take so many away that of the nearest ones at first too few are left.
+    for (const auto& [first, last, alpha] : {std::tuple(40U, 10U, 2.0), std::tuple(10U, 40U, 2.0),
+                                             std::tuple(10U, 10U, 0.0), std::tuple(3U, 3U, 0.0)}) {
+        auto options = rounds(3, first, last);
+        options.alpha = alpha;
+        const auto kept = keptOf(removeOutliers(normals, options));
+        EXPECT_EQ(kept, keptOfRounds(normals, options)) << first << " to " << last;
+        EXPECT_GT(kept.size(), 10U);
+    }
 }
 
 TEST(OutlierRemoval, NoRoundRemovesNothing) {
