@@ -111,10 +111,31 @@ TEST_F(KittiReader, SaysWhatItIs) {
     EXPECT_FALSE(reader.next());
 }
 
+// KITTI's vertical angles are off; those of a sensor whose scans came into its format are not.
+TEST_F(KittiReader, OnlyKittisOwnSensorIsCorrected) {
+    const auto metaWith = [&](const std::string& calib) {
+        writeText(sequence_ / "calib.txt", calib);
+        return *io::KittiReader(sequence_).meta();
+    };
+    const std::string Tr = "Tr: 0 -1 0 0 0 0 -1 -0.08 1 0 0 -0.27\n";
+    const auto kittis = metaWith("P0: 1 0 0 0 0 1 0 0 0 0 1 0\n" + Tr), other = metaWith(Tr);
+    EXPECT_EQ(kittis.sensorModel, "HDL-64E");
+    EXPECT_EQ(kittis.verticalCorrectionDeg, 0.205);
+    EXPECT_EQ(other.sensorModel, "unknown");
+    EXPECT_EQ(other.verticalCorrectionDeg, 0);
+    EXPECT_TRUE(io::KittiReader(sequence_).warnings().empty());
+    fs::remove(sequence_ / "calib.txt");
+    EXPECT_EQ(io::KittiReader(sequence_).meta()->verticalCorrectionDeg, 0);
+    const auto warnings = io::KittiReader(sequence_).warnings();
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("scan.vertical_correction_deg=0.205"), std::string::npos);
+    EXPECT_EQ(io::KittiReader(sequence_).recording().sensor, "");
+}
+
 TEST_F(KittiReader, MissingPartsAreWarnings) {
     for (const char* name : {"times.txt", "poses.txt", "calib.txt"}) fs::remove(sequence_ / name);
     io::KittiReader reader(sequence_);
-    EXPECT_EQ(reader.warnings().size(), 1U);
+    EXPECT_EQ(reader.warnings().size(), 2U);
     EXPECT_EQ(reader.calibration().text, "");
     EXPECT_EQ(reader.truth().text, "");
     EXPECT_EQ(reader.truth().name, (sequence_ / "poses.txt").string());

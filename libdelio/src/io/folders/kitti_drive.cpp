@@ -98,6 +98,13 @@ void useNominalTimes(KittiDrive& drive, const std::string& missing) {
         drive.times_s.push_back(0.1 * static_cast<double>(numberOf(scan)));
 }
 
+void takeKittisSensor(DriveMeta& meta) {
+    meta.sensorModel = "HDL-64E";
+    // Found by IMLS-SLAM and used by KISS-ICP, CT-ICP and MOLA: KITTI's calibration of the lasers'
+    // vertical angles is off by this much.
+    meta.verticalCorrectionDeg = 0.205;
+}
+
 void readOdometrySequence(const fs::path& folder, KittiDrive& drive) {
     drive.meta.source = "kitti-odometry";
     drive.meta.epoch_s = kDriveEpoch_s;
@@ -115,6 +122,13 @@ void readOdometrySequence(const fs::path& folder, KittiDrive& drive) {
             drive.warnings.push_back("'" + calib.string() +
                                      "' has no Tr: nothing can be brought to the cam0 frame");
         drive.calibText = textOf(calib);
+        // Scans of other sensors come in KITTI's format, too, but not with its cameras.
+        if (("\n" + drive.calibText).find("\nP0:") != std::string::npos)
+            takeKittisSensor(drive.meta);
+    } else {
+        drive.warnings.push_back("'" + calib.string() +
+                                 "' is not there: the sensor is not taken for KITTI's, which needs "
+                                 "scan.vertical_correction_deg=0.205");
     }
     // KITTI's own layout has dataset/sequences/NN and dataset/poses/NN.txt.
     const fs::path whole = wholePath(folder);
@@ -197,6 +211,7 @@ void readOxts(const fs::path& folder, const CPose3D& imuToCam0, KittiDrive& driv
 
 void readRawDrive(const fs::path& folder, KittiDrive& drive) {
     drive.meta.source = "kitti-raw";
+    takeKittisSensor(drive.meta);
     const fs::path times = folder / "velodyne_points" / "timestamps.txt";
     if (fs::exists(times)) {
         // Where a scan is missing its line is empty (raw drive 0009).
@@ -256,11 +271,7 @@ KittiDrive openKittiDrive(const fs::path& folder, std::size_t start, std::size_t
     const std::size_t left = drive.scans.size() - start;
     const std::size_t used = count == 0 ? left : std::min(count, left);
     drive.scans = {begin, begin + static_cast<std::ptrdiff_t>(used)};
-    drive.meta.sensorModel = "HDL-64E";
     drive.meta.motionCompensated = !raw;
-    // Found by IMLS-SLAM and used by KISS-ICP, CT-ICP and MOLA: KITTI's calibration of the lasers'
-    // vertical angles is off by this much.
-    drive.meta.verticalCorrectionDeg = 0.205;
     if (raw)
         readRawDrive(folder, drive);
     else

@@ -42,7 +42,7 @@ Recording KittiReader::recording() const {
     Recording recording;
     recording.kind = meta_->source == "kitti-raw" ? "KITTI raw" : "KITTI odometry";
     if (drive_.nominalTimes) recording.kind += ", nominal times";
-    recording.sensor = meta_->sensorModel;
+    if (meta_->sensorModel != "unknown") recording.sensor = meta_->sensorModel;
     recording.motionCompensated = meta_->motionCompensated;
     recording.scans = drive_.scans.size();
     recording.warnings = drive_.warnings;
