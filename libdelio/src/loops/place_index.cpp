@@ -115,6 +115,7 @@ class PlaceIndex::Overlaps {
 
  private:
     static constexpr std::size_t kBands = 8, kWords = kSide / sizeof(std::uint64_t);
+    static_assert(kSide == kWords * sizeof(std::uint64_t) && kRows <= static_cast<int>(kSide));
 
     const Raster& place_;
     std::size_t area_;

@@ -19,11 +19,11 @@ using Numbers = std::vector<Eigen::Index>;
  *  among them, too, but for a few. */
 class Nearest {
  public:
-    /** `directions` have to outlive it; each is one of its own nearest, of which it keeps `most`.
-     */
+    /** `directions` have to outlive it; each is one of its own nearest, of which it keeps `most`,
+     *  but no more than memory is there for. */
     Nearest(const Eigen::Matrix3Xf& directions, std::size_t most)
         : directions_(directions),
-          most_(std::min(most, static_cast<std::size_t>(directions.cols()))),
+          most_(std::min({most, static_cast<std::size_t>(directions.cols()), kMost})),
           indices_(most_ * static_cast<std::size_t>(directions.cols())),
           squared_(indices_.size()) {
         const KdTree tree(directions_);
@@ -56,6 +56,7 @@ class Nearest {
     }
 
  private:
+    static constexpr std::size_t kMost = 100;
     static constexpr float kUnknown = -1;
 
     template <typename Do>

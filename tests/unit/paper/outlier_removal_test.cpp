@@ -82,7 +82,7 @@ TEST(OutlierRemoval, ScatteredNormalsGoAndABlobStays) {
 
 TEST(OutlierRemoval, OneRoundAgreesWithThePlainestWay) {
     const auto normals = blobAndScattered();
-    for (const unsigned k : {1U, 10U, 40U})
+    for (const unsigned k : {1U, 10U, 40U, 200U})
         for (const double alpha : {0.5, 2.0}) {
             auto options = rounds(1, k, 7);  // the first number counts if there is one round
             options.alpha = alpha;
