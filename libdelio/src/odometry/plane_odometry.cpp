@@ -3,10 +3,10 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "delio/core/stopwatch.h"
 #include "delio/odometry/scale.h"
+#include "delio/odometry/scan_course.h"
 #include "delio/scan/spin_axis.h"
 #include "delio/scan/voxel_grid.h"
 
@@ -23,11 +23,6 @@ Eigen::Isometry3d turnedBack(const Eigen::Matrix3f& upright) {
 std::vector<Named> noTimes() {
     return {{"preprocess", 0}, {"undistort", 0}, {"thinning", 0},  {"points", 0},
             {"dynamic", 0},    {"planes", 0},    {"map_update", 0}};
-}
-double& timeOf(Step& step, std::string_view stage) {
-    return std::find_if(step.times_ms.begin(), step.times_ms.end(),
-                        [&](const Named& time) { return time.first == stage; })
-        ->second;
 }
 
 /** The figures of both registrations. */
@@ -68,10 +63,6 @@ bool PlaneOdometry::isOtherScale() {
     const double ratio = seenScale_ / scale_;
     otherScale_ = ratio >= kOther || ratio <= 1 / kOther ? otherScale_ + 1 : 0;
     return otherScale_ >= kPatience;
-}
-
-void PlaneOdometry::thinned(ScanView& view) const {
-    thin(view, options_.tracker.map_spacing, options_.tracker.scan_spacing);
 }
 
 /** Thins the whole scan while the one before it comes into the map; says which points became
@@ -124,26 +115,56 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, doubl
     return expected;
 }
 
-/** Once more, with the points where the motion that was found puts them. (It is the mean since the
- *  latest scan that was registered. Extrapolated to this one it did worse: vehicles shake.) */
+Course PlaneOdometry::courseOf(const KnownMotion& known, const scan::PointCloud& cloud,
+                               const ScanView& view) const {
+    const auto& points = options_.points;
+    return findCourse(map_.planes(), known, cloud, view, unevenness_,
+                      kernel_.width(points.least_kernel, points.first_kernel), options_);
+}
+
+/** The scan that the map began with, which is all there is in it, as it was seen on this course. */
+void PlaneOdometry::undistortFirst(const Course& course) {
+    ScanView first = undistorted(*skewed_, course);
+    thin(first, options_.tracker.map_spacing, options_.tracker.scan_spacing);
+    map_.clear(upAt(reference_.pose));
+    map_.add(first.fine, reference_.pose);
+    reference_.points = std::move(first.points);
+}
+
+/** The second scan, of which the first tells the motion, and which tells the first one's. Each part
+ *  of a first scan that is skewed bends the course as it is itself: both are undistorted again and
+ *  again, as long as more points fit. */
+std::optional<ScanOnCourse> PlaneOdometry::undistortPair(KnownMotion known,
+                                                         const scan::PointCloud& cloud,
+                                                         const ScanView& view) {
+    constexpr unsigned kMostRounds = 10, kPatience = 2;
+    std::optional<ScanOnCourse> best;
+    for (unsigned round = 0, worse = 0; round < kMostRounds && worse < kPatience; ++round) {
+        const Course course = round == 0 ? evenCourse(known, cloud) : courseOf(known, cloud, view);
+        undistortFirst(course.seenFrom(-known.since_s));
+        auto next = registerOn(course, known, map_, cloud, view, options_);
+        if (!next) break;
+        known.pose = next->estimate.pose();
+        const bool better = !best || next->share > best->share;
+        worse = better ? 0 : worse + 1;
+        if (better) best = std::move(next);
+    }
+    if (best) undistortFirst(best->course.seenFrom(-known.since_s));
+    return best;
+}
+
+/** Once more, with the points where the motion that was found puts them. */
 void PlaneOdometry::undistortAgain(const scan::PointCloud& cloud, double since_s, ScanView& view,
                                    PlaneEstimate& estimate) {
-    const auto motion = Motion::of(reference_.pose.inverse() * estimate.pose(), since_s);
-    if (skewed_) {
-        ScanView first = undistorted(*skewed_, motion);
-        thinned(first);
-        map_.clear(upAt(reference_.pose));
-        insert(first, reference_.pose);
-        skewed_.reset();
-    }
-    ScanView again = undistorted(cloud, motion);
-    again.dynamic = view.dynamic;
-    thinned(again);
-    again.coarse = scan::firstOfVoxels(again.fine, options_.tracker.point_spacing).cast<double>();
-    const auto placed = map_.place(again.coarse, estimate.pose(), options_.points.least_kernel);
-    if (!placed.valid) return;
-    estimate = map_.refine(again, placed, estimate.pose(), reference_.pose);
-    view = std::move(again);
+    const KnownMotion known{reference_.pose, since_s, estimate.pose()};
+    auto found = skewed_
+                     ? undistortPair(known, cloud, view)
+                     : registerOn(courseOf(known, cloud, view), known, map_, cloud, view, options_);
+    skewed_.reset();
+    if (!found) return;
+    estimate = found->estimate;
+    view = std::move(found->view);
+    onward_ = Onward(found->course.seenFrom(0), since_s / 8);
 }
 
 /** What the next scans are judged by. */
@@ -152,15 +173,11 @@ void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& 
     if (prediction_.hasMotion()) {
         constexpr double kForget = 0.1;
         kernel_.observe(pose_, predicted);
+        unevenness_.observe(reference_.pose.inverse() * pose_, prediction_.predict(since_s));
         usualShare_ =
             usualShare_ == 0 ? placed.share : (1 - kForget) * usualShare_ + kForget * placed.share;
     }
     prediction_.observe(reference_.pose.inverse() * pose_, since_s);
-}
-
-/** In the map's frame, of a sensor at `pose`. */
-Eigen::Vector3d PlaneOdometry::upAt(const Eigen::Isometry3d& pose) const {
-    return pose.linear() * upright_.row(2).transpose().cast<double>();
 }
 
 void PlaneOdometry::insert(const ScanView& view, const Eigen::Isometry3d& pose) {
@@ -184,7 +201,7 @@ void PlaneOdometry::settle() {
 ScanView PlaneOdometry::beginMap(const scan::PointCloud& cloud) {
     // The first pair has one scan only to be registered against: it is taken as dense as it came.
     constexpr double kDense = 0.2;
-    ScanView view = undistorted(cloud, {});
+    ScanView view = undistorted(cloud, Motion{});
     thin(view, kDense * options_.tracker.map_spacing, options_.tracker.scan_spacing);
     map_.clear(upAt(pose_));
     awaited_.reset();
@@ -218,11 +235,15 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
     lost_ = lost_ || step.interrupted;
     // Where scans were missed in between, what was driven since then was driven in all this time.
     const double since_s = timeline_.sinceStart_s() - reference_.time_s;
-    const Eigen::Isometry3d motion = prediction_.predict(interval.duration_s),
+    if (lost_ || doubted_) onward_.reset();
+    const Eigen::Isometry3d motion = onward_ ? onward_->at(interval.duration_s)
+                                             : prediction_.predict(interval.duration_s),
                             predicted = pose_ * motion;
     ScanView view = timed(timeOf(step, "undistort"), [&] {
-        return undistorted(cloud, Motion::of(motion, interval.duration_s));
+        return undistorted(cloud,
+                           onward_ ? onward_->motion() : Motion::of(motion, interval.duration_s));
     });
+    onward_.reset();
     const auto voxels = timed(timeOf(step, "thinning"), [&] { return thinAll(view); });
     const bool looking = options_.dynamics.enabled && !lost_;
     movers::DynamicObjects::Sight sight;

@@ -4,10 +4,10 @@
 #include "delio/scan/voxel_grid.h"
 
 namespace delio {
-ScanView undistorted(const scan::PointCloud& cloud, const Motion& motion) {
+ScanView undistorted(const scan::PointCloud& cloud, const Course& course) {
     ScanView view;
     view.points =
-        cloud.times_s.empty() ? cloud.points : scan::deskew(cloud.points, cloud.times_s, motion);
+        cloud.times_s.empty() ? cloud.points : scan::deskew(cloud.points, cloud.times_s, course);
     view.dynamic.resize(static_cast<std::size_t>(view.points.cols()));
     return view;
 }

@@ -1,5 +1,7 @@
 #include "delio/odometry/step.h"
 
+#include <algorithm>
+
 namespace delio {
 Quality qualityOf(const RotationEstimate& rotation, const TranslationEstimate& translation) {
     Quality quality;
@@ -10,5 +12,11 @@ Quality qualityOf(const RotationEstimate& rotation, const TranslationEstimate& t
     quality.unobservedRotation = rotation.unobservedAxes;
     quality.unobservedTranslation = rotation.rotation.transpose() * translation.unobservedAxes;
     return quality;
+}
+
+double& timeOf(Step& step, std::string_view stage) {
+    return std::find_if(step.times_ms.begin(), step.times_ms.end(),
+                        [&](const Named& time) { return time.first == stage; })
+        ->second;
 }
 }  // namespace delio

@@ -51,7 +51,7 @@ Correspondences Matcher::matchesOf(std::size_t block, const Placed& placed, doub
         const double robust = 1 / (1 + r * r / (kernel * kernel));
         matches.push_back({points_.col(static_cast<Eigen::Index>(i)), plane->normal(), plane->mean,
                            robust * robust / (plane->varianceAt(at) + point_sigma_ * point_sigma_),
-                           plane->tilt()});
+                           plane->tilt(), i});
     }
     return matches;
 }

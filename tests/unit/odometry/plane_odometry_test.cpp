@@ -210,6 +210,57 @@ TEST(PlaneOdometry, ASensorThatSwingsInTheHandIsRegistered) {
     }
 }
 
+/** A sweep of 0.1 s about the stamp, of a sensor that `poseAt_s` says the pose of at any time. */
+template <class PoseAt>
+Scan sweptScan(double stamp_s, const PoseAt& poseAt_s, test::Noise& noise) {
+    constexpr int kColumns = 360;
+    Eigen::Matrix3Xf all(3, 0);
+    std::vector<float> times_s;
+    for (int c = 0; c < kColumns; ++c) {
+        const double time_s = 0.1 * c / kColumns - 0.05;
+        const Isometry3d head(Eigen::AngleAxisd(2 * M_PI * c / kColumns, Eigen::Vector3d::UnitZ()));
+        const auto points = test::ringScan(test::yard(), poseAt_s(stamp_s + time_s) * head,
+                                           {32, 1, -24, 8, 0.01}, noise)
+                                .points;
+        all.conservativeResize(3, all.cols() + points.cols());
+        all.rightCols(points.cols()) = head.linear().cast<float>() * points;
+        times_s.insert(times_s.end(), static_cast<std::size_t>(points.cols()),
+                       static_cast<float>(time_s));
+    }
+    Scan scan = test::scanOf(all);
+    scan.times_s.assign(times_s.begin(), times_s.end());
+    scan.stamp_s = stamp_s;
+    return scan;
+}
+
+// It turns by up to 7 deg during a scan, and not evenly.
+TEST(PlaneOdometry, WhatSwingsWhileItSpinsIsUndistortedAsItSwings) {
+    const auto swung = [](double time_s) {
+        const double phase = 2 * M_PI * 1.5 * time_s;
+        Isometry3d pose = poseAt(1.0 * time_s, 0.03 * std::sin(phase), 0);
+        pose.linear() = rotationExp(
+            5 * M_PI / 180 *
+            Eigen::Vector3d(std::sin(phase), std::sin(1.1 * phase + 1), std::sin(0.9 * phase + 2)));
+        return pose;
+    };
+    test::Noise noise;
+    PlaneOdometry odometry(accurate());
+    std::vector<double> metres, degrees;
+    for (int i = 0; i < 25; ++i) {
+        const double stamp_s = 0.1 * i;
+        const auto result = odometry.process(sweptScan(stamp_s, swung, noise));
+        EXPECT_FALSE(result.predicted) << i;
+        if (i == 0) continue;
+        const Isometry3d truth = swung(stamp_s - 0.1).inverse() * swung(stamp_s);
+        metres.push_back(metresBetween(result.increment.pose, truth));
+        degrees.push_back(degreesBetween(result.increment.pose, truth));
+    }
+    std::sort(metres.begin(), metres.end());
+    std::sort(degrees.begin(), degrees.end());
+    EXPECT_LT(metres[metres.size() / 2], 0.01);
+    EXPECT_LT(degrees[degrees.size() / 2], 0.1);
+}
+
 TEST(PlaneOdometry, AHundredScansOfStandstill) {
     test::Noise noise;
     PlaneOdometry odometry(accurate());

@@ -53,7 +53,7 @@ TEST(ScanView, PointsWithTimesComeToWhereTheyAreAtTheStamp) {
 }
 
 TEST(ScanView, OfNoPointsIsEmpty) {
-    ScanView view = undistorted({}, {});
+    ScanView view = undistorted({}, Motion{});
     thin(view, 0.25, 0.5);
     EXPECT_EQ(view.points.cols() + view.fine.cols() + view.thinned.cols(), 0);
     EXPECT_TRUE(view.dynamic.empty());

@@ -19,15 +19,16 @@ Scan rubbish(std::uint32_t seed) {
     return test::scanOf(points);
 }
 
-/** Through the yard, behind a car, points with times; a scan half of which is rubbish, an empty
- * one, a pause, and rubbish until it is taken for a map. */
+/** Through the yard, behind a car that is faster, points with times; a scan half of which is
+ * rubbish, an empty one, a pause, and rubbish until it is taken for a map. */
 std::vector<Scan> eventfulScans() {
     const auto poses = drive(17);
     std::vector<Scan> scans;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const auto seed = static_cast<std::uint32_t>(i);
         auto scene = test::yard();
-        const Eigen::Vector3d car = poses[i] * Eigen::Vector3d(7, 0, 0);
+        const Eigen::Vector3d car =
+            poses[i] * Eigen::Vector3d(6 + 0.6 * static_cast<double>(i), 0, 0);
         scene.push_back({car - Eigen::Vector3d(1.5, 0.8, 1.5), car + Eigen::Vector3d(1.5, 0.8, 0)});
         if (i == 7)
             scans.push_back(test::scanOf(Eigen::Matrix3Xf(3, 0)));

@@ -5,6 +5,7 @@
 #include "delio/odometry/adaptive_kernel.h"
 #include "delio/odometry/odometry.h"
 #include "delio/odometry/placement.h"
+#include "delio/odometry/scan_course.h"
 #include "delio/scan/voxel_grid.h"
 
 namespace delio {
@@ -25,7 +26,7 @@ struct PlacedPoints {
  *  the pose by points, are left out of the planes and of the map. Where three scans in a row that
  * are not empty cannot be registered (the recording was interrupted), a new map is begun at the
  *  prediction. Scans whose points have times are undistorted twice: by the predicted motion, and by
- *  the one that was found. */
+ *  the one that was found, uneven as it is. */
 class PlaneOdometry : public Odometry {
  public:
     /** Before the first scan. */
@@ -41,8 +42,8 @@ class PlaneOdometry : public Odometry {
         archive(scale_);
         if constexpr (Archive::is_loading::value) takeScale(scale_);
         archive(upright_, seenScale_, otherScale_, timeline_, prediction_, map_, dynamics_, kernel_,
-                reference_, pose_, unregistered_s_, first_, started_, lost_, doubted_, usualShare_,
-                misses_, skewed_, awaited_);
+                unevenness_, onward_, reference_, pose_, unregistered_s_, first_, started_, lost_,
+                doubted_, usualShare_, misses_, skewed_, awaited_);
     }
 
  private:
@@ -58,9 +59,17 @@ class PlaneOdometry : public Odometry {
                             bool believed) const;
     void undistortAgain(const scan::PointCloud& cloud, double since_s, ScanView& view,
                         planes::PlaneEstimate& estimate);
+    Course courseOf(const KnownMotion& known, const scan::PointCloud& cloud,
+                    const ScanView& view) const;
+    std::optional<ScanOnCourse> undistortPair(KnownMotion known, const scan::PointCloud& cloud,
+                                              const ScanView& view);
+    void undistortFirst(const Course& course);
     void learn(const points::PointEstimate& placed, const Eigen::Isometry3d& predicted,
                double since_s);
-    Eigen::Vector3d upAt(const Eigen::Isometry3d& pose) const;
+    /** In the map's frame, of a sensor at `pose`. */
+    Eigen::Vector3d upAt(const Eigen::Isometry3d& pose) const {
+        return pose.linear() * upright_.row(2).transpose().cast<double>();
+    }
     void insert(const ScanView& view, const Eigen::Isometry3d& pose);
     void insertLater(ScanView& view);
     void settle();
@@ -68,7 +77,6 @@ class PlaneOdometry : public Odometry {
     void giveUp(const scan::PointCloud& cloud);
     void report(const planes::PlaneEstimate& estimate, const Eigen::Isometry3d& before,
                 ScanView& view, Step& step) const;
-    void thinned(ScanView& view) const;
 
     const PlaneOdometryOptions given_;
     PlaneOdometryOptions options_;                           //!< at the scale of the place
@@ -81,6 +89,8 @@ class PlaneOdometry : public Odometry {
     ScanToMap map_;
     movers::DynamicObjects dynamics_;
     AdaptiveKernel kernel_;
+    Unevenness unevenness_;
+    std::optional<Onward> onward_;  //!< where the points have times
     ReferenceScan reference_;
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
     double unregistered_s_ = 0;  //!< since the latest scan that was registered

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "delio/core/motion.h"
+#include "delio/core/course.h"
 #include "delio/scan/preprocess.h"
 
 namespace delio {
@@ -17,8 +17,9 @@ struct ScanView {
     Eigen::Matrix3Xd coarse;            //!< thinned for registration by points, all of the scan
 };
 
-/** Undistorted by `motion` where the points have times; not thinned yet, nothing dynamic. */
-ScanView undistorted(const scan::PointCloud& cloud, const Motion& motion);
+/** Undistorted by `course` (see scan::deskew()) where the points have times; not thinned yet,
+ *  nothing dynamic. */
+ScanView undistorted(const scan::PointCloud& cloud, const Course& course);
 
 /** The columns of `points` that are not marked. */
 Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std::uint8_t>& marks);

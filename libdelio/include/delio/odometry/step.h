@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -100,4 +101,7 @@ struct Step {
                 deskewed, times_ms, details);
     }
 };
+
+/** Milliseconds of one of the stages that `step` has. */
+double& timeOf(Step& step, std::string_view stage);
 }  // namespace delio

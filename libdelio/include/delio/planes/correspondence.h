@@ -14,6 +14,7 @@ struct Correspondence {
     Eigen::Vector3d mean;    //!< a point of the plane, metres, the map's frame
     double weight = 0;       //!< 1/m^2: robust weight over variance
     double tilt = 0;         //!< rad^2: how uncertain the normal's direction is
+    std::size_t index = 0;   //!< of the point in the scan
 
     /** Distance to the plane of the point at pose (R, t), metres, signed. */
     double residual(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) const {

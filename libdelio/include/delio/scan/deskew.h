@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "delio/core/motion.h"
+#include "delio/core/course.h"
 
 namespace delio::scan {
 /** When each point of a turning LiDAR was measured, told by its azimuth: seconds from the moment at
@@ -11,7 +11,8 @@ namespace delio::scan {
 std::vector<float> azimuthTimes(const Eigen::Matrix3Xf& points, double sweep_s);
 
 /** The points (metres, sensor's frame at each point's own time) as the sensor would have seen them
- *  all at once at its stamp. `times_s`: of each point, seconds from the stamp. */
+ *  all at once at its stamp. `times_s`: of each point, seconds from the stamp; of the course, too,
+ *  which maps the sensor's frame to what it is at the stamp. */
 Eigen::Matrix3Xf deskew(const Eigen::Matrix3Xf& points, const std::vector<float>& times_s,
-                        const Motion& motion);
+                        const Course& course);
 }  // namespace delio::scan

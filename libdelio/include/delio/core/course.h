@@ -1,0 +1,34 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "delio/core/motion.h"
+
+namespace delio {
+/** A motion through known poses, at constant twist from each to the next, and on beyond them. */
+class Course {
+ public:
+    /** At `times_s`, which rise, two at least; there as many `poses`: they map the moving frame to
+     *  one that rests. */
+    Course(const std::vector<double>& times_s, const std::vector<Eigen::Isometry3d>& poses);
+
+    /** Through the identity at time 0, always at the same twist. */
+    Course(const Motion& motion);  // NOLINT(google-explicit-constructor): each motion is one
+
+    /** At the times given, through `pose` at the first of them, always at the same twist. */
+    static Course even(const std::vector<double>& times_s, const Eigen::Isometry3d& pose,
+                       const Motion& motion);
+
+    Eigen::Isometry3d at(double time_s) const;
+    /** As seen from where it is at `time_s`, with times from then. */
+    Course seenFrom(double time_s) const;
+
+    const std::vector<double>& times_s() const { return times_s_; }
+    const std::vector<Eigen::Isometry3d>& poses() const { return poses_; }
+
+ private:
+    std::vector<double> times_s_;
+    std::vector<Eigen::Isometry3d> poses_;
+    std::vector<Motion> motions_;  //!< on from each pose but the last
+};
+}  // namespace delio

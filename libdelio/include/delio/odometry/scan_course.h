@@ -1,0 +1,67 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "delio/core/course.h"
+#include "delio/odometry/plane_odometry_options.h"
+#include "delio/odometry/scan_to_map.h"
+#include "delio/odometry/scan_view.h"
+#include "delio/odometry/unevenness.h"
+#include "delio/planes/plane_map.h"
+
+namespace delio {
+/** What is known of the motion during a scan whose points have times. */
+struct KnownMotion {
+    Eigen::Isometry3d reference;  //!< `since_s` (more than 0) before the stamp, sensor to map
+    double since_s = 0;
+    Eigen::Isometry3d pose;  //!< at the stamp, likewise
+};
+
+/** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to
+ *  map, times from the stamp. */
+Course evenCourse(const KnownMotion& known, const scan::PointCloud& cloud);
+
+/** The same, bent as far as it is known to be uneven, such that static points, which `view` is told
+ *  of, lie on the planes of `map`. `kernel` (metres): how far they may be off. */
+Course findCourse(const planes::PlaneMap& map, const KnownMotion& known,
+                  const scan::PointCloud& cloud, const ScanView& view, const Unevenness& unevenness,
+                  double kernel, const PlaneOdometryOptions& options);
+
+/** A scan as it was seen on a course, and where it is then. */
+struct ScanOnCourse {
+    ScanView view;
+    planes::PlaneEstimate estimate;
+    Course course;     //!< sensor to map, times from the stamp
+    double share = 0;  //!< of its points on those of the map
+};
+
+/** Undistorts `cloud`, what is dynamic in `view` left out, and registers it as a whole. None where
+ *  it is not found in the map. */
+std::optional<ScanOnCourse> registerOn(const Course& course, const KnownMotion& known,
+                                       const ScanToMap& map, const scan::PointCloud& cloud,
+                                       const ScanView& view, const PlaneOdometryOptions& options);
+
+/** How the sensor moved when a scan ended, and moves on. */
+class Onward {
+ public:
+    Onward() = default;
+    /** `course`: during the scan, times and frame those of its stamp. The motion is that of its
+     * last `over_s`. */
+    Onward(const Course& course, double over_s);
+
+    /** The sensor at `time_s` from the stamp: maps its frame then to the one at the stamp. */
+    Eigen::Isometry3d at(double time_s) const { return end_ * motion_.after(time_s - end_s_); }
+    const Motion& motion() const { return motion_; }
+
+    /** What has to be kept to go on later: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(end_s_, end_, motion_.velocity, motion_.turning);
+    }
+
+ private:
+    double end_s_ = 0;
+    Eigen::Isometry3d end_ = Eigen::Isometry3d::Identity();
+    Motion motion_;
+};
+}  // namespace delio

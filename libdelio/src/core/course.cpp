@@ -1,0 +1,36 @@
+#include "delio/core/course.h"
+
+#include <algorithm>
+
+namespace delio {
+Course::Course(const std::vector<double>& times_s, const std::vector<Eigen::Isometry3d>& poses)
+    : times_s_(times_s), poses_(poses) {
+    for (std::size_t i = 1; i < poses.size(); ++i)
+        motions_.push_back(
+            Motion::of(poses[i - 1].inverse() * poses[i], times_s[i] - times_s[i - 1]));
+}
+
+Course::Course(const Motion& motion)
+    : times_s_{0, 1}, poses_{Eigen::Isometry3d::Identity(), motion.after(1)}, motions_{motion} {}
+
+Course Course::even(const std::vector<double>& times_s, const Eigen::Isometry3d& pose,
+                    const Motion& motion) {
+    std::vector<Eigen::Isometry3d> poses;
+    for (const double time_s : times_s) poses.push_back(pose * motion.after(time_s - times_s[0]));
+    return {times_s, poses};
+}
+
+Eigen::Isometry3d Course::at(double time_s) const {
+    const auto next = std::upper_bound(times_s_.begin() + 1, times_s_.end() - 1, time_s);
+    const auto i = static_cast<std::size_t>(next - times_s_.begin()) - 1;
+    return poses_[i] * motions_[i].after(time_s - times_s_[i]);
+}
+
+Course Course::seenFrom(double time_s) const {
+    Course seen = *this;
+    const Eigen::Isometry3d back = at(time_s).inverse();
+    for (auto& time : seen.times_s_) time -= time_s;
+    for (auto& pose : seen.poses_) pose = back * pose;
+    return seen;
+}
+}  // namespace delio

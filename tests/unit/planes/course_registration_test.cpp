@@ -1,0 +1,131 @@
+#include "delio/planes/course_registration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using Eigen::Isometry3d;
+using planes::CoursePrior;
+using planes::TimedPoints;
+using test::degreesBetween;
+using test::poseAt;
+
+constexpr double kSince_s = 0.1;
+
+/** As a hand swings it: 8 deg and 5 cm about and along all axes, 1.5 times a second. */
+Isometry3d swung(double time_s) {
+    const double phase = 2 * M_PI * 1.5 * time_s;
+    const Eigen::Vector3d sines(std::sin(phase), std::sin(phase + 1), std::sin(phase + 2));
+    return isometry(rotationExp(8 * M_PI / 180 * sines),
+                    Eigen::Vector3d(1.2 * time_s, 0, 0) + 0.05 * sines);
+}
+
+planes::PlaneMap mapOf(const test::Scene& scene) {
+    test::Noise noise;
+    planes::PlaneMap map{planes::PlaneMapOptions{}};
+    for (int i = 0; i < 8; ++i) {
+        const Isometry3d pose = poseAt(0.2 * i - 1, 0.1, 0, 0.3 * i, 0.02 * i, 0.01 * i);
+        const Eigen::Matrix3Xd points =
+            test::ringScan(scene, pose, {32, 720, -24, 8, 0.01}, noise).points.cast<double>();
+        map.add((pose.linear() * points).colwise() + pose.translation());
+    }
+    return map;
+}
+
+/** A sweep on the way there, with `noise_m` in the points. */
+TimedPoints seen(const test::Scene& scene, double noise_m) {
+    constexpr int kColumns = 200;
+    test::Noise noise(3);
+    TimedPoints scan{Eigen::Matrix3Xd(3, 0), {}};
+    for (int c = 0; c < kColumns; ++c) {
+        const double time_s = 0.1 * c / kColumns - 0.05, azimuth = 2 * M_PI * c / kColumns;
+        const Isometry3d head(Eigen::AngleAxisd(azimuth, Eigen::Vector3d::UnitZ()));
+        const auto points =
+            test::ringScan(scene, swung(time_s) * head, {32, 1, -24, 8, noise_m}, noise).points;
+        const Eigen::Index before = scan.points.cols();
+        scan.points.conservativeResize(3, before + points.cols());
+        scan.points.rightCols(points.cols()) = head.linear() * points.cast<double>();
+        scan.times_s.insert(scan.times_s.end(), static_cast<std::size_t>(points.cols()), time_s);
+    }
+    return scan;
+}
+
+/** At one twist, from the true pose before to a pose that is off at the stamp. */
+Course evenCourse(const Isometry3d& off) {
+    const Isometry3d start = swung(-kSince_s);
+    return Course::even({-0.1, -0.05, -0.025, 0, 0.025, 0.05}, start,
+                        Motion::of(start.inverse() * swung(0) * off, kSince_s));
+}
+
+struct Off {
+    double metres = 0, degrees = 0;
+};
+Off worstOf(const Course& course) {
+    Off worst;
+    for (double time_s = -0.05; time_s <= 0.05; time_s += 0.005) {
+        worst.metres = std::max(
+            worst.metres, (course.at(time_s).translation() - swung(time_s).translation()).norm());
+        worst.degrees = std::max(worst.degrees, degreesBetween(course.at(time_s), swung(time_s)));
+    }
+    return worst;
+}
+
+const CoursePrior kOfHand{0.05, 0.02, 0.1, 0.1};
+
+TEST(CourseRegistration, FindsTheSwingWithinAScan) {
+    const auto map = mapOf(test::yard());
+    const auto scan = seen(test::yard(), 0.01);
+    for (const auto& off : {poseAt(0, 0, 0), poseAt(0.04, -0.03, 0.02, 0.01, -0.01, 0.005)}) {
+        const Course even = evenCourse(off);
+        EXPECT_GT(worstOf(even).degrees, 1);
+        const Off worst =
+            worstOf(planes::registerCourse(map, scan, even, kSince_s, kOfHand, 1, {}));
+        EXPECT_LT(worst.metres, 0.02);
+        EXPECT_LT(worst.degrees, 0.12);
+    }
+}
+
+TEST(CourseRegistration, StartsWhereItIsKnownToStart) {
+    const auto found =
+        planes::registerCourse(mapOf(test::yard()), seen(test::yard(), 0),
+                               evenCourse(poseAt(0, 0, 0)), kSince_s, kOfHand, 1, {});
+    EXPECT_LT((found.at(-kSince_s).matrix() - swung(-kSince_s).matrix()).norm(), 1e-12);
+}
+
+// In a corridor only the noise of normals tells how far it went along it: not farther than what is
+// known before allows.
+TEST(CourseRegistration, IsLedAstrayNoFartherThanIsLikely) {
+    constexpr double kSigma_m = 0.01;
+    const Course even = evenCourse(poseAt(0, 0, 0));
+    const auto found =
+        planes::registerCourse(mapOf(test::corridor()), seen(test::corridor(), 0), even, kSince_s,
+                               {kSigma_m, 0.02, kSigma_m, 0.1}, 1, {});
+    for (const double time_s : {-0.05, 0.0, 0.05})
+        EXPECT_NEAR(found.at(time_s).translation().x(), even.at(time_s).translation().x(),
+                    3 * kSigma_m);
+    EXPECT_LT(worstOf(found).degrees, 0.2);
+}
+
+TEST(CourseRegistration, AnEvenMotionStaysEvenWhereItIsKnownToBe) {
+    const Course even = evenCourse(poseAt(0, 0, 0));
+    const auto found = planes::registerCourse(mapOf(test::yard()), seen(test::yard(), 0.01), even,
+                                              kSince_s, {1e-4, 1e-4, 1e-5, 1e-5}, 1, {});
+    for (const double time_s : {-0.05, 0.0, 0.05})
+        EXPECT_LT((found.at(time_s).matrix() - even.at(time_s).matrix()).norm(), 1e-2);
+}
+
+TEST(CourseRegistration, WithTooFewPointsTheCourseStays) {
+    const Course even = evenCourse(poseAt(0, 0, 0));
+    const TimedPoints none{Eigen::Matrix3Xd(3, 0), {}},
+        far{Eigen::Matrix3Xd::Constant(3, 500, 900), std::vector<double>(500, 0.01)};
+    for (const auto& scan : {none, far}) {
+        const auto found =
+            planes::registerCourse(mapOf(test::yard()), scan, even, kSince_s, kOfHand, 1, {});
+        EXPECT_EQ(found.at(0.03).matrix(), even.at(0.03).matrix());
+    }
+}
+}  // namespace
