@@ -226,6 +226,14 @@ void PlaneOdometry::processFirstOfMap(const scan::PointCloud& cloud, Step& step)
            pose_, view, step);
 }
 
+/** From the latest scan on, of which it is not asked twice. */
+Onward PlaneOdometry::onwardMotion(double duration_s) {
+    Onward onward(prediction_.predict(duration_s), duration_s);
+    if (onward_ && !lost_ && !doubted_) onward = *onward_;
+    onward_.reset();
+    return onward;
+}
+
 /** Every other scan: undistort, place by points, leave out what moves, refine by planes; it comes
  *  into the map while the next one is thinned. */
 void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& interval,
@@ -235,15 +243,10 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
     lost_ = lost_ || step.interrupted;
     // Where scans were missed in between, what was driven since then was driven in all this time.
     const double since_s = timeline_.sinceStart_s() - reference_.time_s;
-    if (lost_ || doubted_) onward_.reset();
-    const Eigen::Isometry3d motion = onward_ ? onward_->at(interval.duration_s)
-                                             : prediction_.predict(interval.duration_s),
-                            predicted = pose_ * motion;
-    ScanView view = timed(timeOf(step, "undistort"), [&] {
-        return undistorted(cloud,
-                           onward_ ? onward_->motion() : Motion::of(motion, interval.duration_s));
-    });
-    onward_.reset();
+    const Onward onward = onwardMotion(interval.duration_s);
+    const Eigen::Isometry3d predicted = pose_ * onward.at(interval.duration_s);
+    ScanView view =
+        timed(timeOf(step, "undistort"), [&] { return undistorted(cloud, onward.motion()); });
     const auto voxels = timed(timeOf(step, "thinning"), [&] { return thinAll(view); });
     const bool looking = options_.dynamics.enabled && !lost_;
     movers::DynamicObjects::Sight sight;

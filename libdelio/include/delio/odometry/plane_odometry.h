@@ -51,6 +51,7 @@ class PlaneOdometry : public Odometry {
     bool isOtherScale();
     void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
     void processNext(const scan::PointCloud& cloud, const Interval& interval, Step& step);
+    Onward onwardMotion(double duration_s);
     scan::VoxelNumbers thinAll(ScanView& view);
     void leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
                                 movers::DynamicObjects::Sight sight, const Eigen::Isometry3d& pose,

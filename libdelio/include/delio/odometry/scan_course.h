@@ -30,9 +30,9 @@ Course findCourse(const planes::PlaneMap& map, const KnownMotion& known,
 /** A scan as it was seen on a course, and where it is then. */
 struct ScanOnCourse {
     ScanView view;
-    planes::PlaneEstimate estimate;
-    Course course;     //!< sensor to map, times from the stamp
-    double share = 0;  //!< of its points on those of the map
+    planes::PlaneEstimate estimate;  //!< of its pose at the stamp
+    Course course;                   //!< sensor to map, times from the stamp
+    double share = 0;                //!< of its points on those of the map
 };
 
 /** Undistorts `cloud`, what is dynamic in `view` left out, and registers it as a whole. None where
@@ -45,6 +45,9 @@ std::optional<ScanOnCourse> registerOn(const Course& course, const KnownMotion& 
 class Onward {
  public:
     Onward() = default;
+    /** At constant twist, by `increment` in `duration_s` (more than 0) from the stamp on. */
+    Onward(const Eigen::Isometry3d& increment, double duration_s)
+        : end_s_(duration_s), end_(increment), motion_(Motion::of(increment, duration_s)) {}
     /** `course`: during the scan, times and frame those of its stamp. The motion is that of its
      * last `over_s`. */
     Onward(const Course& course, double over_s);

@@ -16,10 +16,10 @@ struct TimedPoints {
 /** What is known of a motion before the planes are asked: standard deviations along (metres) and
  *  about (rad) each axis. */
 struct CoursePrior {
-    double translation = 0.05, rotation = 0.02;  //!< of the pose at the stamp
-    /** How far motions from one stamp to the next are off what they would be at a constant speed.
-     */
-    double unevenTranslation = 0.02, unevenRotation = 0.05;
+    double translation = 0.05;        //!< of the pose at the stamp
+    double rotation = 0.02;           //!< likewise
+    double unevenTranslation = 0.02;  //!< how far a motion between stamps is off constant speed
+    double unevenRotation = 0.05;     //!< likewise
 };
 
 /** The motion (sensor to map) during a scan, from the planes that its points lie on, each at its
