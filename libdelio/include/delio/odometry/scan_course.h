@@ -12,9 +12,9 @@
 namespace delio {
 /** What is known of the motion during a scan whose points have times. */
 struct KnownMotion {
-    Eigen::Isometry3d reference;  //!< `since_s` (more than 0) before the stamp, sensor to map
-    double since_s = 0;
-    Eigen::Isometry3d pose;  //!< at the stamp, likewise
+    Eigen::Isometry3d reference;  //!< `since_s` before the stamp, sensor to map
+    double since_s = 0;           //!< more than 0
+    Eigen::Isometry3d pose;       //!< at the stamp, likewise
 };
 
 /** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to
@@ -29,7 +29,7 @@ Course findCourse(const planes::PlaneMap& map, const KnownMotion& known,
 
 /** A scan as it was seen on a course, and where it is then. */
 struct ScanOnCourse {
-    ScanView view;
+    ScanView view;                   //!< thinned, too
     planes::PlaneEstimate estimate;  //!< of its pose at the stamp
     Course course;                   //!< sensor to map, times from the stamp
     double share = 0;                //!< of its points on those of the map
@@ -54,6 +54,7 @@ class Onward {
 
     /** The sensor at `time_s` from the stamp: maps its frame then to the one at the stamp. */
     Eigen::Isometry3d at(double time_s) const { return end_ * motion_.after(time_s - end_s_); }
+    /** Its twist. */
     const Motion& motion() const { return motion_; }
 
     /** What has to be kept to go on later: see core/checkpoint.h. */
