@@ -19,11 +19,14 @@ class Course {
     static Course even(const std::vector<double>& times_s, const Eigen::Isometry3d& pose,
                        const Motion& motion);
 
+    /** Maps the moving frame at `time_s` to the one that rests. */
     Eigen::Isometry3d at(double time_s) const;
     /** As seen from where it is at `time_s`, with times from then. */
     Course seenFrom(double time_s) const;
 
+    /** Of the poses. */
     const std::vector<double>& times_s() const { return times_s_; }
+    /** At these times. */
     const std::vector<Eigen::Isometry3d>& poses() const { return poses_; }
 
  private:
