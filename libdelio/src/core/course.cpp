@@ -16,6 +16,7 @@ Course::Course(const Motion& motion)
 Course Course::even(const std::vector<double>& times_s, const Eigen::Isometry3d& pose,
                     const Motion& motion) {
     std::vector<Eigen::Isometry3d> poses;
+    poses.reserve(times_s.size());
     for (const double time_s : times_s) poses.push_back(pose * motion.after(time_s - times_s[0]));
     return {times_s, poses};
 }

@@ -14,7 +14,7 @@ namespace delio::planes {
 namespace {
 /** The polynomial's coefficients, a rotation vector and a translation each: the pose at the stamp,
  *  and what acceleration and jerk add to the way there and beyond. */
-constexpr int kDegree = 3;
+constexpr Eigen::Index kDegree = 3;
 using Coefficients = Eigen::Matrix<double, 6 * kDegree, 1>;
 using Information = Eigen::Matrix<double, 6 * kDegree, 6 * kDegree>;
 
@@ -64,7 +64,7 @@ Sums sumsOf(const Correspondences& matches, const TimedPoints& scan, const PoseT
         both << point.cross(poses.at(time_s).linear().transpose() * match.normal), match.normal;
         const auto shares = sharesAt(time_s, since_s);
         Coefficients all;
-        for (int k = 0; k < kDegree; ++k) all.segment<6>(6 * k) = shares[k] * both;
+        for (Eigen::Index k = 0; k < kDegree; ++k) all.segment<6>(6 * k) = shares[k] * both;
         const Coefficients weighted = match.weight * all;
         sum.information.noalias() += weighted * all.transpose();
         sum.gradient += residual * weighted;
@@ -85,7 +85,7 @@ Course bent(const Course& course, const Coefficients& step, double since_s) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const auto shares = sharesAt(course.times_s()[i], since_s);
         Vector6 move = Vector6::Zero();
-        for (int k = 0; k < kDegree; ++k) move += shares[k] * step.segment<6>(6 * k);
+        for (Eigen::Index k = 0; k < kDegree; ++k) move += shares[k] * step.segment<6>(6 * k);
         const Eigen::Matrix3d R = poses[i].linear() * rotationExp(move.head<3>());
         poses[i] = isometry(normalised(R), poses[i].translation() + move.tail<3>());
     }
