@@ -57,6 +57,8 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
     row("predicted", run::textOf(doubts.predicted, record.predicted()));
     row("weakly observed",
         run::textOf(doubts.weak, doubts.weak.scans) + (axes.empty() ? "" : ", " + axes));
+    if (doubts.standing.scans > 0)
+        row("standing", run::textOf(doubts.standing, doubts.standing.scans));
     row("searched", run::textOf(doubts.searched, doubts.searched.scans));
     if (!record.fixes.empty()) {
         std::array<std::size_t, 3> scans{};

@@ -104,6 +104,7 @@ TEST_F(DelioSlam, ColumnsAndStagesAreThoseOfTheMethod) {
                            "translation_unobserved",
                            "searched",
                            "interrupted",
+                           "standing",
                            "predicted",
                            "reason"};
     const std::map<std::string, std::pair<Words, Words>> own = {

@@ -16,14 +16,15 @@ double Timeline::usual_s() const {
 }
 
 Interval Timeline::advance(double stamp_s) {
-    constexpr double kLongest_s = 1, kLongestOfUsual = 5;
+    constexpr double kLongest_s = 1, kLongestOfUsual = 5, kShortestOfUsual = 0.2;
     constexpr std::size_t kMemory = 9;
     const double elapsed_s = stamp_s - stamp_s_, usual = usual_s();
-    Interval interval{usual, true, usual};
+    Interval interval{IntervalKind::kUsual, usual, usual};
     if (started_ && std::abs(elapsed_s) > std::max(kLongest_s, kLongestOfUsual * usual)) {
-        interval.believed = false;
+        interval.kind = IntervalKind::kUnknown;
         interval.elapsed_s = std::abs(elapsed_s);
     } else if (started_ && elapsed_s > 0) {
+        if (elapsed_s < kShortestOfUsual * usual) interval.kind = IntervalKind::kShort;
         interval.duration_s = interval.elapsed_s = elapsed_s;
         latest_s_.push_back(elapsed_s);
         if (latest_s_.size() > kMemory) latest_s_.pop_front();

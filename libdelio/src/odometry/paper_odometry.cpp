@@ -222,8 +222,9 @@ void PaperOdometry::takeIncrement(const PaperRegistration& registration, double 
 
 Step PaperOdometry::process(const Scan& scan) {
     Step step;
-    const Interval interval = timeline_.advance(scan.stamp_s);
-    step.interrupted = !interval.believed;
+    const Arrival arrival = arrivals_.take(scan);
+    const Interval& interval = arrival.interval;
+    step.interrupted = interval.kind == IntervalKind::kUnknown;
     if (step.interrupted) prediction_.forget();  // whether it went on meanwhile is not known
     lost_ = lost_ || step.interrupted;
     sinceReference_s_ += interval.duration_s;
@@ -239,7 +240,8 @@ Step PaperOdometry::process(const Scan& scan) {
                 scan::deskew(made.points, made.times_s, Motion::of(predicted, interval.duration_s));
         return made;
     });
-    const auto features = extract(cloud, step);
+    const std::string skipped = reference_ ? reasonToSkip(arrival, prediction_) : "";
+    const auto features = extract(skipped.empty() ? cloud : scan::PointCloud{}, step);
     ++scans_;
     const bool usable =
         features->pattern.directions.cols() > 0 && features->lines.midpoints.cols() > 0;
@@ -256,16 +258,19 @@ Step PaperOdometry::process(const Scan& scan) {
     } else if (scans_ > 1)
         step.reason = "no usable scan before it";  // what was driven since then is not known
     if (!usable) step.reason = cloud.points.cols() == 0 ? "no points" : "no surfaces";
+    if (!skipped.empty()) step.reason = skipped;
     step.predicted = !step.reason.empty();
     step.times_ms.emplace_back("rotation", registration.rotation_ms);
     step.times_ms.emplace_back("translation", registration.translation_ms);
     step.times_ms.emplace_back("check", registration.check_ms);
     note(registration, step);
+    const bool wasLost = lost_;
     if (reference_)
         takeIncrement(registration, interval.duration_s, step);
     else  // nothing was measured
         step.quality.unobservedRotation = step.quality.unobservedTranslation =
             Eigen::Matrix3d::Identity();
+    if (!skipped.empty()) lost_ = wasLost;
     if (!step.predicted) unregistered_s_ = 0;
     if (usable) {
         reference_ = features;

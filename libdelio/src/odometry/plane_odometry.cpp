@@ -25,6 +25,19 @@ std::vector<Named> noTimes() {
             {"dynamic", 0},    {"planes", 0},    {"map_update", 0}};
 }
 
+/** True for a scan that was registered along and about every axis and moved slower than
+ * registration noise over one turn. */
+bool isStanding(const Step& step, double duration_s) {
+    constexpr double kSlow_mps = 0.1, kSlow_radps = 2 * M_PI / 180;
+    const Quality& quality = step.quality;
+    if (step.predicted || quality.unobservedTranslation.cols() > 0 ||
+        quality.unobservedRotation.cols() > 0)
+        return false;
+    const Eigen::Isometry3d& moved = step.increment.pose;
+    return moved.translation().norm() < kSlow_mps * duration_s &&
+           angleOf(moved.linear()) < kSlow_radps * duration_s;
+}
+
 /** The figures of both registrations. */
 std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate& placed) {
     const bool byPlanes = estimate.valid && estimate.rotation.observability[2] > 0;
@@ -84,7 +97,7 @@ void PlaneOdometry::leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
                                            movers::DynamicObjects::Sight sight,
                                            const Eigen::Isometry3d& pose, ScanView& view) {
     const auto dynamic =
-        dynamics_.detect(std::move(sight), pose * turnedBack(upright_), timeline_.sinceStart_s());
+        dynamics_.detect(std::move(sight), pose * turnedBack(upright_), arrivals_.sinceStart_s());
     map_.erase(dynamics_.unmasked());
     for (std::size_t i = 0; i < view.dynamic.size(); ++i)
         view.dynamic[i] = dynamic[voxels.ofPoint[i]];
@@ -182,12 +195,13 @@ void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& 
 
 void PlaneOdometry::insert(const ScanView& view, const Eigen::Isometry3d& pose) {
     map_.add(view.fine, pose);
-    reference_ = {view.points, pose, timeline_.sinceStart_s()};
+    reference_ = {view.points, pose, arrivals_.sinceStart_s()};
 }
 
 /** At pose_, while the next scan is thinned. */
 void PlaneOdometry::insertLater(ScanView& view) {
-    reference_ = {view.points, pose_, timeline_.sinceStart_s()};
+    reference_ = {view.points, pose_, arrivals_.sinceStart_s()};
+    skewed_.reset();  // the map no longer holds the first scan alone
     awaited_ = PlacedPoints{std::move(view.fine), pose_};
 }
 
@@ -234,15 +248,24 @@ Onward PlaneOdometry::onwardMotion(double duration_s) {
     return onward;
 }
 
+/** A scan that says nothing about the motion: its pose is the prediction, and the tracking goes on
+ *  from the scan before. */
+void PlaneOdometry::skip(const scan::PointCloud& cloud, const Interval& interval, Step& step) {
+    const Onward onward = onwardMotion(interval.duration_s);
+    const Eigen::Isometry3d before = pose_;
+    pose_ = pose_ * onward.at(interval.duration_s);
+    ScanView view = undistorted(cloud, onward.motion());
+    step.details = detailsOf({}, {});
+    report(planes::predictedEstimate(pose_, options_.registration, errorGrowth(unregistered_s_)),
+           before, view, step);
+}
+
 /** Every other scan: undistort, place by points, leave out what moves, refine by planes; it comes
  *  into the map while the next one is thinned. */
 void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& interval,
                                 Step& step) {
-    step.interrupted = !interval.believed;
-    if (step.interrupted) prediction_.forget();  // whether it went on meanwhile is not known
-    lost_ = lost_ || step.interrupted;
     // Where scans were missed in between, what was driven since then was driven in all this time.
-    const double since_s = timeline_.sinceStart_s() - reference_.time_s;
+    const double since_s = arrivals_.sinceStart_s() - reference_.time_s;
     const Onward onward = onwardMotion(interval.duration_s);
     const Eigen::Isometry3d predicted = pose_ * onward.at(interval.duration_s);
     ScanView view =
@@ -252,7 +275,8 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
     movers::DynamicObjects::Sight sight;
     Placement placement;
     timed(timeOf(step, "points"), [&] {
-        const auto expected = expectation(predicted, since_s, interval.believed);
+        const auto expected =
+            expectation(predicted, since_s, interval.kind != IntervalKind::kUnknown);
         tbb::parallel_invoke([&] { placement = placeScan(map_, view, expected, options_); },
                              [&] {
                                  if (looking)
@@ -323,7 +347,8 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3
 Step PlaneOdometry::process(const Scan& scan) {
     Step step;
     step.times_ms = noTimes();
-    const Interval interval = timeline_.advance(scan.stamp_s);
+    const Arrival arrival = arrivals_.take(scan);
+    const Interval& interval = arrival.interval;
     unregistered_s_ += interval.elapsed_s;
     seenScale_ = given_.tracker.scale > 0 ? given_.tracker.scale : scaleOf(scan);
     if (!started_) takeScale(seenScale_);
@@ -334,10 +359,18 @@ Step PlaneOdometry::process(const Scan& scan) {
     });
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
-    if (started_)
-        processNext(cloud, interval, step);
-    else
+    if (started_) {
+        step.interrupted = interval.kind == IntervalKind::kUnknown;
+        if (step.interrupted) prediction_.forget();  // whether it went on meanwhile is not known
+        lost_ = lost_ || step.interrupted;
+        step.reason = reasonToSkip(arrival, prediction_);
+        if (step.reason.empty())
+            processNext(cloud, interval, step);
+        else
+            skip(cloud, interval, step);
+    } else
         processFirstOfMap(cloud, step);
+    step.standing = isStanding(step, interval.duration_s);
     if (!step.predicted) unregistered_s_ = 0;
     if (started_ && !lost_ && isOtherScale()) {
         takeScale(seenScale_);

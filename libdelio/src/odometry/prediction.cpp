@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "delio/core/motion.h"
+#include "delio/core/geometry.h"
 
 namespace delio {
 std::vector<OptionField> PredictionOptions::fields() const {
@@ -11,15 +11,15 @@ std::vector<OptionField> PredictionOptions::fields() const {
 }
 
 Eigen::Isometry3d LinearPrediction::predict(double duration_s) const {
-    Motion mean;
-    const auto n = static_cast<double>(latestFirst_.size());
-    for (std::size_t j = 0; j < latestFirst_.size(); ++j) {
-        const double weight = 2 * (n - static_cast<double>(j)) / (n * (n + 1));
-        const auto motion = Motion::of(latestFirst_[j].increment, latestFirst_[j].duration_s);
-        mean.velocity += weight * motion.velocity;
-        mean.turning += weight * motion.turning;
+    if (latestFirst_.empty()) return Eigen::Isometry3d::Identity();
+    Vector6 moved = Vector6::Zero();
+    double elapsed_s = 0, weight = static_cast<double>(latestFirst_.size());  // N - j + 1
+    for (const auto& observed : latestFirst_) {
+        moved += weight * poseLog(observed.increment);
+        elapsed_s += weight * observed.duration_s;
+        --weight;
     }
-    return mean.after(duration_s);
+    return poseExp(duration_s / elapsed_s * moved);
 }
 
 void LinearPrediction::observe(const Eigen::Isometry3d& increment, double duration_s) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "delio/points/point_search.h"
+#include "standstill.h"
 
 namespace delio {
 using planes::PlaneEstimate;
@@ -52,6 +53,7 @@ void ScanToMap::erase(const Eigen::Matrix3Xf& points) {
 }
 
 void ScanToMap::clear(const Eigen::Vector3d& up) {
+    up_ = up;
     planes_.clear(up);
     points_.clear();
 }
@@ -109,21 +111,41 @@ PlaneEstimate ScanToMap::byPoints(const PointEstimate& placed,
     return estimate;
 }
 
-/** Of the axes that planes do not see: those that the points do not see either go back to the
- *  prediction; those along which points say "standing still" are kept and named. */
-void ScanToMap::settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+/** Static surfaces of a scan, fine enough that a motion by `probe` metres shows. */
+surfaces::SurfaceNormals surfacesOf(const ScanView& view, double probe) {
+    surfaces::NormalsOptions options;
+    options.voxel_size = probe / 2;
+    options.max_radius = 3 * probe;
+    return surfaces::estimateNormals(view.fine, options);
+}
+
+/** For each axis that the planes do not constrain: where the points do not either, the prediction
+ *  is taken and the axis is reported as unobserved. Where points say that the scan is where the
+ *  latest one was, their answer stays; it is reported as unobserved unless surfaces that face the
+ *  axis confirm the standstill. */
+void ScanToMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
                                  const std::optional<Eigen::Isometry3d>& latest,
                                  PlaneEstimate& found) const {
     auto& translation = found.translation;
+    if (translation.unobservedAxes.cols() == 0) return;
     const bool rests = latest && (translation.translation - latest->translation()).norm() <=
                                      pointOptions_.last_kernel;
+    surfaces::SurfaceNormals surfaces;
+    if (rests) surfaces = surfacesOf(view, options_.probe);
+    const auto stands = [&](const Eigen::Vector3d& axis) {
+        constexpr double kVertical = 0.8;  // cosine
+        return showsStandstill(points_, surfaces, found.pose(),
+                               {axis, std::abs(axis.dot(up_)) > kVertical, options_.probe,
+                                pointOptions_.last_kernel / 2});
+    };
     Eigen::Matrix3Xd unseen(3, 0);
     for (Eigen::Index i = 0; i < translation.unobservedAxes.cols(); ++i) {
         const Eigen::Vector3d axis = translation.unobservedAxes.col(i);
         const Eigen::Matrix3d along = axis * axis.transpose();
-        if (!points::pointsSee(points_, coarse, found.pose(), axis, options_.probe, pointOptions_))
+        if (!points::pointsSee(points_, view.coarse, found.pose(), axis, options_.probe,
+                               pointOptions_))
             translation.translation += along * (predicted.translation() - translation.translation);
-        else if (!rests)
+        else if (!rests || stands(axis))
             continue;
         translation.covariance += std::pow(planeOptions_.prior_sigma, 2) * along;
         unseen.conservativeResize(3, unseen.cols() + 1);
@@ -159,7 +181,7 @@ PlaneEstimate ScanToMap::refine(const ScanView& view, const PointEstimate& place
     }
     if (!believes(found, from)) found = byPoints(from, turnCovariance(view.coarse, from));
     found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
-    settleUnobserved(view.coarse, predicted, latest, found);
+    settleUnobserved(view, predicted, latest, found);
     return found;
 }
 }  // namespace delio

@@ -34,7 +34,8 @@ planes::CoursePrior Unevenness::prior(double most) const {
     constexpr double kLikely_m = 0.02, kLikely_rad = 3 * M_PI / 180;
     constexpr double kLeast_m = 1e-4, kLeast_rad = 1e-5;  // of a sensor that stands still
     planes::CoursePrior prior;
-    prior.unevenTranslation = std::clamp(meanRoot(squares_m2_, kLikely_m), kLeast_m, most);
+    prior.unevenTranslation =
+        std::clamp(meanRoot(squares_m2_, kLikely_m), kLeast_m, std::max(most, kLeast_m));
     prior.unevenRotation = std::max(meanRoot(squares_rad2_, kLikely_rad), kLeast_rad);
     return prior;
 }

@@ -54,6 +54,7 @@ Doubts doubtsOf(const RunRows& rows) {
     }
     doubts.searched = stretchesOf(rows, [](const Step& step) { return step.searched; });
     doubts.interrupted = stretchesOf(rows, [](const Step& step) { return step.interrupted; });
+    doubts.standing = stretchesOf(rows, [](const Step& step) { return step.standing; });
     return doubts;
 }
 

@@ -80,7 +80,8 @@ void RunRows::push_back(const RunRow& row) {
     for (const std::size_t count : {row.scan, row.points, step.notFinite, quality.matches})
         put(static_cast<double>(count));
     for (const double number : {row.stamp_s, row.read_ms, quality.residual_m}) put(number);
-    for (const bool flag : {step.predicted, step.searched, step.interrupted, step.deskewed})
+    for (const bool flag :
+         {step.predicted, step.searched, step.interrupted, step.standing, step.deskewed})
         put(flag);
     put(step.times_ms);
     put(row.report.listeners_ms);
@@ -103,7 +104,8 @@ RunRow RunRows::operator[](std::size_t i) const {
         *count = next.count();
     for (double* number : {&row.stamp_s, &row.read_ms, &quality.residual_m})
         *number = next.number();
-    for (bool* flag : {&step.predicted, &step.searched, &step.interrupted, &step.deskewed})
+    for (bool* flag :
+         {&step.predicted, &step.searched, &step.interrupted, &step.standing, &step.deskewed})
         *flag = next.flag();
     step.times_ms = next.figures(names.stages);
     row.report.listeners_ms = next.figures(names.listeners);

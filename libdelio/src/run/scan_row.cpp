@@ -43,6 +43,7 @@ io::ScanRow scanRowOf(const RunRow& row) {
     put("translation_unobserved", axesText(quality.unobservedTranslation));
     put("searched", step.searched ? "1" : "0");
     put("interrupted", step.interrupted ? "1" : "0");
+    put("standing", step.standing ? "1" : "0");
     return cells;
 }
 }  // namespace delio::run

@@ -139,6 +139,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.weakly_observed = doubts.weak.scans;
     summary.longest_weakly_observed = doubts.weak.longest;
     summary.interrupted = doubts.interrupted.scans;
+    summary.standing = doubts.standing.scans;
     summary.weakly_observed_along = doubts.weakAlong;
     summary.weakly_observed_about = doubts.weakAbout;
     summary.searched = countOf(record, &Step::searched);
@@ -193,6 +194,7 @@ void writeSummary(const Summary& s, const std::string& path) {
     write(yaml, "searched", s.searched);
     write(yaml, "longest_searched", s.longest_searched);
     write(yaml, "interrupted", s.interrupted);
+    write(yaml, "standing", s.standing);
     if (s.searched_loops) {
         write(yaml, "loop_candidates", s.loop_candidates);
         write(yaml, "loops_closed", s.loops_closed);
@@ -248,6 +250,7 @@ Summary readSummary(const std::string& path) {
         s.searched = node["searched"].as<std::size_t>(0);
         s.longest_searched = node["longest_searched"].as<std::size_t>(0);
         s.interrupted = node["interrupted"].as<std::size_t>(0);
+        s.standing = node["standing"].as<std::size_t>(0);
         s.searched_loops = static_cast<bool>(node["loops_closed"]);
         s.loop_candidates = node["loop_candidates"].as<std::size_t>(0);
         s.loops_closed = node["loops_closed"].as<std::size_t>(0);

@@ -7,7 +7,7 @@ using namespace delio;
 using run::RunRow;
 
 /** Scans 5, 6, 7 ...: '.' registered, 'p' predicted, 'w' an axis not observed, 'i' interrupted, 's'
- *  searched. */
+ *  searched, '0' standing. */
 std::vector<RunRow> listOf(const std::string& kinds) {
     std::vector<RunRow> rows;
     for (const char kind : kinds) {
@@ -17,6 +17,7 @@ std::vector<RunRow> listOf(const std::string& kinds) {
         step.predicted = kind == 'p';
         step.interrupted = kind == 'i';
         step.searched = kind == 's';
+        step.standing = kind == '0';
         if (kind == 'w' || kind == 'p') step.quality.unobservedTranslation.setIdentity(3, 1);
         rows.push_back(row);
     }
@@ -52,6 +53,14 @@ TEST(Doubts, SearchedScansAreCountedAndNoWarning) {
     EXPECT_TRUE(run::warningsOf(doubts).empty());
     EXPECT_EQ(run::textOf(doubts.searched, 5), "5, at most 3 in a row (from scan 10)");
     EXPECT_EQ(run::textOf(doubts.predicted, 0), "0");
+}
+
+TEST(Doubts, StandingScansAreCountedAndNoWarning) {
+    const auto doubts = run::doubtsOf(rowsOf(".000..0000"));
+    EXPECT_EQ(doubts.standing.scans, 7U);
+    EXPECT_EQ(doubts.standing.longest, 4U);
+    EXPECT_EQ(doubts.standing.from, 11U);
+    EXPECT_TRUE(run::warningsOf(doubts).empty());
 }
 
 TEST(Doubts, WeakAxesAreTheVehicles) {

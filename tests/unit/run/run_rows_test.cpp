@@ -17,7 +17,7 @@ run::RunRow someRow() {
     row.points = 4;
     row.read_ms = 5.5;
     Step& step = row.report.step;
-    step.predicted = step.searched = step.interrupted = step.deskewed = true;
+    step.predicted = step.searched = step.interrupted = step.standing = step.deskewed = true;
     step.reason = "not found in the map";
     step.quality.matches = 8;
     step.quality.residual_m = 0.3;
@@ -44,6 +44,7 @@ void expectSame(const run::RunRow& row, const run::RunRow& expected) {
     EXPECT_EQ(step.predicted, other.predicted);
     EXPECT_EQ(step.searched, other.searched);
     EXPECT_EQ(step.interrupted, other.interrupted);
+    EXPECT_EQ(step.standing, other.standing);
     EXPECT_EQ(step.deskewed, other.deskewed);
     EXPECT_EQ(step.reason, other.reason);
     EXPECT_EQ(step.quality.matches, other.quality.matches);

@@ -26,6 +26,7 @@ Summary anySummary() {
     s.weakly_observed_along = {380000, 0, 2};
     s.weakly_observed_about = {0, 7, 100000};
     s.interrupted = 3;
+    s.standing = 2;
     s.searched = 11;
     s.longest_searched = 5;
     s.deskewed = 200000;
@@ -61,6 +62,7 @@ void expectSame(const Summary& a, const Summary& b) {
     EXPECT_EQ(a.weakly_observed_along, b.weakly_observed_along);
     EXPECT_EQ(a.weakly_observed_about, b.weakly_observed_about);
     EXPECT_EQ(a.interrupted, b.interrupted);
+    EXPECT_EQ(a.standing, b.standing);
     EXPECT_EQ(a.searched, b.searched);
     EXPECT_EQ(a.longest_searched, b.longest_searched);
     EXPECT_EQ(a.deskewed, b.deskewed);

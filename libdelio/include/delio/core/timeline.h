@@ -2,23 +2,26 @@
 #include <deque>
 
 namespace delio {
-/** The time between a scan and the one before it. */
-struct Interval {
-    double duration_s = 0;  //!< more than 0
-    /** False after a pause, or where a clock was set: `duration_s` is the usual one then, and the
-     *  motion in between is not known. */
-    bool believed = true;
-    /** What the stamps say, where that is not believed: the motion in between may have taken so
-     *  long; else the duration. */
-    double elapsed_s = 0;
+/** How the time between two scans compares with the usual one. */
+enum class IntervalKind {
+    kUsual,   //!< one turn of the sensor, or a few
+    kShort,   //!< less than a fifth of the usual one: no turn of the sensor lies in between
+    kUnknown  //!< a pause, or a clock that was set: the motion in between is not known
 };
 
-/** The only reader of stamps: what durations are believed between scans. */
+/** The time between a scan and the one before it. */
+struct Interval {
+    IntervalKind kind = IntervalKind::kUsual;
+    double duration_s = 0;  //!< more than 0; the usual one where the kind is kUnknown
+    double elapsed_s = 0;   //!< by the stamps where the kind is kUnknown, otherwise the duration
+};
+
+/** The only reader of stamps. Turns them into the durations between scans. */
 class Timeline {
  public:
     /** Takes the stamp (seconds) of the next scan. Where there is none before it, or stamps do not
-     *  rise, the interval is what is usual; likewise, and not believed, where the stamps are more
-     *  than a second and more than five times the usual interval apart, forwards or backwards. */
+     *  rise, the duration is the usual one. The interval is unknown where the stamps are more than
+     *  a second and more than five times the usual interval apart, forwards or backwards. */
     Interval advance(double stamp_s);
 
     /** Sum of the durations: rises with every scan, whatever the stamps do. */
@@ -35,6 +38,6 @@ class Timeline {
 
     bool started_ = false;
     double stamp_s_ = 0, sinceStart_s_ = 0;
-    std::deque<double> latest_s_;  //!< intervals that were believed
+    std::deque<double> latest_s_;  //!< the latest intervals that are not unknown
 };
 }  // namespace delio

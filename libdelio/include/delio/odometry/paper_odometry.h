@@ -2,7 +2,7 @@
 #include <memory>
 #include <optional>
 
-#include "delio/core/timeline.h"
+#include "delio/odometry/arrivals.h"
 #include "delio/odometry/odometry.h"
 #include "delio/odometry/point_check.h"
 #include "delio/odometry/prediction.h"
@@ -93,7 +93,7 @@ class PaperOdometry : public Odometry {
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
     void serialize(Archive& archive) {
-        archive(timeline_, prediction_, scans_, upright_, sinceReference_, sinceReference_s_,
+        archive(arrivals_, prediction_, scans_, upright_, sinceReference_, sinceReference_s_,
                 unregistered_s_, lost_);
         bool hasReference = reference_ != nullptr;
         archive(hasReference);
@@ -113,7 +113,7 @@ class PaperOdometry : public Odometry {
     void takeIncrement(const PaperRegistration& registration, double duration_s, Step& step);
 
     std::shared_ptr<const PaperOdometryOptions> options_;
-    Timeline timeline_;
+    Arrivals arrivals_;
     LinearPrediction prediction_;
     unsigned scans_ = 0;                              //!< processed
     std::shared_ptr<const PaperFeatures> reference_;  //!< the last usable scan

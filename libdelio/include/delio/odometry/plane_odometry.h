@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "delio/core/timeline.h"
 #include "delio/odometry/adaptive_kernel.h"
+#include "delio/odometry/arrivals.h"
 #include "delio/odometry/odometry.h"
 #include "delio/odometry/placement.h"
 #include "delio/odometry/scan_course.h"
@@ -41,7 +41,7 @@ class PlaneOdometry : public Odometry {
     void serialize(Archive& archive) {
         archive(scale_);
         if constexpr (Archive::is_loading::value) takeScale(scale_);
-        archive(upright_, seenScale_, otherScale_, timeline_, prediction_, map_, dynamics_, kernel_,
+        archive(upright_, seenScale_, otherScale_, arrivals_, prediction_, map_, dynamics_, kernel_,
                 unevenness_, onward_, reference_, pose_, unregistered_s_, first_, started_, lost_,
                 doubted_, usualShare_, misses_, skewed_, awaited_);
     }
@@ -51,6 +51,7 @@ class PlaneOdometry : public Odometry {
     bool isOtherScale();
     void processFirstOfMap(const scan::PointCloud& cloud, Step& step);
     void processNext(const scan::PointCloud& cloud, const Interval& interval, Step& step);
+    void skip(const scan::PointCloud& cloud, const Interval& interval, Step& step);
     Onward onwardMotion(double duration_s);
     scan::VoxelNumbers thinAll(ScanView& view);
     void leaveOutDynamicObjects(const scan::VoxelNumbers& voxels,
@@ -85,7 +86,7 @@ class PlaneOdometry : public Odometry {
     double scale_ = 1;
     double seenScale_ = 1;     //!< that the latest scan shows
     unsigned otherScale_ = 0;  //!< scans in a row that show a place of another size
-    Timeline timeline_;
+    Arrivals arrivals_;
     LinearPrediction prediction_;
     ScanToMap map_;
     movers::DynamicObjects dynamics_;

@@ -22,7 +22,8 @@ class LinearPrediction {
     explicit LinearPrediction(const PredictionOptions& options) : frames_(options.frames) {}
 
     /** The increment expected over the next `duration_s`: maps the coming frame to the present one.
-     *  With equal durations it is the paper's equation; otherwise speeds are averaged. */
+     *  With equal durations it is the paper's equation. Otherwise the weighted sum of the motions
+     * is divided by the weighted sum of their durations, so that a short interval counts little. */
     Eigen::Isometry3d predict(double duration_s = 1) const;
 
     /** False until an increment was observed: the prediction is a mere guess then. */

@@ -66,9 +66,9 @@ class ScanToMap {
     /** By planes, from where the points were placed; from where planes lead once more, if more
      *  points fit there. An axis that the planes see no better than the
      *  points stays where these put it, if they see it, else where the prediction does. Where
-     * points alone say that the scan stands where the map's `latest` does it is named as
-     * unobserved, too: a sensor's own rings say that anywhere. (None: the map is another drive's.)
-     */
+     *  points alone say that the scan stands where the map's `latest` does, the axis is unobserved,
+     *  too, unless surfaces that face it confirm that: a sensor's own rings lie on each other
+     *  anywhere. (None: the map is another drive's.) */
     planes::PlaneEstimate refine(const ScanView& view, const points::PointEstimate& placed,
                                  const Eigen::Isometry3d& predicted,
                                  const std::optional<Eigen::Isometry3d>& latest) const;
@@ -82,7 +82,7 @@ class ScanToMap {
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
     void serialize(Archive& archive) {
-        archive(planes_, points_, swept_m_);
+        archive(planes_, points_, swept_m_, up_);
     }
 
  private:
@@ -91,7 +91,7 @@ class ScanToMap {
                                    const points::PointEstimate& placed) const;
     planes::PlaneEstimate byPoints(const points::PointEstimate& placed,
                                    const Eigen::Matrix3d& turnCovariance) const;
-    void settleUnobserved(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+    void settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
                           const std::optional<Eigen::Isometry3d>& latest,
                           planes::PlaneEstimate& found) const;
 
@@ -100,6 +100,7 @@ class ScanToMap {
     points::PointRegistrationOptions pointOptions_;
     planes::PlaneMap planes_;
     points::PointMap points_;
+    Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();      //!< unit vector, map's frame
     Eigen::Vector3d swept_m_ = Eigen::Vector3d::Zero();  //!< where what is far was dropped last
 };
 }  // namespace delio

@@ -85,8 +85,10 @@ struct Step {
     std::string reason;        //!< why; empty where it was registered
     bool searched = false;     //!< not only from the prediction: all about it
     bool interrupted = false;  //!< a pause or a clock that was set: the time before it is not known
-    Quality quality;           //!< of the registration
-    UsedPoints used;           //!< what the map and the pictures are made of
+    /** Registered along and about every axis, and slower than 0.1 m/s and 2 deg/s. */
+    bool standing = false;
+    Quality quality;            //!< of the registration
+    UsedPoints used;            //!< what the map and the pictures are made of
     std::size_t notFinite = 0;  //!< points dropped: a coordinate was NaN or infinite
     bool deskewed = false;      //!< its points had times
     /** Of each stage in its order: every scan of an odometry has the same ones. */
@@ -97,8 +99,8 @@ struct Step {
     /** What has to be kept to go on later: see core/checkpoint.h. Without the features. */
     template <class Archive>
     void serialize(Archive& archive) {
-        archive(increment, predicted, reason, searched, interrupted, quality, used, notFinite,
-                deskewed, times_ms, details);
+        archive(increment, predicted, reason, searched, interrupted, standing, quality, used,
+                notFinite, deskewed, times_ms, details);
     }
 };
 

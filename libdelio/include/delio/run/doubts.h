@@ -25,6 +25,7 @@ struct Doubts {
     std::array<std::size_t, 3> weakAbout{};  //!< the same of the rotation
     Stretches searched;                      //!< not only from the prediction
     Stretches interrupted;                   //!< a pause or a set clock before them
+    Stretches standing;  //!< the sensor stood still: no doubt, but worth knowing
 };
 
 /** Counts them. */

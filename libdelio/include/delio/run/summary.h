@@ -31,6 +31,7 @@ struct Summary {
     std::size_t searched = 0;              //!< scans that were sought all about the prediction
     std::size_t longest_searched = 0;      //!< of them in a row
     std::size_t interrupted = 0;           //!< scans after a pause or a set clock
+    std::size_t standing = 0;              //!< scans in which the sensor stood still
     bool searched_loops = false;           //!< else the next two say nothing
     std::size_t loop_candidates = 0;       //!< pairs of places that were compared
     std::size_t loops_closed = 0;          //!< of which so many were accepted

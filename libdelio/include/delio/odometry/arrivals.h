@@ -1,0 +1,45 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "delio/core/timeline.h"
+#include "delio/odometry/prediction.h"
+#include "delio/scan/scan.h"
+
+namespace delio {
+/** What a scan's stamp and points say before the scan is registered. */
+struct Arrival {
+    Interval interval;    //!< since the scan before
+    unsigned copies = 0;  //!< scans in a row, up to this one, with the points of the one before
+};
+
+/** Recognises scans that are no new measurement: drivers repeat scans, and recorders merge topics.
+ */
+class Arrivals {
+ public:
+    /** Takes the next scan. */
+    Arrival take(const Scan& scan);
+
+    /** Sum of the intervals, seconds: rises with every scan, whatever the stamps do. */
+    double sinceStart_s() const { return timeline_.sinceStart_s(); }
+
+    /** State needed to resume an interrupted run: see core/checkpoint.h. */
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(timeline_, fingerprint_, copies_);
+    }
+
+ private:
+    Timeline timeline_;
+    std::uint64_t fingerprint_ = 0;  //!< of the latest scan's points
+    unsigned copies_ = 0;
+};
+
+/** Why a scan says nothing about the motion since the one before; empty where it does.
+ *  - It came much sooner than usual. The noise of its registration, divided by so short a time,
+ *    is no speed.
+ *  - It repeats the points of the scan before while the sensor is predicted to move. Such a scan
+ *    registers perfectly at the pose of the one before and would stop the motion model. (A second
+ *    copy, while no motion is known, counts as a sensor at rest.) */
+std::string reasonToSkip(const Arrival& arrival, const LinearPrediction& prediction);
+}  // namespace delio
