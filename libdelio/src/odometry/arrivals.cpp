@@ -37,11 +37,16 @@ Arrival Arrivals::take(const Scan& scan) {
     const std::uint64_t fingerprint = fingerprintOf(*scan.points);
     copies_ = fingerprint != 0 && fingerprint == fingerprint_ ? copies_ + 1 : 0;
     fingerprint_ = fingerprint;
-    return {interval, copies_};
+    const bool hasTimes = !scan.times_s.empty(), isEmpty = scan.points->size() == 0;
+    hadTimes_ = hadTimes_ || hasTimes;
+    if (!isEmpty) untimed_ = needTimes_ && hadTimes_ && !hasTimes ? untimed_ + 1 : 0;
+    return {interval, copies_, untimed_};
 }
 
 std::string reasonToSkip(const Arrival& arrival, const LinearPrediction& prediction) {
     if (arrival.interval.kind == IntervalKind::kShort) return "too soon after the scan before it";
+    constexpr unsigned kPatience = 3;
+    if (arrival.untimed > 0 && arrival.untimed <= kPatience) return "points without times";
     if (arrival.copies == 0) return {};
     constexpr const char* kCopy = "copy of the scan before it";
     if (!prediction.hasMotion()) return arrival.copies == 1 ? kCopy : "";

@@ -157,7 +157,9 @@ PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeature
 }
 
 PaperOdometry::PaperOdometry(const PaperOdometryOptions& options)
-    : options_(std::make_shared<PaperOdometryOptions>(options)), prediction_(options.prediction) {}
+    : options_(std::make_shared<PaperOdometryOptions>(options)),
+      arrivals_(needsTimes(options.scan)),
+      prediction_(options.prediction) {}
 
 /** The paper's rings and sectors are about z. */
 Eigen::Matrix3f PaperOdometry::upright() const {

@@ -3,6 +3,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "delio/core/stopwatch.h"
 #include "delio/odometry/scale.h"
@@ -55,6 +56,7 @@ std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate&
 PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
     : given_(options),
       options_(options),
+      arrivals_(needsTimes(options.scan)),
       prediction_(options.prediction),
       map_(options.scanToMap, options.map, options.registration, options.pointMap, options.points),
       dynamics_(options.dynamics, options.segments) {}
@@ -166,15 +168,27 @@ std::optional<ScanOnCourse> PlaneOdometry::undistortPair(KnownMotion known,
     return best;
 }
 
-/** Once more, with the points where the motion that was found puts them. */
-void PlaneOdometry::undistortAgain(const scan::PointCloud& cloud, double since_s, ScanView& view,
-                                   PlaneEstimate& estimate) {
+/** De-skews the scan by the motion that was found and registers it again: by an uneven motion, or
+ *  by an even one where clearly fewer points fit then. Where that does not fit either, the scan
+ *  stays de-skewed by the prediction. `inlierRatio`: that of the scan as it is. */
+void PlaneOdometry::undistortAgain(const scan::PointCloud& cloud, double since_s,
+                                   double inlierRatio, ScanView& view, PlaneEstimate& estimate) {
+    constexpr double kNoise = 0.02;  // of an inlier ratio
     const KnownMotion known{reference_.pose, since_s, estimate.pose()};
-    auto found = skewed_
-                     ? undistortPair(known, cloud, view)
-                     : registerOn(courseOf(known, cloud, view), known, map_, cloud, view, options_);
-    skewed_.reset();
-    if (!found) return;
+    const auto fits = [&](const std::optional<ScanOnCourse>& found) {
+        return found && found->share >= inlierRatio - kNoise;
+    };
+    std::optional<ScanOnCourse> found;
+    if (skewed_)
+        found = undistortPair(known, cloud, view);
+    else
+        for (const bool even : {false, true}) {
+            found = registerOn(even ? evenCourse(known, cloud) : courseOf(known, cloud, view),
+                               known, map_, cloud, view, options_);
+            if (fits(found)) break;
+        }
+    const bool isFirst = std::exchange(skewed_, {}).has_value();
+    if (!found || (!isFirst && !fits(found))) return;
     estimate = found->estimate;
     view = std::move(found->view);
     onward_ = Onward(found->course.seenFrom(0), since_s / 8);
@@ -184,11 +198,17 @@ void PlaneOdometry::undistortAgain(const scan::PointCloud& cloud, double since_s
 void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
                           double since_s) {
     if (prediction_.hasMotion()) {
-        constexpr double kForget = 0.1;
+        // A scan that fits badly where it was not expected may be at a wrong pose.
+        constexpr double kForget = 0.1, kAsUsual = 0.75;
+        const auto& points = options_.points;
+        const bool isDoubtful = placed.share < kAsUsual * usualShare_ &&
+                                points::stepBetween(predicted, placed.pose).norm() >
+                                    kernel_.width(points.least_kernel, points.first_kernel);
+        if (!isDoubtful)
+            usualShare_ = usualShare_ == 0 ? placed.share
+                                           : (1 - kForget) * usualShare_ + kForget * placed.share;
         kernel_.observe(pose_, predicted);
         unevenness_.observe(reference_.pose.inverse() * pose_, prediction_.predict(since_s));
-        usualShare_ =
-            usualShare_ == 0 ? placed.share : (1 - kForget) * usualShare_ + kForget * placed.share;
     }
     prediction_.observe(reference_.pose.inverse() * pose_, since_s);
 }
@@ -296,7 +316,7 @@ void PlaneOdometry::processNext(const scan::PointCloud& cloud, const Interval& i
         view.thinned =
             scan::voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
         auto found = map_.refine(view, placed, predicted, reference_.pose);
-        if (step.deskewed) undistortAgain(cloud, since_s, view, found);
+        if (step.deskewed) undistortAgain(cloud, since_s, placed.share, view, found);
         return found;
     });
     const Eigen::Isometry3d before = pose_;

@@ -59,8 +59,8 @@ class PlaneOdometry : public Odometry {
                                 ScanView& view);
     Expectation expectation(const Eigen::Isometry3d& predicted, double since_s,
                             bool believed) const;
-    void undistortAgain(const scan::PointCloud& cloud, double since_s, ScanView& view,
-                        planes::PlaneEstimate& estimate);
+    void undistortAgain(const scan::PointCloud& cloud, double since_s, double inlierRatio,
+                        ScanView& view, planes::PlaneEstimate& estimate);
     Course courseOf(const KnownMotion& known, const scan::PointCloud& cloud,
                     const ScanView& view) const;
     std::optional<ScanOnCourse> undistortPair(KnownMotion known, const scan::PointCloud& cloud,
