@@ -59,10 +59,14 @@ Fit fitOf(const points::PointMap& map, const Facing& surfaces, const Eigen::Vect
 
 bool showsStandstill(const points::PointMap& map, const surfaces::SurfaceNormals& scan,
                      const Eigen::Isometry3d& pose, const StandstillTest& test) {
-    constexpr Eigen::Index kFewest = 20;
+    // Where a single far ring turns from the ground to a wall, it looks like a surface across the
+    // road: in a smooth corridor up to 1 % of all surfaces.
+    constexpr double kFewest = 20, kFewestOfAll = 0.02;
     constexpr double kMatched = 0.5, kGone = 0.5, kStill_m = 0.02;
     const Facing surfaces = facing(scan, pose, test.axis);
-    if (surfaces.points.cols() < kFewest || !(surfaces.isAllAround || test.isVertical))
+    const auto count = static_cast<double>(surfaces.points.cols()),
+               all = static_cast<double>(scan.directions.cols());
+    if (count < std::max(kFewest, kFewestOfAll * all) || !(surfaces.isAllAround || test.isVertical))
         return false;
     const auto fitAt = [&](double along_m) {
         return fitOf(map, surfaces, test.axis, along_m * test.axis, test.reach);

@@ -46,4 +46,11 @@ TEST(Unevenness, ForgetsWhatWasLongAgo) {
         unevenness.observe(poseAt(0, 0, 0, i < 20 ? 0.5 : 0.01), poseAt(0, 0, 0));
     EXPECT_NEAR(unevenness.prior(1).unevenRotation, 0.01 / std::sqrt(3), 1e-9);
 }
+// Two scans a millisecond apart, or [plane_tracker] acceleration=0.
+TEST(Unevenness, ALimitBelowTheLeastIsTheLeast) {
+    Unevenness unevenness;
+    unevenness.observe(poseAt(0.1, 0, 0), poseAt(0, 0, 0));
+    EXPECT_GT(unevenness.prior(0).unevenTranslation, 0);
+    EXPECT_EQ(unevenness.prior(0).unevenTranslation, unevenness.prior(1e-6).unevenTranslation);
+}
 }  // namespace
