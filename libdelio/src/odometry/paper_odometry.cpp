@@ -21,8 +21,11 @@ auto stage(const char* name, Step& step, const Work& work) {
     return timed(step.times_ms.back().second, work);
 }
 
-/** The registration's own figures. */
+/** The registration's own times and figures. */
 void note(const PaperRegistration& found, Step& step) {
+    step.times_ms.emplace_back("rotation", found.rotation_ms);
+    step.times_ms.emplace_back("translation", found.translation_ms);
+    step.times_ms.emplace_back("check", found.check_ms);
     const auto put = [&](const char* name, double value) {
         step.details.emplace_back(name, value);
     };
@@ -262,9 +265,6 @@ Step PaperOdometry::process(const Scan& scan) {
     if (!usable) step.reason = cloud.points.cols() == 0 ? "no points" : "no surfaces";
     if (!skipped.empty()) step.reason = skipped;
     step.predicted = !step.reason.empty();
-    step.times_ms.emplace_back("rotation", registration.rotation_ms);
-    step.times_ms.emplace_back("translation", registration.translation_ms);
-    step.times_ms.emplace_back("check", registration.check_ms);
     note(registration, step);
     const bool wasLost = lost_;
     if (reference_)
