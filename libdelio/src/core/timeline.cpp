@@ -15,8 +15,8 @@ double Timeline::usual_s() const {
     return *middle;
 }
 
-Interval Timeline::advance(double stamp_s) {
-    constexpr double kLongest_s = 1, kLongestOfUsual = 5, kShortestOfUsual = 0.2;
+Interval Timeline::advance(double stamp_s, bool isCopy) {
+    constexpr double kLongest_s = 1, kLongestOfUsual = 5, kShortestOfUsual = 0.2, kAtOnce_s = 1e-6;
     constexpr std::size_t kMemory = 9;
     const double elapsed_s = stamp_s - stamp_s_, usual = usual_s();
     Interval interval{IntervalKind::kUsual, usual, usual};
@@ -28,7 +28,8 @@ Interval Timeline::advance(double stamp_s) {
         interval.duration_s = interval.elapsed_s = elapsed_s;
         latest_s_.push_back(elapsed_s);
         if (latest_s_.size() > kMemory) latest_s_.pop_front();
-    }
+    } else if (started_ && isCopy)
+        interval = {IntervalKind::kShort, kAtOnce_s, kAtOnce_s};
     if (started_) sinceStart_s_ += interval.duration_s;
     started_ = true;
     stamp_s_ = stamp_s;

@@ -100,6 +100,19 @@ TEST(Timeline, AnIntervalOfLessThanAFifthOfTheUsualOneIsShort) {
     }
 }
 
+TEST(Timeline, ACopyWhoseStampDoesNotRiseTakesNoTime) {
+    Timeline timeline;
+    for (int i = 0; i < 3; ++i) timeline.advance(0.1 * i);
+    for (const double stamp_s : {0.2, 0.15}) {
+        const auto copy = timeline.advance(stamp_s, true);
+        EXPECT_EQ(copy.kind, IntervalKind::kShort);
+        EXPECT_GT(copy.duration_s, 0);
+        EXPECT_LT(copy.duration_s, 1e-5);
+    }
+    EXPECT_EQ(timeline.advance(0.3, true).kind, IntervalKind::kUsual);
+    EXPECT_NEAR(timeline.sinceStart_s(), 0.35, 1e-4);
+}
+
 TEST(Timeline, ASensorOfAHundredTurnsASecondIsNotShort) {
     Timeline timeline;
     for (int i = 0; i < 10; ++i) {
