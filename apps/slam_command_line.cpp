@@ -112,6 +112,8 @@ bool isGraph(const std::string& input) { return fs::path(input).extension() == "
 std::string contradictionIn(SlamCommandLine& line) {
     const auto& inputs = line.input.getValue();
     if (line.every.getValue() == 0) return "--every has to be 1 or more";
+    if (line.threads.getValue() > cli::kMostThreads)
+        return "--threads has to be " + std::to_string(cli::kMostThreads) + " or less; 0: all";
     if (line.initialPose.isSet() && !line.map.isSet())
         return "--initial-pose is a pose in a stored map: it needs --map";
     if (line.extend.isSet() && !line.map.isSet())
