@@ -59,6 +59,7 @@ cli::HelpText slamHelp() {
         {Folder::kJoints, "with --extend: the edges between the two maps"},
         {Folder::kSummary, "the run in numbers"},
         {Folder::kConfig, "every option that had an effect, for -c"},
+        {Folder::kDrives, "of several drives: which is in which map"},
     };
     help.examples = {{{"delio-slam -i dataset/sequences/07 -o 07-results", "A sequence of KITTI"},
                       {"delio-slam -i b.bag -o b --sensor-label /points --map 07-results",

@@ -19,9 +19,14 @@ namespace fs = std::filesystem;
 
 class Several : public DelioSlam {
  protected:
+    /** Two drives that do not meet. */
     void SetUp() override {
-        for (const char* name : {"a", "b"})
-            writeDrive(folder_ / (name + std::string(".rawlog")), test::toyScans(kScans), true);
+        for (const auto& [name, scene] : {std::pair{"a", "urban"}, {"b", "rural"}}) {
+            const auto made =
+                runTool("synth2rawlog", {"-o", folder_ / (name + std::string(".rawlog")), "--scene",
+                                         scene, "--scans", "5", "--sensor", "vlp16", "--embed"});
+            ASSERT_EQ(made.exitCode, 0) << made.err;
+        }
     }
     Words joined(const Words& more = {}) const {
         return Words{"-i", folder_ / "a.rawlog", "-i", folder_ / "b.rawlog", "-o", out_} + more;

@@ -130,8 +130,8 @@ class Attempt:
         if not self.task.truth:
             return {}
         lengths = self.batch.settings.get("lengths")
-        result = run_tool(["delio-eval", "--ref", self.task.truth, "--est", f"it={self._results()}", "--format", "tsv"] +
-                          (["--lengths", lengths] if lengths else []))
+        result = run_tool(["delio-eval", "--ref", self.task.truth, "--est", f"it={self._results()}",
+                           "--format", "tsv"] + (["--lengths", lengths] if lengths else []))
         rows = [line.split("\t") for line in result.stdout.split("\n")]
         if result.returncode != 0 or len(rows) < 2:
             return {"unscored": last_line(result.stderr)}
