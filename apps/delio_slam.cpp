@@ -37,10 +37,12 @@ struct Reading {
     std::optional<double> fraction;
 };
 
-/** The next scan after some that are passed over. */
+/** The next scan after some that are passed over; nothing at the end, and after Ctrl-C. */
 Reading read(io::ScanReader& reader, std::size_t passedOver) {
-    for (std::size_t i = 0; i < passedOver; ++i)
+    for (std::size_t i = 0; i < passedOver; ++i) {
+        if (cli::interrupted()) return {};
         if (!reader.skip()) break;
+    }
     auto scan = reader.next();
     return {std::move(scan), reader.fraction()};
 }
@@ -85,7 +87,8 @@ void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double 
             read_ms = watch.lap_ms();
         }
     } catch (const std::exception& e) {
-        run.fail(plainMessage(e));
+        // Ctrl-C ends standard input anywhere within a scan.
+        if (!cli::interrupted()) run.fail(plainMessage(e));
     }
     warnOfOthers(reader, [&](const std::string& text) { run.warn(text); });
     if (const auto scan = reader.recording().compensatedAfterAll)
@@ -112,7 +115,7 @@ std::string scansOf(SlamCommandLine& line, const std::string& input) {
 Reading firstOf(SlamCommandLine& line, const std::string& input, io::ScanReader& reader) {
     const unsigned start = line.start.getValue();
     auto first = read(reader, start);
-    if (first.scan) return first;
+    if (first.scan || cli::interrupted()) return first;
     warnOfOthers(reader, cli::warn);
     const std::string label = line.label.getValue();
     throw Error("'" + input + "' holds no LiDAR scans" +
@@ -138,9 +141,10 @@ void warnOfRecording(const io::ScanReader& reader, run::Run& run) {
             "are taken as they are");
 }
 
-/** Of a run that has seen its scans: the rest of the work, and its results in `folder`. Gives what
- *  is missing in them. */
-std::string finish(const std::string& input, const std::string& folder, run::Run& run) {
+/** Of a run that has seen its scans: the rest of the work, and its results in `folder`, which are
+ *  in `place` in the end. Gives what is missing in them. */
+std::string finish(const std::string& input, const std::string& folder, const std::string& place,
+                   run::Run& run) {
     const auto& record = run.record();
     const bool anyUsed = record.predicted() < record.rows.size();
     if (!anyUsed)
@@ -150,13 +154,15 @@ std::string finish(const std::string& input, const std::string& folder, run::Run
     malloc_trim(0);  // pictures take a lot
     std::string fault = run::RunFolder(folder).write(record, anyUsed ? run.maps() : run::RunMaps{},
                                                      picture::illustrate);
-    printTable(record, folder, std::cout);
+    printTable(record, place, std::cout);
     return fault;
 }
 
-/** One drive, from `input` to the folder `settings.folder`. */
-DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunSettings settings) {
+/** One drive, from `input` to the folder `settings.folder`; see SlamDrive. */
+DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunSettings settings,
+                      const std::string& place) {
     Stopwatch watch;
+    const std::string name = io::nameOfDrive(input);
     const auto reader = io::openScans(sourceFor(line, input));
     const Options options = optionsFor(line, reader->meta());
     const std::string folder = settings.folder;
@@ -165,9 +171,10 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     Reading first;
     if (!resumes) first = firstOf(line, input, *reader);
     const double read_ms = watch.lap_ms();
+    cli::catchInterrupts();  // from here on there is something to write
     if (cli::interrupted()) return {cli::kExitInterrupted};
     settings.sensorLabel = reader->label();
-    settings.drive = io::nameOfDrive(input);
+    settings.drive = name;
     settings.folder = keeper.folder();
     settings.mayGoOn = true;
     cli::inform("reading " + describe(reader->recording()));
@@ -183,8 +190,9 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
         keeper.remove();
         throw Error(run.record().fault);
     }
-    const std::string fault = finish(input, folder, run);
-    if (!cli::interrupted()) keeper.remove();
+    const std::string fault = finish(input, folder, place, run);
+    const bool isAlone = line.input.getValue().size() == 1;  // others are not gone on with
+    if (!cli::interrupted() || !isAlone) keeper.remove();
     if (!fault.empty()) throw Error(fault);
     if (cli::interrupted()) {
         if (keeper.hasState()) cli::inform("interrupted; --resume goes on from there");
@@ -209,10 +217,12 @@ int optimiseGraph(SlamCommandLine& line, const std::string& input,
 /** Nothing that is read may be overwritten. */
 void checkFolders(SlamCommandLine& line) {
     auto read = line.input.getValue();
+    auto written = run::RunFolder(line.output.getValue()).files();
+    const std::string map = line.map.isSet() ? run::storedMapIn(line.map.getValue()) : "";
+    if (read.size() > 1) written = filesOfSeveral(read, map, line.output.getValue());
     for (auto* file : {&line.truth, &line.sensorInfo}) read.push_back(file->getValue());
-    cli::refuseOverlap(read, run::RunFolder(line.output.getValue()).files());
-    if (!line.map.isSet()) return;
-    const fs::path map = run::storedMapIn(line.map.getValue());
+    cli::refuseOverlap(read, written);
+    if (map.empty()) return;
     std::error_code ignored;
     if (fs::equivalent(fs::absolute(map).parent_path(), line.output.getValue(), ignored))
         throw Error("the results would replace the map '" + line.map.getValue() +
@@ -220,7 +230,6 @@ void checkFolders(SlamCommandLine& line) {
 }
 
 int slam(SlamCommandLine& line, int argc, char** argv) {
-    cli::catchInterrupts();
     try {
         optionsFor(line, {});
         if (line.initialPose.isSet()) initialPoseIn(line.initialPose.getValue());
@@ -246,11 +255,14 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
                               line.resume.getValue());
     const auto settings = settingsFor(line, argc, argv);
     if (inputs.size() > 1)
-        return slamSeveral(inputs, settings, [&](const auto& input, const auto& its) {
-            return slamDrive(line, input, its);
-        });
-    return isGraph(inputs.front()) ? optimiseGraph(line, inputs.front(), settings)
-                                   : slamDrive(line, inputs.front(), settings).exitCode;
+        return slamSeveral(inputs, settings,
+                           [&](const auto& input, const auto& its, const auto& place) {
+                               return slamDrive(line, input, its, place);
+                           });
+    if (inputs.front() == "-") cli::endInputAtInterrupt();
+    return isGraph(inputs.front())
+               ? optimiseGraph(line, inputs.front(), settings)
+               : slamDrive(line, inputs.front(), settings, settings.folder).exitCode;
 }
 }  // namespace
 

@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
+#include "delio/core/printable.h"
 #include "delio/io/scan_table.h"
 #include "delio/io/trajectory.h"
 #include "delio/run/run_folder.h"
@@ -135,7 +136,7 @@ Estimate estimateOf(const std::string& text) {
         return {text.substr(0, equals), text.substr(equals + 1)};
     const fs::path path = fs::path(text).lexically_normal();
     const fs::path last = path.has_filename() ? path : path.parent_path();
-    return {last.stem().string(), text};
+    return {printable(last.stem().string()), text};
 }
 
 std::string faultOfNames(const std::vector<Estimate>& estimates) {
@@ -168,7 +169,7 @@ Comparison compareFiles(const std::string& name, const std::string& referenceFil
     auto comparison =
         compareOrSayWhy(reference, estimate, settings, table ? &*table : nullptr, pair);
     comparison.row.name = name;
-    comparison.row.sequence = fs::path(referenceFile).stem().string();
+    comparison.row.sequence = printable(fs::path(referenceFile).stem().string());
     describe(comparison, settings.verbose, pair);
     return comparison;
 }

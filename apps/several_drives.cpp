@@ -6,12 +6,15 @@
 #include <filesystem>
 #include <iostream>
 #include <list>
+#include <set>
 
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/io/output_file.h"
+#include "delio/io/partial_folder.h"
 #include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
+#include "delio/run/keeper.h"
 #include "delio/run/run_folder.h"
 
 namespace delio {
@@ -37,11 +40,48 @@ std::list<Drive> drivesOf(const std::vector<std::string>& inputs) {
     return drives;
 }
 
-/** Maps of drives that meet. */
+std::string kittiOf(const std::string& drive) { return drive + "_kitti.txt"; }
+std::string tumOf(const std::string& drive) { return drive + "_tum.txt"; }
+std::string mapName(std::size_t map) {
+    return map == 0 ? RunFolder::kStoredMap : "map-" + std::to_string(map + 1) + ".delio";
+}
+
+/** Names in the folder of the results, of all that may be there after `drives` were joined, to
+ *  those of the stored map `map`: drives.csv, which marks the whole, first. A name that two of them
+ *  would have is an Error. */
+std::vector<std::string> namesOf(const std::list<Drive>& drives, const std::string& map) {
+    std::vector<std::string> names = {RunFolder::kDrives};
+    // A run of one drive may have been here.
+    for (const auto& file : RunFolder("").files())
+        if (file != RunFolder::kDrives) names.push_back(file);
+    for (std::size_t i = 1; i <= drives.size(); ++i) names.push_back(mapName(i));
+    std::vector<std::string> all;
+    if (!map.empty()) {
+        const StoredMap stored(map);
+        for (const auto& drive : stored.drives()) all.push_back(drive.name);
+    }
+    for (const auto& drive : drives) all.push_back(drive.name);
+    for (const auto& drive : all) names.insert(names.end(), {kittiOf(drive), tumOf(drive)});
+    std::set<std::string> taken(names.begin(), names.end());
+    if (taken.size() < names.size())
+        throw Error("two drives, of the recordings and of the map '" + map +
+                    "', have one name: their trajectories would be one another's");
+    taken.insert(run::Keeper::kFolder);
+    for (const auto& drive : drives) {
+        if (taken.count(drive.name) > 0)
+            throw Error("a drive cannot be called '" + drive.name + "', as '" + drive.input +
+                        "' is: that is the name of a file of the results; rename the recording");
+        for (const auto& file : RunFolder(drive.name).files()) names.push_back(file);
+    }
+    return names;
+}
+
+/** Maps of drives that meet. All is written into `partial`. */
 class Joiner {
  public:
-    Joiner(const run::RunSettings& settings, const SlamDrive& slam)
-        : settings_(settings), slam_(slam) {}
+    Joiner(const io::PartialFolder& partial, const run::RunSettings& settings,
+           const SlamDrive& slam)
+        : partial_(partial), settings_(settings), slam_(slam) {}
 
     int exitCode() const { return exitCode_; }
 
@@ -51,49 +91,50 @@ class Joiner {
         pending.pop_front();
         if (!first.ran) run(first, "");
         if (!first.ran) return;
-        map_ = fileOf(maps_);
-        fs::rename(folderOf(first).path(RunFolder::kStoredMap), map_);
+        map_ = maps_;
+        fs::rename(folderOf(first).path(RunFolder::kStoredMap), fileOf(map_));
         ++maps_;
         joinTo(pending);
     }
 
     /** The same with a map that is there already. */
     void joinMap(const std::string& map, std::list<Drive>& pending) {
-        map_ = fileOf(maps_);
-        fs::copy_file(run::storedMapIn(map), map_, fs::copy_options::overwrite_existing);
+        map_ = maps_;
+        io::replaceFile(fileOf(map_), [&](const std::string& copy) {
+            std::error_code fault;
+            fs::copy_file(run::storedMapIn(map), copy, fault);
+            return !fault;
+        });
         ++maps_;
         joinTo(pending);
     }
 
     std::size_t maps() const { return maps_; }
-    std::string fileOf(std::size_t map) const {
-        const std::string name =
-            map == 0 ? "map.delio" : "map-" + std::to_string(map + 1) + ".delio";
-        return (fs::path(settings_.folder) / name).string();
+    std::string fileOf(std::size_t map) const { return partial_.path() / mapName(map); }
+    RunFolder folderOf(const Drive& drive) const {
+        return RunFolder((partial_.path() / drive.name).string());
     }
 
  private:
-    RunFolder folderOf(const Drive& drive) const {
-        return RunFolder((fs::path(settings_.folder) / drive.name).string());
-    }
-
     /** `drive.ran`: it has a map now. */
     DriveResult run(Drive& drive, const std::string& map) {
         drive.ran = false;
         if (cli::interrupted()) return {};
         auto settings = settings_;
-        settings.folder = (fs::path(settings_.folder) / drive.name).string();
+        settings.folder = (partial_.path() / drive.name).string();
         settings.storedMap = map;
+        settings.storedMapName = partial_.asInPlace(map);
         settings.extend = settings.mayBeElsewhere = !map.empty();
         std::cout << "drive                      " << drive.name << "\n";
         try {
             fs::create_directories(settings.folder);
-            const auto result = slam_(drive.input, settings);
+            const auto result = slam_(drive.input, settings, partial_.asInPlace(settings.folder));
             if (result.exitCode != 0) exitCode_ = result.exitCode;
             drive.ran = folderOf(drive).has(RunFolder::kStoredMap);
             return result;
         } catch (const std::exception& e) {
-            cli::inform("'" + drive.input + "' is left out: " + plainMessage(e));
+            cli::inform("'" + drive.input +
+                        "' is left out: " + partial_.asInPlace(plainMessage(e)));
             exitCode_ = cli::kExitFailedRun;
             return {};
         }
@@ -102,46 +143,46 @@ class Joiner {
     /** What was too far off may meet a map that has grown. */
     void joinTo(std::list<Drive>& pending) {
         for (auto drive = pending.begin(); drive != pending.end();) {
-            const auto result = run(*drive, map_);
+            const auto result = run(*drive, fileOf(map_));
             if (drive->ran && !result.extended) {
                 ++drive;
                 continue;
             }
-            if (result.extended) fs::rename(folderOf(*drive).path(RunFolder::kStoredMap), map_);
+            if (result.extended)
+                fs::rename(folderOf(*drive).path(RunFolder::kStoredMap), fileOf(map_));
             const auto next = pending.erase(drive);
             drive = result.grown ? pending.begin() : next;
         }
     }
 
+    const io::PartialFolder& partial_;
     const run::RunSettings& settings_;
     const SlamDrive& slam_;
-    std::string map_;       //!< that drives are joined to
+    std::size_t map_ = 0;   //!< that drives are joined to
     std::size_t maps_ = 0;  //!< that were begun
     int exitCode_ = cli::kExitSuccess;
 };
 
 /** Trajectories of all drives in their maps, drives.csv, and the same in words. */
-void report(const Joiner& joiner, const std::string& folder) {
+void report(const Joiner& joiner, const fs::path& folder) {
     std::string table = "map,drive\n";
     for (std::size_t i = 0; i < joiner.maps(); ++i) {
         const StoredMap map(joiner.fileOf(i));
         const std::string name = fs::path(map.path()).filename().string();
         std::string drives;
         for (const auto& drive : map.drives()) {
-            const std::string path = (fs::path(folder) / drive.name).string();
             const auto trajectory = map.trajectory(drive);
-            io::writeKitti(trajectory, path + "_kitti.txt");
+            io::writeKitti(trajectory, folder / kittiOf(drive.name));
             const auto& stamps = trajectory.stamps_s;
             if (std::adjacent_find(stamps.begin(), stamps.end(), std::greater_equal<>()) ==
                 stamps.end())  // a clock that was set back: no file could be read again
-                io::writeTum(trajectory, path + "_tum.txt");
+                io::writeTum(trajectory, folder / tumOf(drive.name));
             table += name + "," + drive.name + "\n";
             drives += (drives.empty() ? "" : ", ") + drive.name;
         }
         std::cout << mrpt::format("%-26s %s\n", name.c_str(), drives.c_str());
     }
-    io::replaceTextFile((fs::path(folder) / "drives.csv").string(),
-                        [&](std::ostream& out) { out << table; });
+    io::replaceTextFile(folder / RunFolder::kDrives, [&](std::ostream& out) { out << table; });
     if (joiner.maps() > 1)
         cli::warn("the drives do not all meet: " + std::to_string(joiner.maps()) +
                   " separate maps, each with a frame of its own (drives.csv)");
@@ -150,11 +191,32 @@ void report(const Joiner& joiner, const std::string& folder) {
 
 int slamSeveral(const std::vector<std::string>& inputs, const run::RunSettings& settings,
                 const SlamDrive& slam) {
-    auto pending = drivesOf(inputs);
-    Joiner joiner(settings, slam);
-    if (!settings.storedMap.empty()) joiner.joinMap(settings.storedMap, pending);
-    while (!pending.empty() && !cli::interrupted()) joiner.joinFirst(pending);
-    report(joiner, settings.folder);
-    return cli::interrupted() ? cli::kExitInterrupted : joiner.exitCode();
+    const auto drives = drivesOf(inputs);
+    const auto& map = settings.storedMap;
+    const auto names = namesOf(drives, map.empty() ? "" : run::storedMapIn(map));
+    io::PartialFolder partial(settings.folder, settings.folder);
+    try {
+        auto pending = drives;
+        Joiner joiner(partial, settings, slam);
+        if (!map.empty()) joiner.joinMap(map, pending);
+        while (!pending.empty() && !cli::interrupted()) joiner.joinFirst(pending);
+        const bool anyRan = std::any_of(drives.begin(), drives.end(), [&](const Drive& drive) {
+            return joiner.folderOf(drive).has(RunFolder::kSummary);
+        });
+        if (anyRan) {
+            report(joiner, partial.path());
+            partial.putInPlace(names);
+        }
+        return cli::interrupted() ? cli::kExitInterrupted : joiner.exitCode();
+    } catch (const std::exception& e) {
+        throw Error(partial.asInPlace(plainMessage(e)));
+    }
+}
+
+std::vector<std::string> filesOfSeveral(const std::vector<std::string>& inputs,
+                                        const std::string& map, const std::string& folder) {
+    auto files = namesOf(drivesOf(inputs), map);
+    for (auto& file : files) file = (fs::path(folder) / file).string();
+    return files;
 }
 }  // namespace delio

@@ -13,14 +13,23 @@ struct DriveResult {
     bool grown = false;     //!< which has places that the other did not have
 };
 
-/** Runs one drive into the folder of its settings. Throws where it fails. */
-using SlamDrive =
-    std::function<DriveResult(const std::string& input, const run::RunSettings& settings)>;
+/** Runs one drive into the folder of its settings, which users know as `place`. Throws where it
+ *  fails. */
+using SlamDrive = std::function<DriveResult(
+    const std::string& input, const run::RunSettings& settings, const std::string& place)>;
 
 /** Several drives in one frame and one map where they meet, and separate where they do not: each in
  *  a folder of its own name in `settings.folder`; there also map.delio (map-2.delio ... of what is
  *  separate), NAME_kitti.txt and NAME_tum.txt with each drive's poses in its map, and drives.csv,
- *  which says what is where. A drive that fails is left out, and the exit code says so. */
+ *  which says what is where. All come into their places together, after the last drive, and
+ *  drives.csv last. A drive that fails is left out, and the exit code says so; where none has
+ *  results, what was there stays. */
 int slamSeveral(const std::vector<std::string>& inputs, const run::RunSettings& settings,
                 const SlamDrive& slam);
+
+/** Paths of all that slamSeveral() replaces or takes away in `folder`. `map`: the stored map that
+ *  is extended; empty: none. Throws Error where two drives, or a drive and another file, would have
+ *  one name. */
+std::vector<std::string> filesOfSeveral(const std::vector<std::string>& inputs,
+                                        const std::string& map, const std::string& folder);
 }  // namespace delio

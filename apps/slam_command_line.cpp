@@ -59,6 +59,7 @@ cli::HelpText slamHelp() {
         {Folder::kJoints, "with --extend: the edges between the two maps"},
         {Folder::kSummary, "the run in numbers"},
         {Folder::kConfig, "every option that had an effect, for -c"},
+        {Folder::kDrives, "of several drives: which is in which map"},
     };
     help.examples = {{{"delio-slam -i dataset/sequences/07 -o 07-results", "A sequence of KITTI"},
                       {"delio-slam -i b.bag -o b --sensor-label /points --map 07-results",
@@ -112,6 +113,8 @@ bool isGraph(const std::string& input) { return fs::path(input).extension() == "
 std::string contradictionIn(SlamCommandLine& line) {
     const auto& inputs = line.input.getValue();
     if (line.every.getValue() == 0) return "--every has to be 1 or more";
+    if (line.threads.getValue() > cli::kMostThreads)
+        return "--threads has to be " + std::to_string(cli::kMostThreads) + " or less; 0: all";
     if (line.initialPose.isSet() && !line.map.isSet())
         return "--initial-pose is a pose in a stored map: it needs --map";
     if (line.extend.isSet() && !line.map.isSet())

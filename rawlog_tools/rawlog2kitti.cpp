@@ -80,6 +80,7 @@ std::vector<SideFile> sideFilesOf(const std::string& rawlog) {
     for (const std::string name : {"times.txt", "calib.txt", "poses.txt"}) {
         SideFile file{name, io::sidecarPath(rawlog, "." + name), "", {}};
         if (!fs::exists(file.path)) continue;
+        if (!fs::is_regular_file(file.path)) throw Error("'" + file.path + "' is no file");
         if (name == "calib.txt")
             io::readCalibration(file.path);
         else
@@ -111,8 +112,7 @@ class Sequence {
     /** False if Ctrl-C came before the end. */
     bool writeScans() {
         cli::Progress progress("converting", 0);
-        while (const auto scan = reader_.next()) {
-            if (cli::interrupted()) return false;
+        while (const auto scan = next()) {
             char text[64];
             std::snprintf(text, sizeof(text), "velodyne/%06zu.bin", scans_++);
             const auto xyzi = io::xyziOf(*scan->points);
@@ -121,7 +121,7 @@ class Sequence {
             times_ += text;
             progress.update(scans_);
         }
-        return true;
+        return !cli::interrupted();
     }
 
     void finish(const std::string& rawlog) {
@@ -141,6 +141,17 @@ class Sequence {
     }
 
  private:
+    /** Nothing at the end, and after Ctrl-C. */
+    std::optional<Scan> next() {
+        try {
+            auto scan = reader_.next();
+            if (!cli::interrupted()) return scan;
+        } catch (const Error&) {
+            if (!cli::interrupted()) throw;
+        }
+        return {};
+    }
+
     fs::path path_;
     io::RawlogReader reader_;
     std::vector<SideFile> sideFiles_;
@@ -152,6 +163,7 @@ class Sequence {
 };
 
 int convert(Arguments& args) {
+    if (args.input.getValue() == "-") cli::endInputAtInterrupt();
     cli::catchInterrupts();
     refuseItself(args, targetOf(args.output.getValue()));
     Sequence sequence(args);

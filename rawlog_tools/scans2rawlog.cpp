@@ -69,8 +69,8 @@ class Conversion {
         cli::Progress progress("converting", count);
         unsigned passed = args_.start.getValue();
         while (count == 0 || writer_.scans() < count) {
-            if (cli::interrupted()) return false;
             const auto scan = next(passed);
+            if (cli::interrupted()) return false;
             if (!scan) break;
             add(*scan);
             progress.update(writer_.scans(), reader_.fraction());
@@ -101,14 +101,14 @@ class Conversion {
     std::optional<Scan> next(unsigned passed) {
         try {
             for (unsigned i = 0; i < passed; ++i)
-                if (!reader_.skip()) break;
+                if (cli::interrupted() || !reader_.skip()) break;
             auto scan = reader_.next();
             if (scan && !truth_.empty() && scan->index >= truth_.size())
                 throw Error("'" + reader_.truth().name + "' has no row for scan " +
                             std::to_string(scan->index));
             return scan;
         } catch (const Error& e) {
-            if (writer_.scans() == 0) throw;
+            if (writer_.scans() == 0 && !cli::interrupted()) throw;
             fault_ = e.what();
             return {};
         }
@@ -147,17 +147,18 @@ void refuseItself(Arguments& args, const io::ScanReader& reader) {
 }
 
 int convert(Arguments& args) {
-    cli::catchInterrupts();
     if (args.every.getValue() == 0) {
         cli::inform("--every has to be 1 or more");
         return cli::kExitBadCommandLine;
     }
     const std::string &input = args.input.getValue(), &output = args.output.getValue();
+    if (input == "-") cli::endInputAtInterrupt();
     const auto reader = io::openScans(
         {input, args.sensor.getValue(), args.images.getValue(), args.sensorInfo.getValue()});
     refuseItself(args, *reader);
     cli::inform("reading " + describe(reader->recording()));
     for (const auto& warning : reader->recording().warnings) cli::warn(warning);
+    cli::catchInterrupts();
     Conversion conversion(args, *reader);
     if (!conversion.run()) return cli::kExitInterrupted;
     const std::size_t scans = conversion.finish();

@@ -205,6 +205,8 @@ std::string faultInDrive(Arguments& args) {
         if (!isRate(rate->getValue()))
             return "--" + rate->getName() + " has to be 0 or more and below 1";
     if (args.threads.getValue() < 0) return "--threads has to be 0 or more";
+    if (args.threads.getValue() > static_cast<int>(cli::kMostThreads))
+        return "--threads has to be " + std::to_string(cli::kMostThreads) + " or less; 0: all";
     return "";
 }
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -25,11 +24,10 @@
 
 namespace delio::cli {
 namespace {
-// The one piece of state that a signal handler can reach.
-volatile std::sig_atomic_t interruptRequested = 0;
-
 void say(const std::string& text) {
-    std::cerr << program_invocation_short_name << ": " << printable(text) << std::endl;
+    constexpr std::size_t kMost = 2000;  // names and values come from files of others
+    std::cerr << program_invocation_short_name << ": " << printable(shortened(text, kMost))
+              << std::endl;
 }
 
 /** Lets nothing through to stdout that a terminal takes for a command: names and labels come from
@@ -101,7 +99,7 @@ std::vector<std::string> wordsOf(TCLAP::CmdLine& cmd, int argc, const char* cons
     } catch (const std::bad_alloc&) {
         end("it takes more memory than there is");
     } catch (const std::exception& e) {
-        end(e.what());
+        end(plainMessage(e).c_str());
     } catch (...) {
     }
     end("ended by an error of its own");
@@ -112,6 +110,7 @@ std::vector<std::string> wordsOf(TCLAP::CmdLine& cmd, int argc, const char* cons
 int run(TCLAP::CmdLine& cmd, const HelpText& help, int argc, const char* const* argv,
         TCLAP::SwitchArg& verbose, const std::function<int()>& body) {
     std::set_terminate(endInOneLine);
+    endAtInterrupt();
     const PlainOutput plain;
     CommandLineOutput output(cmd, help);
     cmd.setOutput(&output);
@@ -130,14 +129,6 @@ int run(TCLAP::CmdLine& cmd, const HelpText& help, int argc, const char* const* 
     }
     return kExitFailedRun;
 }
-
-void catchInterrupts() {
-    const auto handler = [](int) { interruptRequested = 1; };
-    std::signal(SIGINT, handler);
-    std::signal(SIGTERM, handler);
-}
-
-bool interrupted() { return interruptRequested != 0; }
 
 void warn(const std::string& text) { say("warning: " + text); }
 

@@ -19,6 +19,7 @@ constexpr int kExitSuccess = 0;
 constexpr int kExitFailedRun = 1;
 constexpr int kExitBadCommandLine = 2;
 constexpr int kExitInterrupted = 130;
+constexpr unsigned kMostThreads = 4096;  //!< that a --threads may ask for
 
 /** How many of something, on the command line. TCLAP reads `-1` into an unsigned as 4294967295:
  * here it is refused. */
@@ -36,9 +37,16 @@ std::istream& operator>>(std::istream& in, Count& count);
 int run(TCLAP::CmdLine& cmd, const HelpText& help, int argc, const char* const* argv,
         TCLAP::SwitchArg& verbose, const std::function<int()>& body);
 
-/** From now on Ctrl-C (SIGINT, SIGTERM) does not end the process but makes interrupted() true. */
+/** From now on Ctrl-C (SIGINT, SIGTERM) ends the process at once, with kExitInterrupted: nothing is
+ *  done yet that is worth writing. run() begins with it. */
+void endAtInterrupt();
+/** From now on the first Ctrl-C makes interrupted() true, and a second one, half a second later or
+ *  more, ends the process at once. */
 void catchInterrupts();
 bool interrupted();
+/** Ctrl-C ends standard input, too, where that is a pipe: nothing waits for it any longer. To be
+ *  called once, before standard input is read. */
+void endInputAtInterrupt();
 
 /** One line on stderr: `TOOL: warning: TEXT`. */
 void warn(const std::string& text);

@@ -69,6 +69,23 @@ TEST_F(DelioEval, ScoresFoldersAndAverages) {
     expectFailure(tsvOf("ref.txt", "mine"), 1, "trajectory_kitti.txt");
 }
 
+// Of files, which others have named.
+TEST_F(DelioEval, NamesOfFilesBreakNoTable) {
+    for (const std::string folder : {"odd", "odd-est"}) {
+        fs::create_directory(folder_ / folder);
+        io::writeKitti(cameraDrive(0.5, 501), in(folder + "/a\nb\tc.txt"));
+    }
+    const auto found = tsvOf("odd", "odd-est");
+    ASSERT_EQ(found.exitCode, 0) << found.err;
+    const auto rows = tsv(found.out);
+    ASSERT_EQ(rows.size(), 3U) << found.out;
+    for (const auto& row : rows) EXPECT_EQ(row.size(), 9U) << found.out;
+    EXPECT_EQ(rows[1][1], "a?b?c");
+    const auto alone = tsvOf("ref.txt", "odd-est/a\nb\tc.txt");
+    ASSERT_EQ(alone.exitCode, 0) << alone.err;
+    EXPECT_EQ(tsv(alone.out)[1][0], "a?b?c");
+}
+
 TEST_F(DelioEval, TakesTheRightFileOfDelioSlamsFolder) {
     fs::create_directory(folder_ / "run");
     io::writeKitti(lidarDrive(0.505, 501), in("run/trajectory_kitti.txt"));

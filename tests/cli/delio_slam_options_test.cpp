@@ -37,6 +37,7 @@ TEST_F(DelioSlam, ABadCommandLineIsExit2) {
     expectRefused(withConfig("[scan]\nmax_range 15\n"), 2, {"line 2"});
     expectRefused(slam({"--start", "-1"}), 2, {"-1"});
     expectRefused(slam({"--threads", "-1"}), 2, {"-1"});
+    expectRefused(slam({"--threads", "4294967295"}), 2, {"--threads", "4096 or less"});
     expectRefused(slam({"--every", "0"}), 2, {"--every"});
     expectRefused(slam({"--count", "x"}), 2, {"x"});
     expectRefused(slam({"--ground-truth-frame", "imu"}), 2, {"imu"});

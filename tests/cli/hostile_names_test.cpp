@@ -37,4 +37,17 @@ TEST(HostileNames, AreNoCommandsToTheTerminal) {
             << run.err;
     }
 }
+
+TEST(HostileNames, MakeNoEndlessLines) {
+    const test::TemporaryFolder folder;
+    test::writeText(folder / "a.rawlog", "x");
+    test::writeText(folder / "a.meta.yaml", std::string(100000, 'k') + ": 1\n");
+    const std::string missing(3000, 'm');
+    for (const std::string& input : {(folder / "a.rawlog").string(), missing}) {
+        const auto run = test::runTool("delio-slam", {"-i", input, "-o", folder / "out"});
+        EXPECT_EQ(run.exitCode, 1);
+        EXPECT_TRUE(test::isOneLine(run.err)) << run.err;
+        EXPECT_LT(run.err.size(), 2200U);
+    }
+}
 }  // namespace

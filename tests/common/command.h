@@ -28,6 +28,7 @@ class RunningTool {
     RunningTool(const RunningTool&) = delete;
     RunningTool& operator=(const RunningTool&) = delete;
 
+    int pid() const { return child_; }
     void send(int signal) const;
     bool hasEnded();
     /** What it has said on stderr so far. */

@@ -18,6 +18,8 @@ void* mrpt::aligned_malloc(std::size_t size, std::size_t alignment) {
 
 namespace delio {
 namespace {
+const char* const kNoMemory = "it takes more memory than there is";
+
 bool holds(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
@@ -47,16 +49,23 @@ std::string plainMessage(const std::exception& e) {
     const std::string what = e.what(), mark = "Message:";
     if (dynamic_cast<const Error*>(&e)) return what.substr(0, what.find('\n'));
     if (dynamic_cast<const std::bad_alloc*>(&e) || dynamic_cast<const std::length_error*>(&e))
-        return "it takes more memory than there is";
+        return kNoMemory;
     if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&e))
         return "'" + file->path1().string() + "': " + file->code().message();
     if (dynamic_cast<const std::ios_base::failure*>(&e)) return "it cannot be read";
     if (what.compare(0, 8, "yaml-cpp") == 0 || what.compare(0, 12, "invalid node") == 0)
         return ofYaml(what.substr(0, what.find('\n')));
+    // MRPT's own have a title and a mark; what others threw through it has the title only.
+    const std::string title = "==== MRPT exception ====\n";
     auto from = what.find(mark);
-    from = from == std::string::npos ? 0 : what.find_first_not_of(' ', from + mark.size());
+    if (from != std::string::npos)
+        from = what.find_first_not_of(' ', from + mark.size());
+    else
+        from = what.compare(0, title.size(), title) == 0 ? title.size() : 0;
     std::string message = what.substr(from, what.find('\n', from) - from);
-    if (holds(message, "Assert condition failed")) return "it is damaged, or of an unknown kind";
+    if (holds(message, "std::bad_alloc")) return kNoMemory;
+    if (holds(message, "Assert condition failed") || message.compare(0, 6, "ASSERT") == 0)
+        return "it is damaged, or of an unknown kind";
     return message;
 }
 }  // namespace delio

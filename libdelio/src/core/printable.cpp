@@ -44,4 +44,16 @@ std::string printable(const std::string& text) {
     }
     return result;
 }
+
+std::string shortened(const std::string& text, std::size_t most) {
+    if (text.size() <= most) return text;
+    const auto continues = [&](std::size_t i) {
+        return i < text.size() && (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80;
+    };
+    // Characters stay whole.
+    std::size_t head = most - most / 3, tail = text.size() - most / 3;
+    while (head > 0 && continues(head)) --head;
+    while (continues(tail)) ++tail;
+    return text.substr(0, head) + "..." + text.substr(tail);
+}
 }  // namespace delio

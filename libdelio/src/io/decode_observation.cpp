@@ -66,6 +66,10 @@ Scan decodeObservation(const mrpt::obs::CObservation& observation) {
     mrpt::poses::CPose3D sensorPose;
     observation.getSensorPose(sensorPose);
     scan.sensorPose = fromMrpt(sensorPose);
+    constexpr double kFarthest_m = 1e9;  // as the pose graph has it
+    if (!scan.sensorPose.matrix().allFinite() ||
+        !(scan.sensorPose.translation().cwiseAbs().maxCoeff() < kFarthest_m))
+        throw Error("the pose of its sensor on the vehicle is not finite, or beyond 1e9 m");
     return scan;
 }
 }  // namespace delio::io

@@ -8,18 +8,22 @@
 
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
+#include "delio/core/printable.h"
+#include "side_file.h"
 
 namespace delio::io {
 namespace {
+std::string quoted(const std::string& text) { return "'" + shortened(text, 60) + "'"; }
+
 void take(const std::string& key, const std::string& text, double& value) {
     const auto number = numberIn<double>(text[0] == '+' ? text.substr(1) : text);
-    if (!number) throw Error(key + " has to be a number, not '" + text + "'");
+    if (!number) throw Error(key + " has to be a number, not " + quoted(text));
     value = *number;
 }
 
 void take(const std::string& key, const std::string& text, bool& value) {
     if (text != "true" && text != "false")
-        throw Error(key + " has to be true or false, not '" + text + "'");
+        throw Error(key + " has to be true or false, not " + quoted(text));
     value = text == "true";
 }
 
@@ -38,7 +42,7 @@ void take(const std::string& key, const std::string& text, DriveMeta& meta) {
     else if (key == "generator")
         meta.generator = text;
     else
-        throw Error("the key '" + key + "' is not known");
+        throw Error("the key " + quoted(key) + " is not known");
 }
 
 DriveMeta metaOf(const YAML::Node& node) {
@@ -47,9 +51,9 @@ DriveMeta metaOf(const YAML::Node& node) {
     std::set<std::string> keys;
     for (const auto& entry : node) {
         const auto key = entry.first.as<std::string>();
-        if (!keys.insert(key).second) throw Error("the key '" + key + "' is there twice");
+        if (!keys.insert(key).second) throw Error("the key " + quoted(key) + " is there twice");
         if (!entry.second.IsScalar() && !entry.second.IsNull())
-            throw Error(key + " has to be a plain value");
+            throw Error(quoted(key) + " has to be a plain value");
         // A "~" in quotes is text, a bare one nothing.
         take(key, entry.second.IsNull() ? "" : entry.second.Scalar(), meta);
     }
@@ -69,7 +73,7 @@ std::string sidecarPath(const std::string& rawlogPath, const std::string& extens
 
 std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath) {
     const std::string path = sidecarPath(rawlogPath, ".meta.yaml");
-    if (!std::filesystem::exists(path)) return {};
+    if (!isFileThere(path)) return {};
     try {
         return metaOf(YAML::LoadFile(path));
     } catch (const std::exception& e) {

@@ -4,7 +4,6 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include "delio/core/error.h"
 #include "gz_input.h"
 #include "memory_budget.h"
+#include "names.h"
 #include "object_archive.h"
 
 namespace delio::io {
@@ -87,10 +87,9 @@ mrpt::maps::CPointsMap::Ptr readKittiPoints(const std::string& file, std::uint64
 /** Throws Error for a name that leads out of the folder that it is looked for in: a rawlog of
  *  somebody else's is not to choose what is read. (A link in the folder is its owner's.) */
 void refuseOutside(const fs::path& name) {
-    const bool climbs = std::find(name.begin(), name.end(), "..") != name.end();
     if (name.empty() || !name.has_filename())
         throw Error("its points are in another file, but it does not say which");
-    if (name.is_absolute() || climbs)
+    if (!staysInside(name))
         throw Error("its external file '" + name.string() +
                     "' leads out of the folder of such files: it is not read");
 }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "delio/core/error.h"
+#include "most_bytes.h"
 
 namespace delio::io {
 GzInput::GzInput(const std::string& path) : file_(nullptr) {
@@ -51,9 +52,9 @@ std::size_t GzInput::Read(void* buffer, std::size_t count) {
     return done;
 }
 
-void GzInput::skipToEnd() {
+void GzInput::skipToEnd(std::uint64_t most) {
     std::array<char, 1U << 14> unused{};
-    while (!ended_) readSome(unused.data(), unused.size());
+    while (!ended_ && getPosition() <= most) readSome(unused.data(), unused.size());
 }
 
 bool GzInput::endedWell() const { return ended_; }
@@ -74,8 +75,10 @@ std::uint64_t GzInput::Seek(std::int64_t, TSeekOrigin) {
 
 std::uint64_t unpackedSize(const std::string& path) {
     GzInput in(path);
-    if (!in.compressed()) return in.getTotalBytesCount();
-    in.skipToEnd();
-    return in.getPosition();
+    const bool isPacked = in.compressed();
+    if (isPacked) in.skipToEnd(kMostBytes);
+    const auto size = isPacked ? in.getPosition() : in.getTotalBytesCount();
+    if (size > kMostBytes) throw Error("'" + path + "' is too large for what is in one scan");
+    return size;
 }
 }  // namespace delio::io

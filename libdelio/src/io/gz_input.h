@@ -22,8 +22,9 @@ class GzInput : public mrpt::io::CStream {
      *  or if the compressed data is cut off or damaged. */
     std::size_t Read(void* buffer, std::size_t count) override;
 
-    /** Reads what is left; throws as Read() does. */
-    void skipToEnd();
+    /** Reads what is left, until there were more than `most` bytes in all; throws as Read() does.
+     */
+    void skipToEnd(std::uint64_t most);
 
     /** True once nothing is left and all of the compressed data, its checksum included, was right.
      */
@@ -49,6 +50,7 @@ class GzInput : public mrpt::io::CStream {
 };
 
 /** Bytes that a file unpacks to; its size if it is not compressed. Throws std::runtime_error where
- *  its compressed data is cut off or damaged, and Error if it cannot be opened. */
+ *  its compressed data is cut off or damaged, and Error if it cannot be opened or is larger than
+ *  kMostBytes. */
 std::uint64_t unpackedSize(const std::string& path);
 }  // namespace delio::io

@@ -120,6 +120,13 @@ void ObjectArchive::checkCount(const void* data, std::size_t bytes) {
 
 void ObjectArchive::foresee(const void* data, std::size_t count) {
     const auto* bytes = static_cast<const unsigned char*>(data);
+    if (next_ == Next::SimplemapVersion) {
+        next_ = Next::Anything;
+        if (bytes[0] == 0) {
+            refused_ = "mrpt::maps::CSimpleMap of version 0";
+            throw std::runtime_error("it holds " + refused_);
+        }
+    }
     if (movement_ == Movement::Method && count == sizeof(std::int32_t)) {
         std::int32_t method = 0;
         std::memcpy(&method, data, sizeof(method));
@@ -149,6 +156,7 @@ void ObjectArchive::foreseeClass(std::string_view name) {
     }
     checkMovement(className);
     if (className == "mrpt::img::CImage") next_ = Next::ImageVersion;
+    if (className == "mrpt::maps::CSimpleMap") next_ = Next::SimplemapVersion;
     const auto counts = countsIn(className);
     const bool isIn =
         counts_ == kAll && endsWith(className.substr(0, className.size() - 1), "::CMatrix");

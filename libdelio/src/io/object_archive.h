@@ -20,7 +20,8 @@ namespace delio::io {
  *    a std::bad_alloc from a MemoryBudget;
  *  - objects within objects within objects throw where the stack would end;
  *  - a movement of another kind of distribution than MRPT expects, which it would use unseen,
- *    throws, and so does a scene that holds anything but viewports;
+ *    throws, and so do a scene that holds anything but viewports, and a simplemap of version 0,
+ *    whose poses MRPT uses whatever they are;
  *  - images are passed over and come out empty: nothing here looks at them. */
 class ObjectArchive : public mrpt::serialization::CArchive {
  public:
@@ -56,7 +57,12 @@ class ObjectArchive : public mrpt::serialization::CArchive {
     std::uint64_t budget_;
     std::string refused_;
     const char* stack_ = nullptr;  ///< where it was when the object was begun
-    enum class Next { Anything, ImageVersion, ImageIsExternal } next_ = Next::Anything;
+    enum class Next {
+        Anything,
+        ImageVersion,
+        ImageIsExternal,
+        SimplemapVersion
+    } next_ = Next::Anything;
     /** What comes next of a CActionRobotMovement2D. */
     enum class Movement { None, Method, Odometry, Pdf } movement_ = Movement::None;
     /** Which of a scene's viewports comes next. */

@@ -18,10 +18,18 @@ OutputLock::OutputLock(const std::string& output) : path_(output), own_(!fs::is_
     if (own_) path_ = folderOf(output) / (".partial-" + path_.filename().string() + ".lock");
     do {
         if (file_ >= 0) close(file_);
-        // Nothing is written: a file that somebody else has put there stays as it is.
-        file_ = own_ ? open(path_.c_str(), O_RDONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666)
-                     : open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        // Nothing is written: a file that somebody else has put there stays as it is. A pipe would
+        // be waited for.
+        constexpr int kHow = O_RDONLY | O_NONBLOCK | O_CLOEXEC;
+        file_ = own_ ? open(path_.c_str(), kHow | O_CREAT | O_NOFOLLOW, 0666)
+                     : open(path_.c_str(), kHow | O_DIRECTORY);
         if (file_ < 0) throw Error("cannot write '" + output + "': " + strerror(errno));
+        struct stat opened {};
+        if (own_ && (fstat(file_, &opened) != 0 || !S_ISREG(opened.st_mode))) {
+            close(file_);
+            throw Error("cannot write '" + output + "': '" + path_.string() +
+                        "' is in the way, which is no file; remove it");
+        }
         if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
             close(file_);
             throw Error("'" + output +

@@ -28,7 +28,8 @@ class Moves {
     /** Does nothing where `from` is not there, or an earlier move has failed. */
     void move(const fs::path& from, const fs::path& to) {
         if (fault || !isThere(from)) return;
-        fs::rename(from, to, fault);
+        fs::create_directories(to.parent_path(), fault);
+        if (!fault) fs::rename(from, to, fault);
         if (!fault) done_.emplace_back(from, to);
     }
     /** False if something had to stay where it had been moved to. */
@@ -38,6 +39,7 @@ class Moves {
             std::error_code failed;
             fs::rename(each->second, each->first, failed);
             if (failed) whole = false;
+            fs::remove(each->second.parent_path(), failed);  // an empty one, which was made for it
         }
         return whole;
     }

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "delio/core/error.h"
+#include "side_file.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -12,7 +13,7 @@ namespace fs = std::filesystem;
 namespace {
 template <typename Value>
 void readValues(const std::string& file, std::size_t count, std::vector<Value>& values) {
-    if (!fs::exists(file)) return;
+    if (!isFileThere(file)) return;
     const auto bytes = fs::file_size(file);
     if (bytes != count * sizeof(Value))
         throw Error("'" + file + "' has " + std::to_string(bytes) + " bytes, but its scan has " +

@@ -4,9 +4,11 @@
 
 #include "bags/bag_reader.h"
 #include "delio/core/error.h"
+#include "delio/core/printable.h"
 #include "delio/io/rawlog_reader.h"
 #include "file_kind.h"
 #include "folders/folder_reader.h"
+#include "names.h"
 #include "packets/pcap_reader.h"
 #include "recognised_reader.h"
 
@@ -40,6 +42,10 @@ std::unique_ptr<ScanReader> openFile(const ScanSource& source) {
 std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
     if (source.path != "-" && !fs::exists(source.path))
         throw Error("cannot read '" + source.path + "': no such file or folder");
+    if (source.path != "-" && !fs::is_directory(source.path) && !fs::is_regular_file(source.path))
+        throw Error("'" + source.path +
+                    "' is neither a file nor a folder: a pipe is read from standard input, by the "
+                    "name -");
     return std::make_unique<RecognisedReader>(fs::is_directory(source.path) ? openFolder(source)
                                                                             : openFile(source));
 }
@@ -52,6 +58,11 @@ std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string
 std::string nameOfDrive(const std::string& path) {
     if (path == "-") return "stdin";
     const fs::path whole = fs::absolute(fs::path(path) / "").lexically_normal().parent_path();
-    return fs::is_directory(whole) ? whole.filename().string() : whole.stem().string();
+    const std::string name =
+        printable(fs::is_directory(whole) ? whole.filename().string() : whole.stem().string());
+    if (!isFileName(name))
+        throw Error("a drive cannot be called '" + name + "', as '" + path +
+                    "' is: rename the recording");
+    return name;
 }
 }  // namespace delio::io

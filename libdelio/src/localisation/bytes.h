@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
@@ -38,8 +40,8 @@ class ByteWriter {
     std::vector<std::uint8_t> bytes_;
 };
 
-/** Takes them out again; throws std::out_of_range where there is less than asked for, and for a
- *  pose that is none. */
+/** Takes them out again; throws std::out_of_range where there is less than asked for, for a number
+ *  that is not finite, and for a pose that is none. */
 class ByteReader {
  public:
     explicit ByteReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
@@ -48,6 +50,7 @@ class ByteReader {
     Value get() {
         Value value;
         take(&value, sizeof(Value));
+        check(&value, 1);
         return value;
     }
     template <class Value>
@@ -56,6 +59,7 @@ class ByteReader {
         if (count > (bytes_.size() - at_) / sizeof(Value)) throw std::out_of_range("count");
         std::vector<Value> values(count);
         take(values.data(), count * sizeof(Value));
+        check(values.data(), count);
         return values;
     }
     std::string getText() {
@@ -77,6 +81,12 @@ class ByteReader {
     }
 
  private:
+    template <class Value>
+    static void check(const Value* values, std::size_t count) {
+        if constexpr (std::is_floating_point_v<Value>)
+            if (!std::all_of(values, values + count, [](Value v) { return std::isfinite(v); }))
+                throw std::out_of_range("number");
+    }
     void take(void* to, std::size_t count) {
         if (count > bytes_.size() - at_) throw std::out_of_range("bytes");
         if (count > 0) std::memcpy(to, bytes_.data() + at_, count);

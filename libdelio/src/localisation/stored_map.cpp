@@ -16,6 +16,8 @@
 #include "delio/core/error.h"
 #include "delio/io/output_file.h"
 #include "delio/scan/voxel_grid.h"
+#include "io/most_bytes.h"
+#include "io/names.h"
 #include "packed_points.h"
 
 namespace delio {
@@ -25,7 +27,6 @@ namespace {
 constexpr std::array<char, 8> kMagic{'D', 'e', 'L', 'i', 'O', 'm', 'a', 'p'};
 constexpr std::size_t kHead = 8 + 4 + 8 + 8 + 8 + 4 + 8 + 4;
 constexpr double kCell_m = loops::HeightImage::kCell_m;
-constexpr std::uint64_t kMostUnpacked = std::uint64_t{1} << 32;
 
 std::uint32_t checksumOf(const std::uint8_t* bytes, std::size_t count) {
     return static_cast<std::uint32_t>(crc32_z(0, bytes, count));
@@ -211,7 +212,7 @@ void StoredMap::save(const MapContent& content, const std::string& path) {
 }
 
 StoredMap::StoredMap(const std::string& path) : path_(path) {
-    file_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    file_ = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // no waiting for a pipe
     struct stat status {};
     std::vector<std::uint8_t> head(kHead);
     if (file_ < 0) throw Error("cannot read '" + path + "': " + std::strerror(errno));
@@ -247,7 +248,7 @@ void StoredMap::damaged(const std::string& how) const {
 
 std::vector<std::uint8_t> StoredMap::read(const Part& part) const {
     if (part.offset > size_ || part.bytes > size_ - part.offset) damaged("it is cut off");
-    if (part.unpacked > std::min(kMostUnpacked, 2000 * part.bytes + 100))
+    if (part.unpacked > std::min(io::kMostBytes, 2000 * part.bytes + 100))
         damaged("a part is too large");
     std::vector<std::uint8_t> packed(part.bytes), plain(part.unpacked);
     for (std::size_t done = 0; done < packed.size();) {
@@ -273,6 +274,8 @@ void StoredMap::readIndex(const Part& index) {
         for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
             StoredDrive drive;
             drive.name = reader.getText();
+            // Files and folders are called after it.
+            if (!io::isFileName(drive.name)) throw std::out_of_range("name");
             drive.firstNode = reader.get<std::uint64_t>();
             drive.stamps_s = reader.getAll<double>();
             const auto nodes = graph_.poses().size();

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "delio/core/error.h"
+
 namespace delio::picture {
 using Eigen::Vector3d;
 
@@ -180,7 +182,12 @@ std::vector<View> viewsOf(const Content& content, const SnapshotOptions& options
         frame(views[0], content, options);
     else
         frameAll(views, content, options);
-    for (auto& view : views) setDepths(view, content, options);
+    constexpr double kFarthest_m = 1e9;  // MRPT counts in floats
+    for (auto& view : views) {
+        setDepths(view, content, options);
+        if (!(view.farthest < kFarthest_m))
+            throw Error("what it shows is too far apart for a picture: more than 1e9 m");
+    }
     return views;
 }
 }  // namespace delio::picture

@@ -34,7 +34,8 @@ Run::Run(const Options& options, const RunSettings& settings)
     record_.options = options;
     attach(graph_);
     if (!settings.storedMap.empty()) {
-        record_.storedMap = settings.storedMap;
+        record_.storedMap =
+            settings.storedMapName.empty() ? settings.storedMap : settings.storedMapName;
         follower_ = std::make_shared<MapFollower>(
             MapTracker(std::make_shared<const StoredMap>(storedMapIn(settings.storedMap)),
                        options.placeSearch, options.localisation));
@@ -155,8 +156,7 @@ void Run::closeLoops() {
 void Run::anchor() {
     record_.fixes = follower_->fixes();
     if (!record_.isLocalised()) {
-        const std::string what = "no scan of the drive was found in the map '" +
-                                 settings_.storedMap +
+        const std::string what = "no scan of the drive was found in the map '" + record_.storedMap +
                                  "': the poses are the odometry's, in the frame of its first scan";
         return settings_.mayBeElsewhere ? warn(what) : fail(what);
     }

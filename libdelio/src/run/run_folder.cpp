@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 /** The one that marks the whole first. */
 constexpr const char* kAll[] = {RunFolder::kSummary,
+                                RunFolder::kDrives,
                                 RunFolder::kTrajectory,
                                 RunFolder::kOdometry,
                                 RunFolder::kCam0,

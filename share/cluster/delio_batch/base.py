@@ -1,8 +1,11 @@
 """What every part needs: errors of one line, plain text, files that are whole."""
+import contextlib
 import json
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 
 
 class Problem(Exception):
@@ -43,14 +46,28 @@ def reason(error: OSError) -> str:
 
 def replace_file(path: str, text: str) -> None:
     """The old file, or the new one whole."""
-    partial = f"{path}.{os.uname().nodename}.{os.getpid()}"
-    try:
+    with partial_folder(path) as folder:
+        partial = os.path.join(folder, os.path.basename(path))
         with open(partial, "w", encoding="utf-8", errors="surrogateescape") as file:
             file.write(text)
         os.replace(partial, path)
-    except OSError:
-        remove_file(partial)
-        raise
+
+
+@contextlib.contextmanager
+def partial_folder(path: str):
+    """A private folder beside `path` for what is to be renamed to it. Nobody can guess its name and lay a link there;
+    files in it have the permissions that the umask gives."""
+    folder = tempfile.mkdtemp(prefix=".partial-", dir=os.path.dirname(path) or ".")
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def create(path: str):
+    """A new or emptied file for bytes. A link is not followed: it could lead to any file of the user's."""
+    flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW | os.O_CLOEXEC
+    return os.fdopen(os.open(path, flags, 0o666), "wb")
 
 
 def remove_file(path: str) -> None:

@@ -168,7 +168,7 @@ class Batch:
                 if not os.path.isdir(folder):
                     os.makedirs(folder, exist_ok=True)
                     self._made.append(above)
-            handle = os.open(self.work("lock"), os.O_RDWR | os.O_CREAT, 0o666)
+            handle = os.open(self.work("lock"), os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
             try:
                 fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except OSError as error:

@@ -4,7 +4,7 @@ import re
 import shutil
 import subprocess
 
-from .base import remove_file, say
+from .base import partial_folder, remove_file, say
 
 
 def _mean(values: list) -> str:
@@ -94,13 +94,15 @@ def draw(batch, rows: list) -> list:
         if not shutil.which("gnuplot"):
             say("gnuplot, which draws sweeps, is not installed; install the package gnuplot-nox")
             return []
-        partial = picture + ".partial"
-        drawn = subprocess.run(["gnuplot"], input=_script(done, key, swept, partial), text=True,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False)
-        if drawn.returncode == 0 and os.path.exists(partial):
-            os.replace(partial, picture)
+        with partial_folder(picture) as folder:
+            partial = os.path.join(folder, "chart.png")
+            drawn = subprocess.run(["gnuplot"], input=_script(done, key, swept, partial), text=True,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False)
+            is_drawn = drawn.returncode == 0 and os.path.exists(partial)
+            if is_drawn:
+                os.replace(partial, picture)
+        if is_drawn:
             pictures.append(picture)
         else:
-            remove_file(partial)
             say(f"the chart of {key} cannot be drawn: {(drawn.stderr.strip().splitlines() or ['?'])[-1]}")
     return pictures

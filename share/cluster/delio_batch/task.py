@@ -9,9 +9,10 @@ import re
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 
-from .base import Problem, last_line, reason, run_tool, say
+from .base import Problem, create, last_line, reason, run_tool, say
 from .batch import Batch, Task
 
 
@@ -40,7 +41,7 @@ class Attempt:
         # The folder that scratch folders are in stays: another task may be about to make its own in it.
         self.base = batch.settings.get("scratch") or batch.work("scratch")
         self.own = f"delio-batch.{batch.settings['id']}.{task.number}.{_owner()}."
-        self.scratch = os.path.join(self.base, self.own + os.environ.get("SLURM_RESTART_COUNT", "0"))
+        self.scratch = ""  # nobody can guess its name, or look into it
         self.child = None
 
     def run(self) -> int:
@@ -54,6 +55,7 @@ class Attempt:
             self._forget_own_past()
             for folder in (self.base, os.path.dirname(batch.log(task))):
                 os.makedirs(folder, exist_ok=True)
+            self.scratch = tempfile.mkdtemp(prefix=self.own, dir=self.base)
             batch.set_state(task, state="running", **self._about())
             say(f"{task.label}: begins")
             code, used = self._slam()
@@ -65,7 +67,12 @@ class Attempt:
             self._kill()
             return self._fail(f"cannot write {reason(error)}", 1)
         finally:
-            shutil.rmtree(self.scratch, ignore_errors=True)
+            if self.scratch:
+                shutil.rmtree(self.scratch, ignore_errors=True)
+
+    def _results(self) -> str:
+        """Of delio-slam, with the permissions that the umask gives."""
+        return os.path.join(self.scratch, "results")
 
     def _about(self) -> dict:
         return {"attempts": self.attempts, "host": _host(), "began": int(self.began)}
@@ -79,10 +86,10 @@ class Attempt:
     def _slam(self) -> tuple:
         """Exit code of delio-slam, and what it used."""
         task, settings = self.task, self.batch.settings
-        words = ["delio-slam", "-i", task.input, "-o", self.scratch, "--profile", task.profile,
+        words = ["delio-slam", "-i", task.input, "-o", self._results(), "--profile", task.profile,
                  "--threads", str(settings["threads"])] + task.options
         where = settings.get("cwd", "/")
-        with open(self.batch.log(task), "wb") as log:
+        with create(self.batch.log(task)) as log:
             # Python ignores SIGXFSZ; left so, a file that is too large is an error that delio-slam names.
             self.child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                           restore_signals=False, cwd=where if os.path.isdir(where) else "/")
@@ -104,14 +111,14 @@ class Attempt:
             name = signal.Signals(-code).name
             memory = " (too little memory?)" if code == -signal.SIGKILL else ""
             return self._fail(f"killed by {name}{memory}; its last line: {said}", 128 - code, state="killed")
-        summary = _summary(self.scratch)
+        summary = _summary(self._results())
         if code != 0 or not re.search(r"^complete: true", summary, re.M):
             return self._fail(said or "delio-slam said nothing", code or 1)
         record = {"work": task.work(), **self._about(), "seconds": round(time.time() - self.began, 3),
                   "cpu_s": round(used.ru_utime + used.ru_stime, 3), "peak_mb": round(used.ru_maxrss / 1024, 1),
                   "scans": _number(summary, "scans"), "predicted": _number(summary, "predicted")}
         record.update(self._scores())
-        with open(os.path.join(self.scratch, "task.json"), "w", encoding="ascii") as file:
+        with open(os.path.join(self._results(), "task.json"), "w", encoding="ascii") as file:
             file.write(json.dumps(record) + "\n")
         self._put_in_place()
         self.batch.clear_state(task)
@@ -123,9 +130,9 @@ class Attempt:
         if not self.task.truth:
             return {}
         lengths = self.batch.settings.get("lengths")
-        result = run_tool(["delio-eval", "--ref", self.task.truth, "--est", f"it={self.scratch}", "--format", "tsv"] +
-                          (["--lengths", lengths] if lengths else []))
-        rows = [line.split("\t") for line in result.stdout.splitlines()]
+        result = run_tool(["delio-eval", "--ref", self.task.truth, "--est", f"it={self._results()}",
+                           "--format", "tsv"] + (["--lengths", lengths] if lengths else []))
+        rows = [line.split("\t") for line in result.stdout.split("\n")]
         if result.returncode != 0 or len(rows) < 2:
             return {"unscored": last_line(result.stderr)}
         return {"scores": dict(zip(rows[0][2:], rows[1][2:]))}
@@ -136,7 +143,7 @@ class Attempt:
         place = self.batch.result(self.task)
         os.makedirs(os.path.dirname(place), exist_ok=True)
         try:
-            os.rename(self.scratch, place)
+            os.rename(self._results(), place)
         except OSError as error:
             if error.errno in (errno.ENOTEMPTY, errno.EEXIST):
                 return
@@ -145,10 +152,12 @@ class Attempt:
             self._copy_in_place(place)
 
     def _copy_in_place(self, place: str) -> None:
-        copy = self.batch.work("scratch", os.path.basename(self.scratch) + ".copy")
-        shutil.rmtree(copy, ignore_errors=True)
+        near = self.batch.work("scratch")
+        os.makedirs(near, exist_ok=True)
+        folder = tempfile.mkdtemp(prefix=self.own, dir=near)
         try:
-            shutil.copytree(self.scratch, copy)
+            copy = os.path.join(folder, "results")
+            shutil.copytree(self._results(), copy)
             os.rename(copy, place)
         except shutil.Error as error:
             raise OSError(errno.EIO, f"the copy of the results: {error.args[0][0][2]}") from None
@@ -156,7 +165,7 @@ class Attempt:
             if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
                 raise
         finally:
-            shutil.rmtree(copy, ignore_errors=True)
+            shutil.rmtree(folder, ignore_errors=True)
 
     @staticmethod
     def _said(log: str) -> str:

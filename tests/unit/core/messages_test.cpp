@@ -27,6 +27,16 @@ TEST(PlainMessage, IsInWordsThatAUserKnows) {
     EXPECT_EQ(plainMessage(Error("'a' is cut off")), "'a' is cut off");
     EXPECT_EQ(messageOf([] { ASSERTMSG_(1 > 2, "too few"); }), "too few");
     EXPECT_EQ(messageOf([] { ASSERT_(1 > 2); }), "it is damaged, or of an unknown kind");
+    EXPECT_EQ(messageOf([] { ASSERT_GT_(1, 2); }), "it is damaged, or of an unknown kind");
+    const auto throughMrpt = [](auto exception) {
+        return messageOf([&] {
+            MRPT_START
+            throw exception;
+            MRPT_END
+        });
+    };
+    EXPECT_EQ(throughMrpt(std::runtime_error("the disk is full")), "the disk is full");
+    EXPECT_EQ(throughMrpt(std::bad_alloc()), "it takes more memory than there is");
     EXPECT_EQ(messageOf([] { throw std::bad_alloc(); }), "it takes more memory than there is");
     EXPECT_EQ(messageOf([] { std::vector<int>().reserve(std::size_t(-1)); }),
               "it takes more memory than there is");
@@ -38,6 +48,14 @@ TEST(PlainMessage, IsInWordsThatAUserKnows) {
     EXPECT_EQ(messageOf([&] { (void)node["a"].as<double>(); }),
               "line 1, column 4: the value is of another kind than it has to be");
     EXPECT_EQ(messageOf([&] { (void)node["b"].as<double>(); }), "'b' is missing");
+}
+
+TEST(Shortened, KeepsBeginAndEndAndWholeCharacters) {
+    EXPECT_EQ(shortened("as it is", 8), "as it is");
+    EXPECT_EQ(shortened("0123456789abcdef", 9), "012345...def");
+    const std::string ues = shortened("\xC3\xBC\xC3\xBC\xC3\xBC\xC3\xBC\xC3\xBC\xC3\xBC", 9);
+    EXPECT_EQ(ues, "\xC3\xBC\xC3\xBC\xC3\xBC...\xC3\xBC");
+    EXPECT_EQ(shortened(std::string(100000, 'x'), 2000).size(), 2003U);
 }
 
 TEST(Printable, HasNothingThatATerminalObeys) {

@@ -61,6 +61,57 @@ TEST(BagDamage, FlippedBytesNeverCrash) {
     }
 }
 
+// Every length and every offset, and whatever else lies there.
+TEST(BagDamage, NumbersThatWrapAroundNeitherCrashNorKeepReading) {
+    for (const Container& container : containers()) {
+        SCOPED_TRACE(container.name);
+        const test::TemporaryFolder folder;
+        const auto file = folder / container.file;
+        container.write(file, drive(2, container.kind, 3));
+        const std::string whole = test::readText(file);
+        const std::size_t stride = whole.size() / 400 + 1;
+        for (std::size_t at = 0; at + 8 <= whole.size(); at += stride)
+            for (const std::uint64_t number : {~std::uint64_t{0}, std::uint64_t(-9)}) {
+                std::string bytes = whole;
+                replaceNumber(bytes, at, number, 8);
+                test::writeText(file, bytes);
+                try {
+                    const auto reader = container.open({file.string(), "", "", ""});
+                    while (reader->next()) continue;
+                } catch (const Error& e) {
+                    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
+                }
+            }
+    }
+}
+
+TEST(BagDamage, ARecordOfTheSummaryEndsWhereItBegins) {
+    const test::TemporaryFolder folder;
+    const auto mcap = folder / "d.mcap";
+    const std::string magic = "\x89MCAP0\r\n";
+    std::string bytes = magic + '\x0d' + std::string(8, '\xff') + '\2' + std::string(28, '\0');
+    replaceNumber(bytes, 9, std::uint64_t(-9), 8);
+    replaceNumber(bytes, 18, 20, 8);  // the footer's length, and where the summary begins
+    replaceNumber(bytes, 26, 8, 8);
+    test::writeText(mcap, bytes + magic);
+    expectHolds(faultOf(io::openMcap, {mcap.string(), "", "", ""}), {"is cut off", "its 54 bytes"});
+}
+
+TEST(BagDamage, ChunksOfGigabytesAreRefusedBeforeTheyAreUnpacked) {
+    const test::TemporaryFolder folder;
+    const auto bag = folder / "d.bag", mcap = folder / "d.mcap";
+    writeRos1Bag(bag, drive(4), "lz4");
+    std::string bytes = test::readText(bag);
+    replaceNumber(bytes, bytes.find("size=", bytes.find("compression=lz4")) + 5, 0x40000001, 4);
+    test::writeText(bag, bytes);
+    expectHolds(faultOf(io::openRos1Bag, {bag.string(), "", "", ""}), {"1073741825", "announced"});
+    writeMcap(mcap, drive(4, Kind::kCdr), "zstd");
+    bytes = test::readText(mcap);
+    replaceNumber(bytes, bytes.find("zstd") - 16, 0x40000001, 8);
+    test::writeText(mcap, bytes);
+    expectHolds(faultOf(io::openMcap, {mcap.string(), "", "", ""}), {"1073741825", "announced"});
+}
+
 TEST(BagDamage, LyingSizesTakeNoMemory) {
     const test::TemporaryFolder folder;
     const auto bag = folder / "d.bag", mcap = folder / "d.mcap";

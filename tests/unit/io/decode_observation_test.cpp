@@ -1,7 +1,13 @@
 #include "delio/io/decode_observation.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+
+#include <cmath>
+
+#include "delio/core/error.h"
 
 namespace {
 using namespace delio;
@@ -28,6 +34,16 @@ TEST(DepthCamera, ARangeImageAloneIsProjected) {
         EXPECT_NEAR(x, expected[i][0], 1e-5);
         EXPECT_NEAR(y, expected[i][1], 1e-5);
         EXPECT_NEAR(z, expected[i][2], 1e-5);
+    }
+}
+
+TEST(SensorPose, HasToBeFinite) {
+    mrpt::obs::CObservationPointCloud scan;
+    scan.pointcloud = mrpt::maps::CSimplePointsMap::Create();
+    EXPECT_NO_THROW(io::decodeObservation(scan));
+    for (const double x : {std::nan(""), HUGE_VAL, 2e9}) {
+        scan.sensorPose.x(x);
+        EXPECT_THROW(io::decodeObservation(scan), Error) << x;
     }
 }
 }  // namespace

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <sys/stat.h>
 
 #include "delio/io/scan_reader.h"
+#include "io/side_file.h"
 #include "rawlog_files.h"
 
 namespace delio::rawlog_test {
@@ -34,6 +36,19 @@ TEST(OpenScans, RefusesWhatIsNoRecording) {
     EXPECT_NE(refusal("/dev/null"), "");
 }
 
+// Nobody writes into these pipes: to open one would be to wait for ever.
+TEST(OpenScans, PipesAreNotWaitedFor) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(mkfifo((folder / "d.rawlog").c_str(), 0600), 0);
+    EXPECT_NE(refusal(folder / "d.rawlog").find("standard input"), std::string::npos);
+    test::writeText(folder / "e.rawlog", "something");
+    ASSERT_EQ(mkfifo((folder / "e.meta.yaml").c_str(), 0600), 0);
+    EXPECT_NE(refusal(folder / "e.rawlog").find("it is no file"), std::string::npos);
+    ASSERT_EQ(mkfifo((folder / "e.calib.txt").c_str(), 0600), 0);
+    EXPECT_THROW(io::sideFile((folder / "e.calib.txt").string()), Error);
+    EXPECT_TRUE(io::sideFile((folder / "none.txt").string()).text.empty());
+}
+
 TEST(OpenScans, NamesOfDrives) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "00.d");
@@ -41,6 +56,9 @@ TEST(OpenScans, NamesOfDrives) {
     EXPECT_EQ(io::nameOfDrive(folder / "00.d"), "00.d");
     EXPECT_EQ(io::nameOfDrive((folder / "00.d").string() + "/"), "00.d");
     EXPECT_EQ(io::nameOfDrive("-"), "stdin");
+    EXPECT_EQ(io::nameOfDrive(folder / "a\nb.rawlog"), "a?b");
+    EXPECT_THROW(io::nameOfDrive(folder / "...rawlog"), Error);
+    EXPECT_THROW(io::nameOfDrive("/"), Error);
 }
 
 TEST(RawlogReader, SensorsWithoutLabelsAreKeptApart) {

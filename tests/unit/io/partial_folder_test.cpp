@@ -1,6 +1,7 @@
 #include "delio/io/partial_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <optional>
 
@@ -51,15 +52,29 @@ TEST_F(PartialFolder, AllComesInPlaceOrNothing) {
     write(folder_.path(), {"mark", "images/0", "images/1", "gone", "else"}, "old");
     {
         io::PartialFolder partial(folder_.path(), "out");
-        write(partial.path(), {"mark", "images/0", "none/file"}, "new");
-        EXPECT_THROW(partial.putInPlace({"mark", "images", "gone", "none/file"}), Error);
+        write(partial.path(), {"mark", "images/0", "else/file", "made/file"}, "new");
+        // "else" is a file.
+        EXPECT_THROW(partial.putInPlace({"mark", "images", "gone", "else/file", "made/file"}),
+                     Error);
+        EXPECT_FALSE(fs::exists(folder_ / "made"));
         for (const char* name : {"mark", "images/0", "images/1", "gone", "else"})
             EXPECT_EQ(textOf(name), "old") << name;
-        fs::remove_all(partial.path() / "none");
+        fs::remove_all(partial.path() / "else");
         partial.putInPlace({"mark", "images", "gone", "none"});
     }
     EXPECT_EQ(namesIn(folder_.path()), (Names{"else", "images", "images/0", "mark"}));
     EXPECT_EQ(textOf("mark") + textOf("images/0") + textOf("else"), "newnewold");
+}
+
+TEST_F(PartialFolder, FilesWithinFoldersComeInPlaceAloneAndOthersStay) {
+    write(folder_.path(), {"mark", "a/0", "a/mine", "b/0"}, "old");
+    {
+        io::PartialFolder partial(folder_.path(), "out");
+        write(partial.path(), {"mark", "a/0", "c/0"}, "new");
+        partial.putInPlace({"mark", "a/0", "b/0", "c/0"});
+    }
+    EXPECT_EQ(namesIn(folder_.path()), (Names{"a", "a/0", "a/mine", "b", "c", "c/0", "mark"}));
+    EXPECT_EQ(textOf("mark") + textOf("a/0") + textOf("c/0") + textOf("a/mine"), "newnewnewold");
 }
 
 TEST_F(PartialFolder, AFileTakesNoFoldersPlace) {
@@ -88,6 +103,13 @@ TEST_F(PartialFolder, ALockIsForOneAndLeavesNothing) {
     }
     EXPECT_EQ(namesIn(folder_.path()), Names{"back"});
     EXPECT_EQ(namesIn(folder_ / "back"), Names());
+}
+
+TEST_F(PartialFolder, ALockIsAFile) {
+    const fs::path pipe = folder_ / ".partial-d.rawlog.lock";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_THROW(io::OutputLock{folder_ / "d.rawlog"}, Error);
+    EXPECT_TRUE(fs::is_fifo(pipe)) << "it is somebody else's";
 }
 
 TEST_F(PartialFolder, AFolderThatWasMadeForNothingIsTakenAway) {

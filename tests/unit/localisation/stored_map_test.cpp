@@ -143,6 +143,34 @@ TEST_F(StoredMapFile, PosesThatAreNoneAreSaid) {
               std::string::npos);
 }
 
+// Results are written into files and folders of these names.
+TEST_F(StoredMapFile, NamesThatLeadOutOfAFolderAreSaid) {
+    MapContent content = drive_.content;
+    for (const std::string& name :
+         {std::string(), std::string("."), std::string(".."), std::string("../town"),
+          std::string("/town"), std::string("a/town"), std::string("town\n"),
+          std::string("\x1B[2J"), std::string(1, '\0')}) {
+        content.drives.front().name = name;
+        StoredMap::save(content, path_);
+        EXPECT_NE(faultOf(test::readText(path_)), "") << name;
+    }
+    content.drives.front().name = "..town, gr\xC3\xBCn";
+    StoredMap::save(content, path_);
+    EXPECT_EQ(faultOf(test::readText(path_)), "");
+}
+
+TEST_F(StoredMapFile, NumbersThatAreNoneAreSaid) {
+    MapContent content = drive_.content;
+    content.drives.front().stamps_s[1] = NAN;
+    StoredMap::save(content, path_);
+    EXPECT_NE(faultOf(test::readText(path_)).find("its index cannot be understood"),
+              std::string::npos);
+    content = drive_.content;
+    content.submaps.front().driven.path_m = INFINITY;
+    StoredMap::save(content, path_);
+    EXPECT_NE(faultOf(test::readText(path_)), "");
+}
+
 TEST_F(StoredMapFile, AnotherVersionIsNamed) {
     std::string bytes = test::readText(path_);
     bytes[8] = 7;

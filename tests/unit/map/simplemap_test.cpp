@@ -68,4 +68,25 @@ TEST(Simplemap, CutOffAnywhereIsAnError) {
     EXPECT_THROW(map::loadSimplemap(folder / "missing.simplemap"), Error);
     EXPECT_THROW(map::loadSimplemap(folder.path().string()), Error);
 }
+
+// MRPT uses the pose of a keyframe of version 0 whatever it is.
+TEST(Simplemap, OfVersionZeroIsRefused) {
+    const auto named = [](const std::string& name) {
+        return static_cast<char>(0x80 | name.size()) + name;
+    };
+    const std::string frame =
+        named("mrpt::obs::CSensoryFrame") + '\2' + std::string(4, '\0') + '\x88';
+    const test::TemporaryFolder folder;
+    const auto file = folder / "old.simplemap";
+    for (const std::string& pose : {named("nullptr") + '\x88', frame}) {
+        test::writeText(file, named("mrpt::maps::CSimpleMap") + '\0' + '\1' + std::string(3, '\0') +
+                                  pose + frame + '\x88');
+        try {
+            map::loadSimplemap(file);
+            FAIL();
+        } catch (const Error& e) {
+            EXPECT_NE(std::string(e.what()).find("version 0"), std::string::npos) << e.what();
+        }
+    }
+}
 }  // namespace

@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "delio/core/error.h"
+
 namespace {
 using namespace delio;
 using Eigen::Vector3d;
@@ -53,6 +55,17 @@ TEST(Framing, AzimuthAndElevationSayWhereTheCameraStands) {
     expectNear(between.back, {std::cos(30 * kDeg) * std::cos(40 * kDeg),
                               std::sin(30 * kDeg) * std::cos(40 * kDeg), std::sin(40 * kDeg)});
     EXPECT_NEAR(between.right.cross(between.up).dot(between.back), 1, 1e-12);
+}
+
+TEST(Framing, WhatIsFartherApartThanFloatsReachIsRefused) {
+    for (const bool ortho : {false, true}) {
+        Content content = box({0, 0, 0}, {3e38, 3e38, 2});
+        EXPECT_THROW(viewOf(content, square(ortho, 0, 40)), Error);
+        content = box({0, 0, 0}, {1, 1, 1});
+        content.grids = box({0, 0, 0}, {1e30, 1e30, 0}).lines;
+        EXPECT_THROW(viewOf(content, square(ortho, 0, 40)), Error);
+        EXPECT_NO_THROW(viewOf(box({5e6, 5e5, 0}, {3e4, 3e4, 100}), square(ortho, 0, 40)));
+    }
 }
 
 TEST(Framing, ABoxFillsAParallelProjection) {

@@ -12,6 +12,6 @@ bool isScan(const mrpt::obs::CObservation& observation);
  *  must be in memory already (not externally stored). An observation without points gives an
  *  empty cloud. Throws Error for one that cannot be decoded: Velodyne packets without their
  *  calibration or of an unknown count of lasers, a rotating scan whose images disagree in size or
- *  whose elevation angles are unknown. */
+ *  whose elevation angles are unknown, a sensor pose that is not finite. */
 Scan decodeObservation(const mrpt::obs::CObservation& observation);
 }  // namespace delio::io

@@ -22,12 +22,12 @@ class PartialFolder {
     /** Where files are to be written. */
     const std::filesystem::path& path() const { return path_; }
 
-    /** Moves the files and folders `names` into `folder`, in place of what is
-     *  there; a name that is not in here is not there either afterwards. All of it or, where that
-     *  fails, nothing is done: Error. The first of `names` marks the whole: the old one goes first
-     *  and the new one comes last. So whoever looks in between, or after a kill, finds no file of
-     *  that name, not parts of two outputs; where it is one file only, the old one or the new one.
-     * (The old ones of a killed process lie in a folder of this kind, too.) */
+    /** Moves the files and folders `names` (those within other folders, too: "a/b") into `folder`,
+     *  in place of what is there; a name that is not in here is not there either afterwards. All of
+     * it or, where that fails, nothing is done: Error. The first of `names` marks the whole: the
+     * old one goes first and the new one comes last. So whoever looks in between, or after a kill,
+     * finds no file of that name, not parts of two outputs; where it is one file only, the old one
+     * or the new one. (The old ones of a killed process lie in a folder of this kind, too.) */
     void putInPlace(const std::vector<std::string>& names);
 
     /** A message about a file in here as one about the file that it was to become. */

@@ -80,6 +80,7 @@ std::unique_ptr<ScanReader> openScans(const ScanSource& source);
 std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label = "",
                                       const std::string& imagesFolder = "");
 
-/** What a drive is called by: its file's name without the extension, or its folder's. */
+/** What a drive is called by: its file's name without the extension, or its folder's, with '?' for
+ *  control characters. Throws Error where that is no name of a folder ("..", of `...rawlog`). */
 std::string nameOfDrive(const std::string& path);
 }  // namespace delio::io

@@ -32,6 +32,8 @@ struct RunSettings {
     /** A stored map in which the drive is localised; its file, or the folder of the run that made
      *  it. Empty: none. */
     std::string storedMap;
+    /** What results call that map; empty: by its path. */
+    std::string storedMapName;
     /** Of the vehicle at the first scan in that map, if it is known to some metres. */
     std::optional<Eigen::Isometry3d> initialPose;
     bool extend = false;  //!< what the drive has seen is added to that map

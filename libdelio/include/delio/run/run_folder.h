@@ -54,6 +54,8 @@ class RunFolder {
     static constexpr const char* kRemovalPicture = "map_removal.png";  //!< before and after it
     static constexpr const char* kTrajectoryPicture = "trajectory.png";  //!< the way, from above
     static constexpr const char* kSummary = "summary.yaml";              //!< the run in numbers
+    /** Of several drives: which is in which map. A run of one drive has none. */
+    static constexpr const char* kDrives = "drives.csv";
 
     /** It need not be there yet. */
     explicit RunFolder(std::string folder) : folder_(std::move(folder)) {}

@@ -16,8 +16,14 @@ void ByteInput::read(void* to, std::uint64_t bytes) {
     position_ += bytes;
 }
 
-void ByteInput::read(std::vector<std::uint8_t>& to, std::uint64_t bytes) {
+void ByteInput::check(std::uint64_t bytes) const {
     if (bytes > left()) tooShort();
+    if (bytes > kMostBytes)
+        throw Error("is damaged: " + std::to_string(bytes) + " bytes in one piece are announced");
+}
+
+void ByteInput::read(std::vector<std::uint8_t>& to, std::uint64_t bytes) {
+    check(bytes);
     to.resize(bytes);
     read(to.data(), bytes);
 }
@@ -30,10 +36,15 @@ void ByteInput::skip(std::uint64_t bytes) {
 
 std::string ByteInput::text() {
     const auto length = number<std::uint32_t>();
-    if (length > left()) tooShort();
+    check(length);
     std::string text(length, '\0');
     read(text.data(), length);
     return text;
+}
+
+Bytes ByteInput::view(std::vector<std::uint8_t>& buffer, std::uint64_t bytes) {
+    read(buffer, bytes);
+    return {buffer.data(), buffer.size()};
 }
 
 FileInput::FileInput(const std::string& path) {
@@ -69,6 +80,12 @@ void FileInput::pass(std::uint64_t bytes) {
 void FileInput::tooShort() const {
     throw Error("is cut off: at byte " + std::to_string(position()) +
                 " more is announced than its " + std::to_string(bytes_) + " bytes");
+}
+
+Bytes MemoryInput::view(std::vector<std::uint8_t>&, std::uint64_t bytes) {
+    const std::uint64_t begin = position();
+    skip(bytes);
+    return {bytes_.data() + begin, bytes};
 }
 
 void MemoryInput::get(void* to, std::size_t bytes) {

@@ -6,6 +6,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "../most_bytes.h"
+#include "message_source.h"
+
 namespace delio::io {
 /** Bytes to be read from front to back. No length is believed: what is asked for beyond the end is
  *  an Error ("is cut off at byte N") before memory is taken for it. */
@@ -20,8 +23,10 @@ class ByteInput {
     std::uint64_t left() const { return size_ - position_; }
 
     void read(void* to, std::uint64_t bytes);
-    /** Makes `to` hold the next `bytes` bytes. */
+    /** Makes `to` hold the next `bytes` bytes, kMostBytes at most. */
     void read(std::vector<std::uint8_t>& to, std::uint64_t bytes);
+    /** The next `bytes` bytes where they lie in memory; those of a file are read into `buffer`. */
+    virtual Bytes view(std::vector<std::uint8_t>& buffer, std::uint64_t bytes);
     void skip(std::uint64_t bytes);
 
     /** A little-endian number. */
@@ -47,6 +52,8 @@ class ByteInput {
     virtual void get(void* to, std::size_t bytes) = 0;
     virtual void pass(std::uint64_t bytes) = 0;
     [[noreturn]] virtual void tooShort() const = 0;
+    /** Throws Error where so many bytes are not there, or are too many for one piece. */
+    void check(std::uint64_t bytes) const;
 
     std::uint64_t size_ = 0, position_ = 0;
 };
@@ -73,6 +80,7 @@ class FileInput : public ByteInput {
 class MemoryInput : public ByteInput {
  public:
     std::vector<std::uint8_t>& bytes() { return bytes_; }
+    Bytes view(std::vector<std::uint8_t>& buffer, std::uint64_t bytes) override;
     /** Reads bytes() from their begin. */
     void rewind() { start(bytes_.size()); }
     void clear() { start(0); }

@@ -19,13 +19,16 @@ struct Cloud {
 
 Cloud readCloud(const Message& message) {
     constexpr std::size_t kLeastField = 13;  // an empty name, offset, kind and count
+    constexpr std::size_t kMostFields = 1000;
     WireReader in(message);
     Cloud cloud;
     cloud.stamp_s = in.header();
     if (cloud.stamp_s == 0) cloud.stamp_s = message.log_s;
     cloud.rows = in.number<std::uint32_t>();
     cloud.columns = in.number<std::uint32_t>();
-    cloud.layout.fields.resize(in.length(kLeastField));
+    const std::size_t fields = in.length(kLeastField);
+    if (fields > kMostFields) throw Error("its points have " + std::to_string(fields) + " fields");
+    cloud.layout.fields.resize(fields);
     for (PointField& field : cloud.layout.fields) {
         field.name = in.text();
         field.offset = in.number<std::uint32_t>();

@@ -75,16 +75,18 @@ void McapFile::readStatistics(ByteInput& in) {
 }
 
 void McapFile::enterChunk(std::uint64_t bytes) {
-    const std::uint64_t end = file_.position() + bytes;
+    const std::uint64_t begin = file_.position();
+    const bool isCut = bytes > file_.left();
     file_.skip(16);  // first and last time
     const auto size = file_.number<std::uint64_t>();
     const auto crc = file_.number<std::uint32_t>();
     const std::string compression = file_.text();
     const auto packedBytes = file_.number<std::uint64_t>();
-    if (file_.position() > end || packedBytes > end - file_.position())
+    const std::uint64_t taken = file_.position() - begin;
+    if (taken > bytes || packedBytes > bytes - taken)
         throw Error("is damaged: a chunk is longer than its record");
     if (compression.empty()) {
-        if (end > file_.size()) {  // what is there of it is read in place
+        if (isCut) {  // what is there of it is read in place
             chunkIsCut_ = true;
             return;
         }
@@ -97,7 +99,7 @@ void McapFile::enterChunk(std::uint64_t bytes) {
     if (crc != 0 && checksum(chunk_.bytes()) != crc)
         throw Error("is damaged: a chunk's checksum is wrong");
     chunk_.rewind();
-    file_.skip(end - file_.position());
+    file_.skip(bytes - taken - packedBytes);
 }
 
 std::optional<Message> McapFile::readMessage(ByteInput& in, std::uint64_t bytes) {
@@ -115,9 +117,8 @@ std::optional<Message> McapFile::readMessage(ByteInput& in, std::uint64_t bytes)
         in.skip(bytes - kMessageStart);
         return std::nullopt;
     }
-    in.read(data_, bytes - kMessageStart);
-    return Message{
-        topic, type, encoding, 1e-9 * static_cast<double>(log_ns), {data_.data(), data_.size()}};
+    return Message{topic, type, encoding, 1e-9 * static_cast<double>(log_ns),
+                   in.view(data_, bytes - kMessageStart)};
 }
 
 std::optional<Message> McapFile::readRecord(ByteInput& in) {
@@ -129,6 +130,11 @@ std::optional<Message> McapFile::readRecord(ByteInput& in) {
         enterChunk(bytes);
         return std::nullopt;
     }
+    readOther(in, op, bytes);
+    return std::nullopt;
+}
+
+void McapFile::readOther(ByteInput& in, std::uint8_t op, std::uint64_t bytes) {
     const std::uint64_t left = in.left();
     if (bytes <= left) {
         if (op == kSchema) readSchema(in);
@@ -139,7 +145,6 @@ std::optional<Message> McapFile::readRecord(ByteInput& in) {
     const std::uint64_t taken = left - in.left();
     if (taken > bytes) throw Error("is damaged: a record is longer than it says");
     in.skip(bytes - taken);
-    return std::nullopt;
 }
 
 std::optional<Message> McapFile::next() {
@@ -174,12 +179,7 @@ bool McapFile::listBySummary() {
         const std::uint64_t footer = file_.size() - kMagic.size() - kFooterBytes;
         while (file_.position() < footer) {
             const auto op = file_.number<std::uint8_t>();
-            const auto bytes = file_.number<std::uint64_t>();
-            const std::uint64_t end = file_.position() + bytes;
-            if (op == kSchema) readSchema(file_);
-            if (op == kChannel) readChannel(file_);
-            if (op == kStatistics) readStatistics(file_);
-            file_.seek(end);
+            readOther(file_, op, file_.number<std::uint64_t>());
         }
     } catch (const Error&) {
         return false;  // next() says so, when it comes there
@@ -193,6 +193,8 @@ void McapFile::listByFirstChunks() {
     try {
         while (file_.position() < kLookAhead && next()) continue;
     } catch (const Error&) {
+        takeTopics();
+        if (topics_.empty()) throw;  // otherwise next() says so, when it comes there
     }
     takeTopics();
 }

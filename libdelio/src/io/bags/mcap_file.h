@@ -30,6 +30,8 @@ class McapFile : public MessageSource {
     /** One record, all of it; a message if it is one that is wanted. */
     std::optional<Message> readRecord(ByteInput& in);
     std::optional<Message> readMessage(ByteInput& in, std::uint64_t bytes);
+    /** A record that holds neither a message nor messages: it is taken or passed over. */
+    void readOther(ByteInput& in, std::uint8_t op, std::uint64_t bytes);
     void readSchema(ByteInput& in);
     void readChannel(ByteInput& in);
     void readStatistics(ByteInput& in);

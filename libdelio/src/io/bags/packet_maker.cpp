@@ -5,6 +5,7 @@
 namespace delio::io {
 namespace {
 constexpr std::size_t kVelodynePacket = 1206;
+constexpr std::size_t kMostPackets = 20'000;  // of a message: all are decoded before one is taken
 
 class PacketMaker : public ScanMaker {
  public:
@@ -26,6 +27,9 @@ class PacketMaker : public ScanMaker {
     void addVelodyneScan(WireReader& in, double log_s) {
         in.header();
         const std::size_t packets = in.length(8 + kVelodynePacket);
+        if (packets > kMostPackets)
+            throw Error("the message has " + std::to_string(packets) +
+                        " packets: a turn has some hundred");
         for (std::size_t i = 0; i < packets; ++i) {
             const double stamp_s = in.time();
             addPacket(in.bytes(kVelodynePacket), stamp_s == 0 ? log_s : stamp_s);

@@ -135,11 +135,10 @@ std::optional<Message> Ros1Bag::readMessage(const Record& record, ByteInput& in)
         in.skip(record.bytes);
         return std::nullopt;
     }
-    in.read(data_, record.bytes);
     const auto time = valueOf<std::uint64_t>(record.fields, "time");
     const double log_s =
         static_cast<double>(time & 0xffffffffU) + 1e-9 * static_cast<double>(time >> 32U);
-    return Message{topic, type, Encoding::kRos1, log_s, {data_.data(), data_.size()}};
+    return Message{topic, type, Encoding::kRos1, log_s, in.view(data_, record.bytes)};
 }
 
 std::optional<Message> Ros1Bag::next() {
@@ -222,6 +221,7 @@ void Ros1Bag::listByFirstChunks() {
     try {
         while (file_.position() < kLookAhead && next()) continue;
     } catch (const Error&) {
+        if (connections_.empty()) throw;  // otherwise next() says so, when it comes there
     }
     for (const auto& [id, connection] : connections_)
         addTopic(topics_, {connection.topic, connection.type, std::nullopt});

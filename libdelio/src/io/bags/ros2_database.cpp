@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../most_bytes.h"
 #include "delio/core/error.h"
 
 namespace delio::io {
@@ -110,8 +111,8 @@ void Ros2Database::distrust() {
     if (computed.integer(0) != 2 || computed.integer(1) != 0)
         throw Error("has no tables 'topics' and 'messages', so it is no ROS 2 database");
     // Nothing in it is longer than the file.
-    constexpr std::uintmax_t kLeast = 1 << 20, kMost = 1 << 30;
-    const auto bytes = std::clamp<std::uintmax_t>(fs::file_size(path_), kLeast, kMost);
+    constexpr std::uintmax_t kLeast = 1 << 20;
+    const auto bytes = std::clamp<std::uintmax_t>(fs::file_size(path_), kLeast, kMostBytes);
     sqlite3_limit(handle_.database, SQLITE_LIMIT_LENGTH, static_cast<int>(bytes));
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "../names.h"
 #include "delio/core/error.h"
 #include "mcap_file.h"
 #include "ros2_database.h"
@@ -37,8 +38,8 @@ void Ros2Folder::readMetadata(const std::string& yaml) {
     for (const auto& file : bag["relative_file_paths"]) {
         // Older bags have their own folder's name in it.
         const fs::path name = file.as<std::string>(), inside = fs::path(folder_) / name;
-        files_.push_back(
-            (fs::exists(inside) ? inside : fs::path(folder_) / name.filename()).string());
+        const bool isThere = staysInside(name) && fs::exists(inside);
+        files_.push_back((isThere ? inside : fs::path(folder_) / name.filename()).string());
     }
     for (const auto& topic : bag["topics_with_message_count"]) {
         const auto about = topic["topic_metadata"];
@@ -50,7 +51,7 @@ void Ros2Folder::readMetadata(const std::string& yaml) {
 void Ros2Folder::open() {
     path_ = files_[done_];
     const std::string extension = fs::path(path_).extension().string();
-    if (!fs::exists(path_)) throw Error("is not there, though metadata.yaml names it");
+    if (!fs::is_regular_file(path_)) throw Error("is not there, though metadata.yaml names it");
     if (extension == ".mcap")
         source_ = std::make_unique<McapFile>(path_);
     else

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "../most_bytes.h"
 #include "delio/core/error.h"
 
 namespace delio::io {
@@ -27,13 +28,16 @@ struct Progress {
 template <typename Step>
 void unpackBy(const std::string& name, const Buffer& packed, std::uint64_t size, Buffer& out,
               const Step& step) {
-    constexpr std::uint64_t kFirst = 1 << 20;
+    // Memory grows with what comes out, at first by copies, then in place: large memory that is
+    // reserved takes none until it is written to.
+    constexpr std::uint64_t kFirst = 1 << 20, kCopied = 16 << 20;
     std::size_t taken = 0, given = 0;
     for (bool ended = false; !ended;) {
         // One byte of room more than announced tells a chunk that is longer.
-        if (given == out.size() || out.empty())
-            out.resize(std::min<std::uint64_t>(
-                size + 1, std::max<std::uint64_t>({kFirst, 2 * given, out.capacity()})));
+        if (given == out.size() || out.empty()) {
+            if (given >= kCopied) out.reserve(size + 1);
+            out.resize(std::min(size + 1, std::max<std::uint64_t>(kFirst, 2 * given)));
+        }
         const Progress progress = step(packed.data() + taken, packed.size() - taken,
                                        out.data() + given, out.size() - given);
         taken += progress.taken;
@@ -99,9 +103,7 @@ void unpackZstd(const Buffer& packed, std::uint64_t size, Buffer& out) {
 }  // namespace
 
 void unpack(const std::string& compression, const Buffer& packed, std::uint64_t size, Buffer& out) {
-    // More than any chunk that is written; keeps sizes within what the libraries count with.
-    constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
-    if (size > kMost)
+    if (size > kMostBytes)
         throw Error("is damaged: a chunk of " + std::to_string(size) + " bytes is announced");
     out.clear();
     if (compression == "bz2")

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstring>
 
+#include "../most_bytes.h"
 #include "number_line.h"
 
 namespace delio::io {
@@ -109,6 +110,7 @@ CloudRecords readRecords(RecordFile& file, const std::vector<Column>& columns, s
     const std::size_t step = records.layout.step;
     const std::size_t whole = step == 0 ? 0 : file.bytesLeft() / step;
     if (step == 0 || count > whole) file.refuseCut(whole, count);
+    if (count * step > kMostBytes) file.refuse("it is too large for a scan");
     records.bytes.resize(count * step);
     file.stream().read(reinterpret_cast<char*>(records.bytes.data()),
                        static_cast<std::streamsize>(records.bytes.size()));

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "../side_file.h"
 #include "date_text.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
@@ -41,6 +42,7 @@ std::vector<fs::path> scansIn(const fs::path& folder) {
 }
 
 std::string textOf(const fs::path& file) {
+    isFileThere(file);
     std::ifstream in(file, std::ios::binary);
     if (!in) throw Error("cannot read '" + file.string() + "'");
     std::ostringstream text;

@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "../most_bytes.h"
 #include "pcd_header.h"
 
 namespace delio::io {
@@ -18,7 +19,8 @@ std::vector<std::uint8_t> decompressed(RecordFile& file, std::size_t count, std:
     if (left < sizeof(sizes) || !file.stream() || sizes[0] > left - sizeof(sizes))
         file.refuseCut(0, count);
     constexpr std::size_t kMostShrunk = 88;  // LZF's 3 bytes for 264
-    if (sizes[1] / stride != count || sizes[1] % stride != 0 || sizes[1] / kMostShrunk > sizes[0])
+    if (sizes[1] / stride != count || sizes[1] % stride != 0 || sizes[1] / kMostShrunk > sizes[0] ||
+        sizes[1] > kMostBytes)
         file.refuse("the size of its data is not that of " + std::to_string(count) + " points");
     std::vector<std::uint8_t> packed(sizes[0]), bytes(sizes[1]);
     file.stream().read(reinterpret_cast<char*>(packed.data()),

@@ -5,7 +5,8 @@
 namespace delio::io {
 namespace {
 constexpr std::size_t kMostOpen = 32;
-constexpr std::size_t kLargest = 65535;  // bytes of a datagram
+constexpr std::size_t kLargest = 65535;          // bytes of a datagram
+constexpr std::size_t kMostHeld = 4 * kLargest;  // of one, sent again some times
 }  // namespace
 
 bool IpFragments::complete(const Datagram& datagram) {
@@ -30,6 +31,11 @@ std::optional<std::vector<std::uint8_t>> IpFragments::add(const Key& key, std::s
         found = std::prev(open_.end());
     }
     found->parts[offset].assign(bytes, bytes + count);
+    found->held += count;
+    if (found->held > kMostHeld) {  // parts that overlap for ever make no datagram
+        open_.erase(found);
+        return {};
+    }
     if (last) found->size = offset + count;
     if (!complete(*found)) return {};
     std::vector<std::uint8_t> whole(found->size);

@@ -26,6 +26,7 @@ class IpFragments {
         Key key;
         std::map<std::size_t, std::vector<std::uint8_t>> parts;
         std::size_t size = 0;  //!< 0: its end was not met yet
+        std::size_t held = 0;  //!< bytes that came of it, again and again
     };
     static bool complete(const Datagram& datagram);
 
