@@ -47,6 +47,7 @@ void check(const std::string& path, const Known& known) {
         }
     }
     EXPECT_EQ(points, known.points) << path;
+    EXPECT_TRUE(reader->recording().findings.empty()) << reader->recording().findings[0];
     for (std::size_t i = 2; i < stamps_s.size(); ++i)
         EXPECT_NEAR(stamps_s[i] - stamps_s[i - 1], known.period_s, 0.01 * known.period_s);
     EXPECT_NEAR(reader->fraction().value_or(0), 1, 1e-9);

@@ -225,8 +225,10 @@ void addTurn(io::PacketDecoder& decoder, const OusterToy& toy, std::uint16_t fra
 void expectTimesOfAWholeTurn(const Scan& scan, std::uint16_t frame) {
     EXPECT_NEAR(scan.stamp_s, kNow_s + frame * 512 * 195312e-9, 1e-6);
     ASSERT_EQ(scan.times_s.size(), 16U * 512);
-    for (std::size_t i = 0; i < scan.times_s.size(); ++i)
-        ASSERT_NEAR(scan.times_s[i], static_cast<double>(i / 16) * 195312e-9, 1e-6) << i;
+    for (std::size_t i = 0; i < scan.times_s.size(); ++i) {
+        const std::size_t column = i / 16;
+        ASSERT_NEAR(scan.times_s[i], static_cast<double>(column) * 195312e-9, 1e-6) << i;
+    }
 }
 
 TEST(PacketsOuster, WrongTimesOfColumnsAreInterpolated) {
