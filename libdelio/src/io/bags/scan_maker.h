@@ -25,7 +25,7 @@ class ScanMaker {
 
     /** Throws Error, which does not name the file, for a message that cannot be decoded. */
     virtual void add(const Message& message) = 0;
-    /** There are no more messages. Throws as add(). */
+    /** There are no more messages. */
     virtual void finish() = 0;
     /** The next scan, if there is one, stamped in Unix seconds; the index is the caller's. */
     virtual std::optional<Scan> take() = 0;
@@ -38,6 +38,7 @@ class ScanMaker {
 /** A scan a message, stamped as its header says, or with the time at which it was recorded where
  *  that is zero. */
 std::unique_ptr<ScanMaker> makeCloudMaker();
-/** Of messages with packets, of Velodyne or of Ouster: a scan a turn, whatever a message holds. */
+/** Of messages with packets, of Velodyne or of Ouster: a scan a turn, whatever a message holds.
+ *  finish() throws Error where no scan was made of the packets. */
 std::unique_ptr<ScanMaker> makePacketMaker(ScanType type, std::unique_ptr<PacketDecoder> decoder);
 }  // namespace delio::io
