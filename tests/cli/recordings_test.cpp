@@ -176,7 +176,13 @@ TEST_F(Recordings, PcapsOfAnOuster) {
     const auto run = slamOf(pcap, info);
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(posesOf(out_).size(), 3U);
-    expectFailure(slamOf(pcap, {"--force"}), 1, {"--sensor-info"});
+    EXPECT_EQ(slamOf(pcap, {"--force"}).exitCode, 0);  // the json is found by its name
+    const auto alone = folder_ / "alone.pcap";
+    fs::create_symlink(pcap, alone);
+    expectFailure(slamOf(alone, {"--force"}), 1, {"--sensor-info"});
+    expectFailure(
+        slamOf(pcap, {"--force", "--sensor-info", ouster / "OS-0-32-U1_v2.2.0_1024x10.json"}), 1,
+        {"122201000998", "992137000142"});
     expectFailure(slamOf(pcap, {"--force", "--sensor-info", folder_ / "none.json"}), 1,
                   {"none.json"});
 }

@@ -9,6 +9,8 @@ struct OusterToy {
     std::string profile = "RNG19_RFL8_SIG16_NIR16";
     std::uint32_t range_mm = 5000;
     std::uint64_t start_ns = 1000000000;  //!< its clock counts from when it was switched on
+    std::uint64_t serial = 0;             //!< 0: none
+    std::uint32_t initialization = 0;     //!< likewise
 
     bool legacy() const { return profile == "LEGACY"; }
     std::size_t pixel() const {
@@ -22,17 +24,21 @@ struct OusterToy {
             up.push_back(15 - 2 * row);
             azimuths.push_back(row % 2 ? 3 : -3);
         }
-        return {{"beam_altitude_angles", up},
-                {"beam_azimuth_angles", azimuths},
-                {"lidar_origin_to_beam_origin_mm", 20},
-                {"lidar_to_sensor_transform", {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 36, 0, 0, 0, 1}},
-                {"prod_line", "OS-1-16"},
-                {"lidar_mode", "512x10"},
-                {"data_format",
-                 {{"columns_per_frame", 512},
-                  {"columns_per_packet", 16},
-                  {"pixels_per_column", 16},
-                  {"udp_profile_lidar", profile}}}};
+        nlohmann::json json{
+            {"beam_altitude_angles", up},
+            {"beam_azimuth_angles", azimuths},
+            {"lidar_origin_to_beam_origin_mm", 20},
+            {"lidar_to_sensor_transform", {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 36, 0, 0, 0, 1}},
+            {"prod_line", "OS-1-16"},
+            {"lidar_mode", "512x10"},
+            {"data_format",
+             {{"columns_per_frame", 512},
+              {"columns_per_packet", 16},
+              {"pixels_per_column", 16},
+              {"udp_profile_lidar", profile}}}};
+        if (serial > 0) json["prod_sn"] = std::to_string(serial);
+        if (initialization > 0) json["initialization_id"] = initialization;
+        return json;
     }
 
     /** Packet `i` of turn `frame`, 32 a turn, with reflectivity 51 everywhere. */
@@ -40,7 +46,10 @@ struct OusterToy {
         const std::size_t head = legacy() ? 0 : 32, columnHead = legacy() ? 16 : 12;
         const std::size_t column = columnHead + 16 * pixel() + (legacy() ? 4 : 0);
         Bytes bytes(2 * head + 16 * column);
-        if (!legacy()) putAt(bytes, 2, frame);
+        if (!legacy()) {
+            putAt(bytes, 2, frame);
+            putAt(bytes, 4, initialization | serial << 24);  // 24 and 40 bits
+        }
         for (std::size_t c = 0; c < 16; ++c) {
             const std::size_t at = head + c * column;
             const auto place = static_cast<std::uint16_t>(16 * i + c);

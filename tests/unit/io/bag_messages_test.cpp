@@ -30,10 +30,11 @@ class Notes : public io::PacketDecoder {
  public:
     explicit Notes(std::vector<double>& times) : times_(times) {}
     bool takes(std::size_t bytes) const override { return bytes == 1206; }
-    void add(const std::uint8_t* payload, std::size_t bytes, double received_s) override {
+    bool add(const std::uint8_t* payload, std::size_t bytes, double received_s) override {
         EXPECT_EQ(bytes, 1206U);
         EXPECT_EQ(payload[0], payload[1205]);
         times_.push_back(received_s);
+        return true;
     }
     void finish() override { finished_ = true; }
     std::optional<Scan> take() override {
@@ -168,6 +169,11 @@ TEST(BagMessages, OusterPackets) {
         maker->add(messageOf(message(1206), kind, 7));
         maker->add(messageOf(message(48), kind, 8));  // of its IMU
         EXPECT_EQ(times, std::vector<double>{7});
+        maker->finish();
+        const auto ofOther =
+            io::makePacketMaker(io::ScanType::kOuster, std::make_unique<Notes>(times));
+        ofOther->add(messageOf(message(6464), kind, 7));
+        EXPECT_THROW(ofOther->finish(), Error);
         std::string lie = message(1206);
         lie.resize(100);
         EXPECT_THROW(maker->add(messageOf(lie, kind)), Error);

@@ -1,4 +1,5 @@
 #include "bag_files.h"
+#include "ouster_packets.h"
 
 namespace delio::bag_test {
 namespace {
@@ -72,10 +73,37 @@ TEST(BagTopics, OusterNeedsItsDescription) {
     const std::string packet =
         test::WireWriter(Kind::kRos1).byteArray(std::string(48, 'i')).message();
     bag.messages = {{0, kBegin_s, packet}, {1, kBegin_s, packet}};
-    expectHolds(faultWith(bag, ""), {"--sensor", ".json"});
+    expectHolds(faultWith(bag, ""), {"--sensor-info", ".json"});
     bag.messages.push_back({2, kBegin_s, plainText("no json")});
     const std::string fault = faultWith(bag, "");
     EXPECT_NE(fault, "");
-    EXPECT_EQ(fault.find("lay it beside"), std::string::npos) << fault;
+    EXPECT_EQ(fault.find("is not there"), std::string::npos) << fault;
+}
+
+TEST(BagTopics, EachOusterHasItsOwnDescription) {
+    test::OusterToy left, right;
+    left.serial = 5;
+    right.serial = 6;
+    BagContents bag;
+    bag.topics = {{"/left/metadata", "std_msgs/String"},
+                  {"/right/metadata", "std_msgs/String"},
+                  {"/right/lidar_packets", "ouster_ros/PacketMsg"}};
+    bag.messages = {{0, kBegin_s, plainText(left.json().dump())},
+                    {1, kBegin_s, plainText(right.json().dump())}};
+    for (std::size_t i = 0; i < 32; ++i) {
+        const test::Bytes packet = right.packet(0, i);
+        const std::string bytes(packet.begin(), packet.end());
+        bag.messages.push_back(
+            {2, kBegin_s, test::WireWriter(Kind::kRos1).byteArray(bytes).message()});
+    }
+    const test::TemporaryFolder folder;
+    const auto file = folder / "d.bag";
+    writeRos1Bag(file, bag);
+    io::ScanSource source{file.string(), "", "", ""};
+    EXPECT_TRUE(io::openRos1Bag(source)->next());
+    source.sensorFile = (folder / "left.json").string();
+    test::writeText(source.sensorFile, left.json().dump());
+    expectHolds(readAll(io::openRos1Bag, source).fault,
+                {"d.bag", "serial number 5", "serial number 6"});
 }
 }  // namespace delio::bag_test

@@ -163,6 +163,106 @@ TEST(PacketsPcap, TheOnlyDescriptionInTheFolderIsTaken) {
     EXPECT_EQ(readAll(source).scans.size(), 1U);
 }
 
+void writeOuster(const std::filesystem::path& file, const OusterToy& toy,
+                 std::size_t packets = 32) {
+    PcapWriter writer;
+    for (std::size_t i = 0; i < packets; ++i) writer.add(toy.packet(0, i), kNow_s);
+    writer.write(file.string());
+}
+
+/** The json that an Ouster's recording was read with. */
+std::string describedBy(const std::filesystem::path& pcap) {
+    io::ScanSource source;
+    source.path = pcap.string();
+    return io::openPcap(source)->recording().kind;
+}
+
+TEST(PacketsPcap, OfSeveralDescriptionsTheMostAlikeIsTaken) {
+    const TemporaryFolder folder;
+    const OusterToy toy{"LEGACY"};
+    for (const char* const name : {"window1", "window2", "OS-1_v2.3_lb_n3"})
+        writeOuster(folder / (std::string(name) + ".pcap"), toy);
+    for (const char* const name : {"window1_0", "window2_0", "OS-1_v2.3", "OS-0_v2.3", "other"})
+        test::writeText(folder / (std::string(name) + ".json"), toy.json().dump());
+    test::writeText(folder / "window1_digest.json", "{}");
+    EXPECT_EQ(describedBy(folder / "window1.pcap"), "pcap, described by 'window1_0.json'");
+    EXPECT_EQ(describedBy(folder / "window2.pcap"), "pcap, described by 'window2_0.json'");
+    EXPECT_EQ(describedBy(folder / "OS-1_v2.3_lb_n3.pcap"), "pcap, described by 'OS-1_v2.3.json'");
+    test::writeText(folder / "window1_1.json", toy.json().dump());
+    const std::string fault = readAll(folder / "window1.pcap").fault;
+    for (const char* const name : {"window1.pcap", "window1_0.json", "window1_1.json"})
+        EXPECT_NE(fault.find(name), std::string::npos) << fault;
+    EXPECT_EQ(fault.find("other.json"), std::string::npos) << fault;
+    test::writeText(folder / "window1.json", toy.json().dump());
+    EXPECT_EQ(describedBy(folder / "window1.pcap"), "pcap");
+}
+
+TEST(PacketsPcap, ADescriptionThatDoesNotFitIsNotTaken) {
+    const TemporaryFolder folder;
+    OusterToy toy, other;
+    const OusterToy longer{"RNG19_RFL8_SIG16_NIR16_DUAL"};
+    toy.serial = 5;
+    other.serial = 6;
+    writeOuster(folder / "drive.pcap", toy);
+    test::writeText(folder / "drive_a.json", other.json().dump());
+    // The only one says in what it does not fit.
+    std::string fault = readAll(folder / "drive.pcap").fault;
+    for (const char* const part : {"drive.pcap", "drive_a.json", "number 5", "number 6"})
+        EXPECT_NE(fault.find(part), std::string::npos) << fault;
+    test::writeText(folder / "drive_b.json", longer.json().dump());
+    test::writeText(folder / "sensor.json", toy.json().dump());
+    EXPECT_EQ(describedBy(folder / "drive.pcap"), "pcap, described by 'sensor.json'");
+    io::ScanSource source;
+    source.path = (folder / "drive.pcap").string();
+    source.sensorFile = (folder / "drive_a.json").string();
+    fault = readAll(source).fault;
+    EXPECT_NE(fault.find("serial number 5"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("serial number 6"), std::string::npos) << fault;
+}
+
+TEST(PacketsPcap, TheDescriptionChoosesTheSensor) {
+    const TemporaryFolder folder;
+    OusterToy left, right;
+    left.serial = 5;
+    right.serial = 6;
+    right.range_mm = 7000;
+    PcapWriter writer;
+    for (std::size_t i = 0; i < 32; ++i)
+        for (const OusterToy* const toy : {&left, &right}) {
+            writer.from = toy == &left ? 0xC0A801C9 : 0xC0A801CA;
+            writer.add(toy->packet(0, i), kNow_s);
+        }
+    writer.write((folder / "two.pcap").string());
+    test::writeText(folder / "right.json", right.json().dump());
+    const auto outcome = readAll(folder / "two.pcap");
+    EXPECT_EQ(outcome.fault, "");
+    ASSERT_EQ(outcome.scans.size(), 1U);
+    float x = 0, y = 0, z = 0;
+    outcome.scans[0].points->getPoint(0, x, y, z);
+    EXPECT_GT(std::hypot(x, y, z), 6);
+    EXPECT_EQ(outcome.others, std::set<std::string>{"ouster:2368@192.168.1.201"});
+}
+
+TEST(PacketsPcap, LessThanHalfATurnSaysSo) {
+    const TemporaryFolder folder;
+    writeOuster(folder / "short.pcap", OusterToy(), 2);
+    test::writeText(folder / "short.json", OusterToy().json().dump());
+    auto outcome = readAll(folder / "short.pcap");
+    EXPECT_TRUE(outcome.scans.empty());
+    EXPECT_NE(outcome.fault.find("short.pcap': only 2 of the 32 packets of a turn"),
+              std::string::npos)
+        << outcome.fault;
+    PcapWriter writer;
+    addVelodyne(writer, 1);
+    constexpr std::size_t kPacket = 16 + 14 + 28 + 1206;
+    writer.records.resize(20 * kPacket);
+    writer.write((folder / "velodyne.pcap").string());
+    outcome = readAll(folder / "velodyne.pcap");
+    EXPECT_NE(outcome.fault.find("only 95 of 360 degrees in 20 packets of a Velodyne VLP-16"),
+              std::string::npos)
+        << outcome.fault;
+}
+
 TEST(PacketsPcap, OneOfTwoSensors) {
     const TemporaryFolder folder;
     PcapWriter writer;

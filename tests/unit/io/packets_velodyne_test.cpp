@@ -172,6 +172,54 @@ TEST(PacketsVelodyne, OtherSensorsAreErrors) {
               std::string::npos);
 }
 
+TEST(PacketsVelodyne, ModelsThatAreNotDecodedAreNamed) {
+    Bytes packet = packet32C(0, 2500);
+    const auto faultWith = [&](std::uint8_t factoryByte) {
+        packet[1205] = factoryByte;
+        return faultOf({packet});
+    };
+    EXPECT_NE(faultWith(0x23).find("Velodyne VLP-32A or VLP-32B are not decoded"),
+              std::string::npos);
+    EXPECT_NE(faultWith(0x31).find("Velodyne Velarray are not decoded"), std::string::npos);
+    EXPECT_NE(faultWith(0xA1).find("Velodyne VLS-128"), std::string::npos);
+    // Four banks of 32 lasers, whatever the last byte is.
+    for (std::size_t b = 0; b < 12; ++b)
+        packet[100 * b + 1] = static_cast<std::uint8_t>(0xEE - 0x11 * (b % 4));
+    for (const int byte : {0xA1, 0x22, 0x00}) {
+        const std::string fault = faultWith(static_cast<std::uint8_t>(byte));
+        EXPECT_NE(fault.find("Velodyne VLS-128"), std::string::npos) << fault;
+        EXPECT_EQ(fault.find("calibration"), std::string::npos) << fault;
+    }
+}
+
+TEST(PacketsVelodyne, LessThanHalfATurnSaysSo) {
+    auto packets = packetsOf(vlp16(), 1);
+    packets.resize(30);
+    EXPECT_NE(faultOf(packets).find("only 143 of 360 degrees in 30 packets"), std::string::npos)
+        << faultOf(packets);
+    EXPECT_EQ(faultOf({}), "");
+}
+
+TEST(PacketsVelodyne, WrongClocksOfPacketsAreInterpolated) {
+    const auto right = scansOf(packetsOf(vlp16(), 3));
+    auto packets = packetsOf(vlp16(), 3);
+    for (const std::size_t i : {10U, 80U, 81U, 100U})  // within what a recorder may be late
+        putAt(packets[i], 1200, static_cast<std::uint32_t>(1600000000 + 1000 * i + 330000));
+    putAt(packets[120], 1200, 0U);
+    const auto decoder = io::velodyneDecoder("");
+    const auto scans = scansOf(*decoder, packets);
+    ASSERT_EQ(scans.size(), 3U);
+    for (std::size_t s = 0; s < scans.size(); ++s) {
+        EXPECT_NEAR(scans[s].stamp_s, right[s].stamp_s, 1e-3);
+        ASSERT_EQ(scans[s].times_s.size(), right[s].times_s.size());
+        for (std::size_t i = 0; i < scans[s].times_s.size(); ++i)
+            ASSERT_NEAR(scans[s].times_s[i], right[s].times_s[i], 1.5e-3) << s << " " << i;
+    }
+    ASSERT_EQ(decoder->findings().size(), 1U);
+    EXPECT_NE(decoder->findings()[0].find("4 packets (first in scan 0)"), std::string::npos)
+        << decoder->findings()[0];
+}
+
 TEST(PacketsVelodyne, CalibrationsThatClaimTooMuchAreRefused) {
     const test::TemporaryFolder folder;
     const std::string file = (folder / "sensor.yaml").string();
@@ -197,5 +245,12 @@ TEST(PacketsVelodyne, ClocksThatAreNotSetOrStand) {
     EXPECT_NEAR(unset.timeOf(900001000, kNow_s + 0.2), kNow_s + 0.102, 1e-6);
     EXPECT_NEAR(stands.timeOf(0, kNow_s), kNow_s, 1e-6);
     EXPECT_NEAR(stands.timeOf(0, kNow_s + 0.5), kNow_s + 0.5, 1e-6);
+}
+
+TEST(PacketsVelodyne, ARecordersClockMayLeap) {
+    io::VelodyneClock clock;
+    EXPECT_NEAR(clock.timeOf(1600000500, kNow_s), kNow_s + 0.0005, 1e-6);
+    EXPECT_NEAR(clock.timeOf(1600001500, kNow_s + 1e6), kNow_s + 0.0015, 1e-6);
+    EXPECT_NEAR(clock.timeOf(1600002500, kNow_s + 0.002), kNow_s + 0.0025, 1e-6);
 }
 }  // namespace

@@ -18,6 +18,9 @@ struct Recording {
     std::optional<std::size_t> compensatedAfterAll;
     std::optional<std::size_t> scans;   //!< where they are counted without reading them
     std::vector<std::string> warnings;  //!< what is missing but not needed
+    /** What the reader left out, or took in another way than it was written, a line each with how
+     *  often: complete when the last scan was read. */
+    std::vector<std::string> findings;
 };
 
 /** In one line: "Velodyne VLP-16, 10 Hz, points with times, not de-skewed by the recorder, 3213

@@ -25,7 +25,7 @@ class BagReader : public ScanReader {
         } else if (type_ == ScanType::kVelodyne) {
             maker_ = makePacketMaker(type_, velodyneDecoder(source.sensorFile));
         } else {
-            const SideFile json = ousterDescription(source, open);
+            const SideFile json = ousterDescription(source, topic_.name, open);
             maker_ = makePacketMaker(type_, ousterDecoder(json.text, json.name));
         }
         describe();
@@ -60,6 +60,7 @@ class BagReader : public ScanReader {
         Recording recording;
         recording.kind = container_ + ", topic " + topic_.name;
         recording.sensor = maker_->sensor();
+        recording.findings = maker_->findings();
         if (type_ == ScanType::kCloud)
             recording.scans = topic_.messages;
         else
@@ -77,8 +78,7 @@ class BagReader : public ScanReader {
             if (finished_) return std::nullopt;
             const auto message = bag_->next();
             if (!message) {
-                maker_->finish();
-                finished_ = true;
+                finish();
             } else {
                 decode(*message);
             }
@@ -91,6 +91,15 @@ class BagReader : public ScanReader {
         } catch (const Error& e) {
             const std::string scan = "scan " + std::to_string(count_) + " of '" + bag_->path();
             fail(scan + "' (topic " + topic_.name + "): " + e.what());
+        }
+    }
+
+    void finish() {
+        finished_ = true;
+        try {
+            maker_->finish();
+        } catch (const Error& e) {
+            fail("'" + bag_->path() + "' (topic " + topic_.name + "): " + e.what());
         }
     }
 

@@ -1,8 +1,8 @@
 #include "bag_topics.h"
 
 #include <algorithm>
-#include <filesystem>
 
+#include "../packets/ouster_json.h"
 #include "../side_file.h"
 #include "delio/core/error.h"
 #include "scan_maker.h"
@@ -22,16 +22,18 @@ bool endsIn(const std::string& text, const std::string& end) {
            text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/** Empty: the bag does not say. */
-std::string recordedDescription(const OpenSource& open) {
+/** What the bag says of the sensor of `topic`; empty: it does not. */
+std::string recordedDescription(const std::string& topic, const OpenSource& open) {
     const auto bag = open();
-    const auto& topics = bag->topics();
-    const auto found = std::find_if(topics.begin(), topics.end(), [](const Topic& topic) {
-        return endsIn(topic.name, "metadata") &&
-               (topic.type == "std_msgs/String" || topic.type == "std_msgs/msg/String");
-    });
-    if (found == topics.end()) return "";
-    bag->only(found->name);
+    const Topic* found = nullptr;
+    for (const Topic& other : bag->topics()) {
+        const bool says = endsIn(other.name, "metadata") &&
+                          (other.type == "std_msgs/String" || other.type == "std_msgs/msg/String");
+        if (says && (!found || inCommon(other.name, topic) > inCommon(found->name, topic)))
+            found = &other;
+    }
+    if (!found) return "";
+    bag->only(std::string(found->name));
     try {
         const auto message = bag->next();
         return message ? WireReader(*message).text() : "";
@@ -58,7 +60,8 @@ Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
     return *found;
 }
 
-SideFile ousterDescription(const ScanSource& source, const OpenSource& open) {
+SideFile ousterDescription(const ScanSource& source, const std::string& topic,
+                           const OpenSource& open) {
     if (!source.sensorFile.empty()) {
         SideFile file = sideFile(source.sensorFile);
         if (file.text.empty())
@@ -66,16 +69,8 @@ SideFile ousterDescription(const ScanSource& source, const OpenSource& open) {
                         "' is missing or empty");
         return file;
     }
-    if (std::string text = recordedDescription(open); !text.empty())
+    if (std::string text = recordedDescription(topic, open); !text.empty())
         return {source.path + ", topic metadata", text};
-    std::filesystem::path bag = source.path;
-    if (!bag.has_filename()) bag = bag.parent_path();  // DRIVE/
-    SideFile beside = sideFile(bag.replace_extension(".json").string());
-    if (beside.text.empty())
-        throw Error(
-            "holds an Ouster's packets but not the sensor's description: give its .json "
-            "with --sensor-info, or lay it beside as '" +
-            beside.name + "'");
-    return beside;
+    return ousterJsonBeside(source.path, nullptr, 0);
 }
 }  // namespace delio::io

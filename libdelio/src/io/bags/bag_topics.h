@@ -11,7 +11,10 @@ namespace delio::io {
  *  is. */
 Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked);
 
-/** An Ouster's json: the file `source.sensorFile`, what a topic .../metadata of the bag says, or
- *  the .json beside the bag. Throws Error where there is none of them. */
-SideFile ousterDescription(const ScanSource& source, const OpenSource& open);
+/** The json of the Ouster whose packets are in `topic`: the file `source.sensorFile`, what the
+ * topic
+ *  .../metadata of the bag says whose name has the most in common with it, or the .json beside the
+ *  bag. Throws Error where there is none of them. */
+SideFile ousterDescription(const ScanSource& source, const std::string& topic,
+                           const OpenSource& open);
 }  // namespace delio::io

@@ -19,9 +19,16 @@ class PacketMaker : public ScanMaker {
         else
             addVelodyneScan(in, message.log_s);
     }
-    void finish() override { decoder_->finish(); }
+    void finish() override {
+        if (!anyTaken_ && otherBytes_ > 0)
+            throw Error("packets of " + std::to_string(otherBytes_) +
+                        " bytes, which the sensor's json does not describe; give the json that "
+                        "was recorded with them (--sensor-info)");
+        decoder_->finish();
+    }
     std::optional<Scan> take() override { return decoder_->take(); }
     std::string sensor() const override { return decoder_->sensor(); }
+    std::vector<std::string> findings() const override { return decoder_->findings(); }
 
  private:
     void addVelodyneScan(WireReader& in, double log_s) {
@@ -36,11 +43,18 @@ class PacketMaker : public ScanMaker {
         }
     }
     void addPacket(const Bytes& packet, double received_s) {
-        if (decoder_->takes(packet.size)) decoder_->add(packet.data, packet.size, received_s);
+        if (!decoder_->takes(packet.size)) {
+            otherBytes_ = packet.size;
+            return;
+        }
+        anyTaken_ = true;
+        decoder_->add(packet.data, packet.size, received_s);
     }
 
     ScanType type_;
     std::unique_ptr<PacketDecoder> decoder_;
+    bool anyTaken_ = false;
+    std::size_t otherBytes_ = 0;  //!< of a packet that is of another size
 };
 }  // namespace
 

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "../packets/packet_decoder.h"
 #include "delio/scan/scan.h"
@@ -30,11 +31,14 @@ class ScanMaker {
     virtual std::optional<Scan> take() = 0;
     /** e.g. "Velodyne VLP-16"; empty: not known. */
     virtual std::string sensor() const = 0;
+    /** What was left out or taken in another way than it was written, a line each. */
+    virtual std::vector<std::string> findings() const { return {}; }
 };
 
 /** A scan a message, stamped as its header says, or with the time at which it was recorded where
  *  that is zero. */
 std::unique_ptr<ScanMaker> makeCloudMaker();
-/** Of messages with packets, of Velodyne or of Ouster: a scan a turn, whatever a message holds. */
+/** Of messages with packets, of Velodyne or of Ouster: a scan a turn, whatever a message holds.
+ *  finish() throws Error where no scan was made of the packets. */
 std::unique_ptr<ScanMaker> makePacketMaker(ScanType type, std::unique_ptr<PacketDecoder> decoder);
 }  // namespace delio::io

@@ -6,6 +6,7 @@
 
 #include "../drive_clock.h"
 #include "delio/core/error.h"
+#include "happened.h"
 #include "ouster_beams.h"
 #include "ouster_frame.h"
 #include "packet_decoder.h"
@@ -15,48 +16,84 @@ namespace {
 /** Takes the first return, the strongest. Points come column by column, so in the order of time,
  *  and upper rows first; their intensity is the reflectivity, 255 being 1. Columns that the sensor
  *  calls invalid and pixels without a return are left out, and so is what comes of a turn after the
- *  next one began. */
+ *  next one began, and the packets of another sensor than the json describes. */
 class OusterDecoder : public PacketDecoder {
  public:
     OusterDecoder(const std::string& json, const std::string& name)
         : info_(readOusterInfo(json, name)), name_(name), beams_(info_) {}
 
     bool takes(std::size_t bytes) const override { return bytes == info_.packetBytes(); }
-    void add(const std::uint8_t* payload, std::size_t bytes, double received_s) override;
-    void finish() override { endFrame(true); }
+    bool add(const std::uint8_t* payload, std::size_t bytes, double received_s) override;
+    void finish() override;
     std::optional<Scan> take() override;
     std::string sensor() const override {
         return info_.product.empty() ? "Ouster" : "Ouster " + info_.product;
     }
+    std::vector<std::string> findings() const override;
 
  private:
-    /** Seconds from the sensor's clock to Unix time: none for one that keeps that itself. */
-    void setClock(std::uint64_t time_ns, double received_s);
+    void leaveOut(const OusterIds& ids);
+    Error foreign() const;
+    /** Unix time at which the turn began. */
+    double stampOf(const OusterFrame& frame, const std::optional<OusterTimes>& times);
     void endFrame(bool partial);
-    Scan scanOf(const OusterFrame& frame) const;
+    Scan scanOf(const OusterFrame& frame);
 
     OusterInfo info_;
     std::string name_;
     OusterBeams beams_;
     std::optional<OusterFrame> frame_;
-    std::optional<double> clockOffset_s_;
-    bool first_ = true;  //!< the recording may begin within this frame
+    std::optional<double> clockOffset_s_;  //!< to Unix time, from a clock that does not keep it
+    double delay_s_ = 0;                   //!< from a turn's begin to its recording
+    bool first_ = true;                    //!< the recording may begin within this frame
+    std::size_t packets_ = 0, made_ = 0;   //!< of this sensor; scans
+    OusterIds foreignIds_;                 //!< of the first packet of another sensor
+    Happened foreign_, mended_, untimed_;
     std::deque<Scan> scans_;
 };
 
-void OusterDecoder::setClock(std::uint64_t time_ns, double received_s) {
-    constexpr std::uint64_t kUnix_ns = 1000000000ULL * 1000000000ULL;
-    if (time_ns >= kUnix_ns)
-        clockOffset_s_ = 0;
-    else if (!clockOffset_s_)
-        clockOffset_s_ = received_s - 1e-9 * static_cast<double>(time_ns);
+std::string textOf(const OusterIds& ids) {
+    return "serial number " + std::to_string(ids.serial) + " (initialization_id " +
+           std::to_string(ids.initialization) + ")";
 }
 
-void OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double received_s) {
+Error OusterDecoder::foreign() const {
+    std::string text = "the packets are of the Ouster with " + textOf(foreignIds_) + ", '" + name_ +
+                       "' describes that with " + textOf(info_.ids) +
+                       "; give the json that was recorded with them (--sensor-info)";
+    if (foreignIds_.serial == info_.ids.serial)
+        text += ", or take initialization_id out of it if the sensor was only restarted in between";
+    return Error(text);
+}
+
+/** Few packets of another sensor may come first: then it is not known yet that all of them are. */
+void OusterDecoder::leaveOut(const OusterIds& ids) {
+    constexpr std::size_t kMost = 1000;
+    if (foreign_.count == 0) foreignIds_ = ids;
+    foreign_.add(1, made_);
+    if (packets_ == 0 && foreign_.count >= kMost) throw foreign();
+}
+
+std::vector<std::string> OusterDecoder::findings() const {
+    std::vector<std::string> findings;
+    if (packets_ > 0 && foreign_.count > 0)
+        findings.push_back("left out " + foreign_.of("packet") + " of the Ouster with " +
+                           textOf(foreignIds_) + ", which '" + name_ + "' does not describe");
+    if (mended_.count > 0) findings.push_back(interpolatedTimes(mended_.of("column")));
+    if (untimed_.count > 0) findings.push_back(noTimes(untimed_.of("turn")));
+    return findings;
+}
+
+bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double received_s) {
     if (!takes(bytes))
         throw Error("an Ouster's packet of " + std::to_string(bytes) + " bytes; '" + name_ +
                     "' describes one of " + std::to_string(info_.packetBytes()));
     const OusterPacket packet(info_, payload);
+    if (const OusterIds ids = packet.ids(); !info_.ids.fit(ids)) {
+        leaveOut(ids);
+        return false;
+    }
+    ++packets_;
     for (std::size_t column = 0; column < info_.columnsPerPacket; ++column) {
         if (!packet.valid(column)) continue;
         if (packet.place(column) >= info_.columns)
@@ -73,12 +110,38 @@ void OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double r
             first_ = false;
         }
         if (!frame_) {
-            setClock(packet.time_ns(column), received_s);
             frame_.emplace(info_);
             frame_->number = number;
+            frame_->received_s = received_s;
         }
         packet.copyTo(*frame_, column);
     }
+    return true;
+}
+
+void OusterDecoder::finish() {
+    endFrame(true);
+    if (packets_ == 0 && foreign_.count > 0) throw foreign();
+    if (packets_ == 0 || made_ > 0) return;
+    const std::size_t turn =
+        (info_.columnsUsed + info_.columnsPerPacket - 1) / info_.columnsPerPacket;
+    if (packets_ < turn)
+        throw Error("only " + std::to_string(packets_) + " of the " + std::to_string(turn) +
+                    " packets of a turn: there is no scan in less than half a turn");
+    throw Error("no scan in " + std::to_string(packets_) +
+                " packets of an Ouster: their columns are marked as not measured");
+}
+
+double OusterDecoder::stampOf(const OusterFrame& frame, const std::optional<OusterTimes>& times) {
+    constexpr std::uint64_t kUnix_ns = 1000000000ULL * 1000000000ULL;
+    if (!times) return frame.received_s - delay_s_;
+    double stamp_s = 1e-9 * static_cast<double>(times->start_ns);
+    if (times->start_ns < kUnix_ns) {
+        if (!clockOffset_s_) clockOffset_s_ = frame.received_s - stamp_s;
+        stamp_s += *clockOffset_s_;
+    }
+    delay_s_ = frame.received_s - stamp_s;
+    return stamp_s;
 }
 
 void OusterDecoder::endFrame(bool partial) {
@@ -87,21 +150,22 @@ void OusterDecoder::endFrame(bool partial) {
     frame_.reset();
 }
 
-Scan OusterDecoder::scanOf(const OusterFrame& frame) const {
+Scan OusterDecoder::scanOf(const OusterFrame& frame) {
+    const auto times = timesOf(frame);
+    if (!times) untimed_.add(1, made_);
+    if (times && times->mended > 0) mended_.add(times->mended, made_);
+    ++made_;
     std::size_t count = 0;
     for (const std::uint32_t range_mm : frame.ranges_mm) count += range_mm > 0;
     auto points = mrpt::maps::CPointsMapXYZI::Create();
     points->resize(count);
     Scan scan;
     scan.rings.reserve(count);
-    scan.times_s.reserve(count);
-    std::optional<std::uint64_t> start_ns;
-    std::size_t i = 0;
+    if (times) scan.times_s.reserve(count);
+    std::size_t i = 0, received = 0;
     for (std::size_t column = 0; column < info_.columns; ++column) {
         if (!frame.received[column]) continue;
-        if (!start_ns) start_ns = frame.times_ns[column];
-        const auto since_ns = static_cast<std::int64_t>(frame.times_ns[column] - *start_ns);
-        const auto since_s = static_cast<float>(1e-9 * static_cast<double>(since_ns));
+        const auto since_s = static_cast<float>(times ? times->since_s[received++] : 0);
         for (std::size_t row = 0; row < info_.rows; ++row) {
             const std::size_t pixel = column * info_.rows + row;
             if (frame.ranges_mm[pixel] == 0) continue;
@@ -110,12 +174,12 @@ Scan OusterDecoder::scanOf(const OusterFrame& frame) const {
             points->setPointIntensity(i++,
                                       static_cast<float>(frame.reflectivities[pixel]) / 255.0F);
             scan.rings.push_back(static_cast<std::uint16_t>(row));
-            scan.times_s.push_back(since_s);
+            if (times) scan.times_s.push_back(since_s);
         }
     }
     points->mark_as_modified();
     scan.points = points;
-    scan.stamp_s = 1e-9 * static_cast<double>(start_ns.value_or(0)) + clockOffset_s_.value_or(0);
+    scan.stamp_s = stampOf(frame, times);
     scan.time = timeOf(scan.stamp_s);
     return scan;
 }

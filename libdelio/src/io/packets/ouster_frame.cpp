@@ -1,7 +1,10 @@
 #include "ouster_frame.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+
+#include "turn_times.h"
 
 namespace delio::io {
 namespace {
@@ -12,6 +15,40 @@ Number numberAt(const std::uint8_t* bytes) {
     return number;
 }
 }  // namespace
+
+std::optional<OusterTimes> timesOf(const OusterFrame& frame) {
+    constexpr double kTolerance = 0.02;  // real columns are within 0.0005 turns of an even course
+    std::vector<double> places, times_s;
+    std::vector<std::uint64_t> told_ns;
+    for (std::size_t column = 0; column < frame.received.size(); ++column) {
+        if (!frame.received[column]) continue;
+        places.push_back(static_cast<double>(column) / static_cast<double>(frame.received.size()));
+        told_ns.push_back(frame.times_ns[column]);
+    }
+    if (told_ns.empty()) return {};
+    auto sorted = told_ns;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    for (const std::uint64_t time_ns : told_ns)
+        times_s.push_back(1e-9 * static_cast<double>(static_cast<std::int64_t>(time_ns - *middle)));
+    const auto mended = mendTurnTimes(places, kTolerance, times_s);
+    if (!mended) return {};
+    const std::int64_t first_ns = std::llround(1e9 * times_s.front());
+    OusterTimes times;
+    times.start_ns = *middle + static_cast<std::uint64_t>(first_ns);
+    for (const double time_s : times_s)
+        times.since_s.push_back(1e-9 * static_cast<double>(std::llround(1e9 * time_s) - first_ns));
+    times.mended = *mended;
+    return times;
+}
+
+OusterIds OusterPacket::ids() const {
+    if (info_.layout.legacy) return {};
+    constexpr std::uint64_t k24Bits = 0xFFFFFF, k40Bits = 0xFFFFFFFFFF;
+    const auto bits = numberAt<std::uint64_t>(bytes_ + 4);
+    return {numberAt<std::uint64_t>(bytes_ + 7) & k40Bits,
+            static_cast<std::uint32_t>(bits & k24Bits)};
+}
 
 std::uint64_t OusterPacket::time_ns(std::size_t column) const {
     return numberAt<std::uint64_t>(at(column));

@@ -1,5 +1,6 @@
 #include "ouster_info.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -50,6 +51,17 @@ class Reader {
         } catch (const Json::exception&) {
             refuse(key, "is not what it should be");
         }
+    }
+
+    /** A number, or a text of one; 0 where there is none. */
+    std::uint64_t idOf(const std::string& key) const {
+        const Json* const json = lookUp(key);
+        if (json && json->is_number_unsigned()) return json->get<std::uint64_t>();
+        std::uint64_t id = 0;
+        if (!json || !json->is_string()) return id;
+        const auto text = json->get<std::string>();
+        const char* const end = text.data() + text.size();
+        return std::from_chars(text.data(), end, id).ptr == end ? id : 0;
     }
 
     template <typename Value>
@@ -152,6 +164,8 @@ OusterInfo readOusterInfo(const std::string& json, const std::string& name) {
     const Reader reader(json, name);
     OusterInfo info;
     info.product = reader.find<std::string>("prod_line").value_or("");
+    info.ids = {reader.idOf("prod_sn"),
+                static_cast<std::uint32_t>(reader.idOf("initialization_id"))};
     readBeams(reader, info);
     info.rows = info.elevations.size();
     if (reader.find<Json>("pixels_per_column") &&

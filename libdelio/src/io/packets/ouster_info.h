@@ -18,9 +18,22 @@ struct OusterLayout {
     std::size_t reflectivityBytes = 1;
 };
 
+/** Which sensor it is, and which of its starts or changes of configuration; 0: not known. */
+struct OusterIds {
+    std::uint64_t serial = 0;          //!< prod_sn
+    std::uint32_t initialization = 0;  //!< initialization_id
+
+    /** No id that both know differs, as Ouster's SDK has it. */
+    bool fit(const OusterIds& other) const {
+        const auto same = [](auto one, auto two) { return one == 0 || two == 0 || one == two; };
+        return same(serial, other.serial) && same(initialization, other.initialization);
+    }
+};
+
 /** What an Ouster's json says of the sensor. Metres and radians. */
 struct OusterInfo {
     std::string product;  //!< e.g. "OS-1-128"; empty: it does not say
+    OusterIds ids;
     std::size_t rows = 0, columns = 0, columnsPerPacket = 16;
     std::size_t columnsUsed = 0;               //!< of a turn: the others are not sent
     std::vector<double> elevations, azimuths;  //!< one a row

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "delio/scan/scan.h"
 
@@ -19,12 +20,13 @@ class PacketDecoder {
     /** True where a payload of this size is one of the sensor's data packets. */
     virtual bool takes(std::size_t bytes) const = 0;
 
-    /** One data packet; `received_s`: Unix seconds at which it was recorded. Throws Error where it
-     *  is of another sensor or layout. */
-    virtual void add(const std::uint8_t* payload, std::size_t bytes, double received_s) = 0;
+    /** One data packet; `received_s`: Unix seconds at which it was recorded. False where another
+     *  sensor sent it, so that it is left out. Throws Error where it is of another model or layout,
+     *  and where all packets are of another sensor. */
+    virtual bool add(const std::uint8_t* payload, std::size_t bytes, double received_s) = 0;
 
     /** There are no more packets: what there is of the last turn is a scan, too, if it is at least
-     *  half of one. */
+     *  half of one. Throws Error where there were packets, but no scan was made of them. */
     virtual void finish() = 0;
 
     /** The next complete scan, if there is one: points, rings, times, stamp_s and time (Unix
@@ -33,6 +35,9 @@ class PacketDecoder {
 
     /** e.g. "Velodyne VLP-16"; empty until it is known. */
     virtual std::string sensor() const = 0;
+
+    /** What was left out or taken in another way than it was sent, a line each. */
+    virtual std::vector<std::string> findings() const { return {}; }
 };
 
 /** `calibrationFile`: an .xml or .yaml as MRPT reads it; empty: the model's usual one. */

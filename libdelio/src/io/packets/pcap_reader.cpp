@@ -11,6 +11,7 @@
 
 #include "delio/core/error.h"
 #include "ouster_info.h"
+#include "ouster_json.h"
 #include "packet_decoder.h"
 #include "udp_stream.h"
 
@@ -24,26 +25,6 @@ std::string textOf(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in) throw Error("'" + file.string() + "' cannot be opened");
     return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/** The json that describes the Ouster of a recording: beside it, under the same name, or the only
- *  one that names beams. */
-std::string jsonBeside(const std::string& path) {
-    const fs::path own = fs::path(path).replace_extension(".json");
-    if (path != "-" && fs::is_regular_file(own)) return own.string();
-    std::vector<std::string> found;
-    const fs::path folder = fs::absolute(path).parent_path();
-    if (path != "-")
-        for (const auto& entry : fs::directory_iterator(folder))
-            if (entry.path().extension() == ".json" && entry.is_regular_file() &&
-                textOf(entry.path()).find("beam_altitude_angles") != std::string::npos)
-                found.push_back(entry.path().string());
-    if (found.size() == 1) return found.front();
-    if (path == "-")
-        throw Error("an Ouster's pcap from standard input needs the sensor's json: --sensor-info");
-    throw Error("'" + path + "' is of an Ouster, whose description '" + own.string() +
-                "' is not there" + (found.empty() ? "" : ", and several others are") +
-                "; name it with --sensor-info");
 }
 
 std::string addressText(std::uint32_t address) {
@@ -88,10 +69,12 @@ class PcapReader : public ScanReader {
     }
     /** Whose packet it is, if a LiDAR's. */
     std::optional<Sender> senderOf(const UdpPacket& packet) const;
-    void makeDecoder(const std::string& kind);
+    /** `packet`: its first one; none: not read yet. */
+    void makeDecoder(const std::string& kind, const UdpPacket& packet);
     /** Reads on until the decoder was given a packet of its sensor; false at the end. */
     bool feed();
-    void give(const UdpPacket& packet);
+    bool give(const UdpPacket& packet);
+    void finish();
 
     ScanSource source_;
     UdpStream stream_;
@@ -100,6 +83,7 @@ class PcapReader : public ScanReader {
     std::string label_;
     std::set<std::string> others_;
     std::optional<DriveMeta> meta_;
+    std::string foundJson_;  //!< beside the recording, under another name
     std::size_t count_ = 0;
     bool pointTimes_ = false, ended_ = false;
     std::string fault_;  //!< what ended the recording, told after the scans before
@@ -107,7 +91,7 @@ class PcapReader : public ScanReader {
 
 PcapReader::PcapReader(const ScanSource& source) : source_(source), stream_(source.path) {
     // A json can be of nothing but an Ouster, and says how long its packets are.
-    if (fs::path(source_.sensorFile).extension() == ".json") makeDecoder("ouster");
+    if (fs::path(source_.sensorFile).extension() == ".json") makeDecoder("ouster", {});
     const bool any = feed();
     if (any) return;
     if (!fault_.empty()) throw Error(fault_);
@@ -127,28 +111,50 @@ std::optional<Sender> PcapReader::senderOf(const UdpPacket& packet) const {
     return {};
 }
 
-void PcapReader::makeDecoder(const std::string& kind) {
+void PcapReader::makeDecoder(const std::string& kind, const UdpPacket& packet) {
     if (kind == "velodyne") {
         decoder_ = velodyneDecoder(source_.sensorFile);
         return;
     }
-    if (source_.sensorFile.empty()) source_.sensorFile = jsonBeside(source_.path);
+    if (source_.sensorFile.empty()) {
+        if (source_.path == "-")
+            throw Error(
+                "an Ouster's pcap from standard input needs the sensor's json: --sensor-info");
+        try {
+            source_.sensorFile = ousterJsonBeside(source_.path, packet.payload, packet.bytes).name;
+        } catch (const Error& e) {
+            throw Error(named() + " " + e.what());
+        }
+        const fs::path json = source_.sensorFile;
+        if (json.stem() != fs::path(source_.path).stem()) foundJson_ = json.filename().string();
+    }
     decoder_ = ousterDecoder(textOf(source_.sensorFile), source_.sensorFile);
 }
 
-void PcapReader::give(const UdpPacket& packet) {
+void PcapReader::finish() {
     try {
-        decoder_->add(packet.payload, packet.bytes, packet.time_s);
+        if (decoder_) decoder_->finish();
+    } catch (const Error& e) {
+        if (fault_.empty()) fault_ = named() + ": " + e.what();
+    }
+}
+
+/** False where it is of another sensor. */
+bool PcapReader::give(const UdpPacket& packet) {
+    bool taken = false;
+    try {
+        taken = decoder_->add(packet.payload, packet.bytes, packet.time_s);
     } catch (const Error& e) {
         throw Error(named() + ": " + e.what());
     }
-    if (meta_ || decoder_->sensor().empty()) return;
+    if (!taken || meta_ || decoder_->sensor().empty()) return taken;
     meta_.emplace();
     const std::string sensor = decoder_->sensor();
     const auto space = sensor.find(' ');
     meta_->sensorModel = space == std::string::npos ? sensor : sensor.substr(space + 1);
     meta_->source = "pcap";
     meta_->motionCompensated = false;
+    return taken;
 }
 
 bool PcapReader::feed() {
@@ -169,17 +175,17 @@ bool PcapReader::feed() {
                 continue;
             }
             if (packet) {
-                if (!decoder_) makeDecoder(sender->kind);
+                if (!decoder_) makeDecoder(sender->kind, *packet);
+                if (!give(*packet)) continue;
                 if (!sender_) label_ = source_.label.empty() ? sender->kind : sender->withPort();
                 sender_ = sender;
-                give(*packet);
                 return true;
             }
         } catch (const Error& e) {
             fault_ = e.what();
         }
         ended_ = true;
-        if (decoder_) decoder_->finish();
+        finish();
     }
     return false;
 }
@@ -203,10 +209,11 @@ std::optional<Scan> PcapReader::next() {
 
 Recording PcapReader::recording() const {
     Recording recording;
-    recording.kind = "pcap";
+    recording.kind = "pcap" + (foundJson_.empty() ? "" : ", described by '" + foundJson_ + "'");
     recording.sensor = decoder_->sensor();
     recording.pointTimes = pointTimes_;
     recording.motionCompensated = false;
+    recording.findings = decoder_->findings();
     return recording;
 }
 }  // namespace

@@ -12,7 +12,8 @@ double VelodyneClock::timeOf(std::uint32_t clock_us, double received_s) {
     } else {
         const double recorded_s = received_s - received_s_;
         const double told_s = std::remainder(clock_s - clock_s_, kHour_s);
-        const bool runs = clock_s != clock_s_ && std::abs(told_s - recorded_s) < kLeap_s;
+        const bool agree = std::abs(told_s - recorded_s) < kLeap_s;
+        const bool runs = clock_s != clock_s_ && (agree || (told_s > 0 && told_s < kLeap_s));
         since_s_ += runs ? told_s : recorded_s;
     }
     started_ = true;

@@ -4,7 +4,8 @@
 namespace delio::io {
 /** Unix times of a Velodyne's packets. Its clock, microseconds since the full hour, tells them; the
  *  hour is that of the recorder. Where that is more than half a minute off, the clock was never set
- *  and counts from the first packet's recording; where it stands or leaps, the recorder's goes on.
+ *  and counts from the first packet's recording; where it stands or leaps while the recorder's does
+ *  not, the recorder's goes on.
  */
 class VelodyneClock {
  public:

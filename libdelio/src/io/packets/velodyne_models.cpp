@@ -90,30 +90,49 @@ std::size_t lasersOf(const std::string& name) {
     if (name == "HDL-64E") return 64;
     return name == "VLP-32C" || name == "HDL-32E" ? 32 : 16;
 }
+
+const char* const kDecoded = "HDL-64E, HDL-32E, VLP-16, Puck Hi-Res and VLP-32C";
+
+[[noreturn]] void refuse(const std::string& model) {
+    throw Error("packets of a Velodyne " + model + " are not decoded, those of " + kDecoded +
+                " are; give the clouds (PointCloud2) that its driver makes of them");
+}
 }  // namespace
 
 std::string velodyneModelName(const std::uint8_t* packet) {
     constexpr std::size_t kBlocks = 12, kBlockBytes = 100, kFactoryByte = 1205;
+    bool secondBank = false;
     for (std::size_t b = 0; b < kBlocks; ++b) {
         const std::uint8_t* const block = packet + kBlockBytes * b;
-        if (block[0] == 0xFF && block[1] == 0xDD) return "HDL-64E";
+        if (block[0] != 0xFF) continue;
+        if (block[1] == 0xCC || block[1] == 0xBB) refuse("VLS-128 (Alpha Prime)");
+        secondBank = secondBank || block[1] == 0xDD;
     }
+    // Its last two bytes tell its status in turn, not what it is.
+    if (secondBank) return "HDL-64E";
     switch (packet[kFactoryByte]) {
         case 0x21:
             return "HDL-32E";
         case 0x22:
             return "VLP-16";
+        case 0x23:
+            refuse("VLP-32A or VLP-32B");
         case 0x24:
             return "Puck Hi-Res";
         case 0x28:
             return "VLP-32C";
+        case 0x31:
+            refuse("Velarray");
+        case 0x63:
+        case 0xA1:
+            refuse("VLS-128 (Alpha Prime)");
         default:
             break;
     }
     std::array<char, 8> byte{};
     std::snprintf(byte.data(), byte.size(), "0x%02X", packet[kFactoryByte]);
     throw Error(std::string("a packet of a Velodyne that is not known (factory byte ") +
-                byte.data() + "); HDL-64E, HDL-32E, VLP-16, Puck Hi-Res and VLP-32C are");
+                byte.data() + "); " + kDecoded + " are");
 }
 
 VelodyneModel velodyneModel(const std::string& name, const std::string& calibrationFile) {

@@ -14,8 +14,9 @@ struct VelodyneModel {
     VelodyneLayout layout;
 };
 
-/** Of the sensor that sent a data packet (1206 bytes): "HDL-64E" by its blocks of the lower bank,
- *  others by the factory byte. Throws Error for one that is not known. */
+/** Of the sensor that sent a data packet (1206 bytes): "HDL-64E" by its blocks of the lower bank
+ *  of two, a VLS-128 by those of its third and fourth bank, others by the factory byte. Throws
+ * Error for one that is not known, or known but not decoded. */
 std::string velodyneModelName(const std::uint8_t* packet);
 
 /** `calibrationFile`: an .xml or .yaml as MRPT reads it; empty: the model's usual one. Throws Error
