@@ -67,7 +67,7 @@ void addColourBar(COpenGLScene& scene, unsigned row, map::Colormap colormap,
     addText(scene, kMargin_px, row + kBarRows, kFirstId + kBarRows, what, ink);
 }
 
-bool isColourBar(const mrpt::opengl::COpenGLViewport& viewport) {
+bool isColourBar(mrpt::opengl::COpenGLViewport& viewport) {
     return viewport.getName() == kBar;
 }
 
