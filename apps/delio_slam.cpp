@@ -211,6 +211,7 @@ int optimiseGraph(SlamCommandLine& line, const std::string& input,
     const std::string fault =
         run::RunFolder(settings.folder).write(record, {}, picture::illustrate);
     if (!fault.empty()) throw Error(fault);
+    printGraphTable(record, settings.folder, std::cout);
     return cli::kExitSuccess;
 }
 

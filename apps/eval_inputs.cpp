@@ -121,6 +121,11 @@ void describe(const Comparison& comparison, bool verbose, const std::string& pai
     else if (verbose)
         cli::inform(pair + matched + " poses");
     const auto& row = comparison.row;
+    if (comparison.framesAreUnknown)
+        cli::warn(pair + mrpt::format("the path of %.1f m is too short to tell whether both are "
+                                      "poses of the same frame (LiDAR or camera)",
+                                      row.length_m));
+    if (!comparison.referenceFault.empty()) cli::warn(pair + comparison.referenceFault);
     if (row.kitti.segments > 0) return;
     const std::string lengths = textOf(evaluation::suggestedLengths_m(row.length_m));
     cli::inform(

@@ -98,6 +98,21 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
     row("results", folder);
 }
 
+void printGraphTable(const run::RunRecord& record, const std::string& folder, std::ostream& out) {
+    const auto row = [&](const char* name, const std::string& value) {
+        out << format("%-26s %s\n", name, value.c_str());
+    };
+    const auto& result = record.optimisation;
+    row("nodes", std::to_string(record.graph.poses().size()));
+    row("edges", std::to_string(record.graph.edges().size()));
+    row("cost", format("%.6g before, %.6g after", result.initial_cost, result.final_cost));
+    row("iterations",
+        std::to_string(result.iterations) + (result.converged ? "" : ", not converged"));
+    row("path", format("%.1f m", record.path_m()));
+    row("time", format("%.1f ms", record.optimise_ms));
+    row("results", folder);
+}
+
 std::string describe(const run::RunRow& row) {
     const Step& step = row.report.step;
     const auto& pose = step.increment.pose;

@@ -113,10 +113,13 @@ int convert(Arguments& args) {
 
 cli::HelpText help() {
     cli::HelpText help;
-    help.writes = {{"OUT.rawlog", "a CObservationPointCloud a scan"},
-                   {"OUT_Images/", "their points, x y z intensity as float32 (not with --embed)"},
-                   {"OUT.times.txt, OUT.calib.txt, OUT.poses.txt", "what KITTI has of them"},
-                   {"OUT.meta.yaml", "the sensor, and what was done to the points"}};
+    help.writes = {
+        {"OUT.rawlog", "a CObservationPointCloud a scan"},
+        {"OUT_Images/",
+         "their points, x y z intensity as float32 (not with --embed); RawLogViewer finds "
+         "them only if it is started in the rawlog's folder"},
+        {"OUT.times.txt, OUT.calib.txt, OUT.poses.txt", "what KITTI has of them"},
+        {"OUT.meta.yaml", "the sensor, and what was done to the points"}};
     help.examples = {{{"kitti2rawlog -i dataset/sequences/07 -o 07.rawlog --link",
                        "A sequence, without a copy of its points"},
                       {"kitti2rawlog -i 2011_09_26_drive_0005_sync -o 5.rawlog --count 60",

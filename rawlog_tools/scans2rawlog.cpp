@@ -176,7 +176,8 @@ cli::HelpText help() {
     help.writes = {{"OUT.rawlog", "a CObservationPointCloud a scan"},
                    {"OUT_Images/",
                     "their points, x y z intensity as float32 (not with --embed); their rings and "
-                    "times, where they have any"},
+                    "times, where they have any; RawLogViewer finds the points only if it is "
+                    "started in the rawlog's folder"},
                    {"OUT.times.txt", "seconds, a row a scan"},
                    {"OUT.calib.txt, OUT.poses.txt", "where the recording has them"},
                    {"OUT.meta.yaml", "the sensor, and what was done to the points"}};

@@ -118,6 +118,24 @@ std::string lineOf(TCLAP::Arg& arg) {
     return filled(head, text, kColumn);
 }
 
+/** What is wrong with an argument that no option was given for; empty where `e` is another fault.
+ */
+std::string unexpectedIn(TCLAP::CmdLineInterface& cmd, const TCLAP::ArgException& e) {
+    const std::string begin = "Argument: ", argument = e.argId();
+    if (e.error().find("match for argument") == std::string::npos || argument.find(begin) != 0)
+        return "";
+    const std::string word = argument.substr(begin.size());
+    const auto has = [&](const char* flag) {
+        const auto& all = cmd.getArgList();
+        return std::any_of(all.begin(), all.end(),
+                           [&](const TCLAP::Arg* arg) { return arg->getFlag() == flag; });
+    };
+    if (!word.empty() && word.front() == '-') return "unknown option '" + word + "'; see --help";
+    return "unexpected argument '" + word + "'; " +
+           (has("i") && has("o") ? "inputs are given with -i and outputs with -o (see --help)"
+                                 : "every argument belongs to an option (see --help)");
+}
+
 std::string helpOf(TCLAP::CmdLineInterface& cmd, const HelpText& text) {
     const auto arguments = argumentsOf(cmd);
     std::string help = program_invocation_short_name + (": " + cmd.getMessage()) + "\n\n";
@@ -152,6 +170,7 @@ void CommandLineOutput::version(TCLAP::CmdLineInterface& cmd) {
 
 void CommandLineOutput::failure(TCLAP::CmdLineInterface& cmd, TCLAP::ArgException& e) {
     failed_ = true;
+    if (const std::string text = unexpectedIn(cmd, e); !text.empty()) return inform(text);
     std::string which = e.argId();
     if (which.find_first_not_of(' ') == std::string::npos) {  // something required is missing
         which.clear();

@@ -31,22 +31,30 @@ class Eye {
     this.onFoot = false;
     this.yaw = (size.x > size.y) === (this.camera.aspect > 1) ? Math.PI / 2 : 0;
     this.pitch = -0.65;
-    const [across, away] = this.yaw > 0 ? [size.x, size.y] : [size.y, size.x];
-    this.lookAtAll(across, away * Math.sin(-this.pitch) + size.z);
+    this.lookAtAll();
   }
 
   top() {
-    const size = this.box.getSize(new THREE.Vector3());
     this.onFoot = false;
     this.yaw = Math.PI / 2;
     this.pitch = -Math.PI / 2;
-    this.lookAtAll(size.x, size.y);
+    this.lookAtAll();
   }
 
-  lookAtAll(across, upright) {
+  /** From so far that every corner of the box is in the picture. */
+  lookAtAll() {
     this.box.getCenter(this.target);
-    const half = Math.tan(this.camera.fov / 2 * Math.PI / 180);
-    this.distance = 1.1 * Math.max(upright, across / this.camera.aspect, 2) / 2 / half;
+    const forward = this.forward(), upward = this.upward(), right = forward.clone().cross(upward);
+    const upright = Math.tan(this.camera.fov / 2 * Math.PI / 180);
+    const across = upright * this.camera.aspect;
+    this.distance = 1;
+    for (let i = 0; i < 8; ++i) {
+      const corner = new THREE.Vector3(...['x', 'y', 'z'].map(
+          (axis, k) => this.box[i >> k & 1 ? 'max' : 'min'][axis])).sub(this.target);
+      const needed = Math.max(Math.abs(right.dot(corner)) / across,
+                              Math.abs(upward.dot(corner)) / upright) - forward.dot(corner);
+      this.distance = Math.max(this.distance, 1.05 * needed);
+    }
   }
 
   /** Onto the trajectory, where it is nearest to what is looked at. */

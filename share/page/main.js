@@ -58,6 +58,11 @@ class Page {
     });
     window.addEventListener('hashchange', () => this.readAddress());
     window.addEventListener('keydown', event => this.key(event));
+    // Who goes from control to control by Tab has to see that the map is one of them; for others a
+    // frame around it would mean nothing.
+    const frame = on => this.picture.canvas.classList.toggle('tabbed', on);
+    window.addEventListener('keydown', event => frame(event.key === 'Tab'), true);
+    window.addEventListener('pointerdown', () => frame(false), true);
     this.picture.canvas.addEventListener('webglcontextlost',
                                          () => complain('The graphics are gone; load it again.'));
   }

@@ -1,4 +1,7 @@
+#include <tuple>
+
 #include "delio_eval_fixture.h"
+#include "toy_drive.h"
 
 namespace {
 using namespace delio;
@@ -161,6 +164,36 @@ TEST_F(DelioEval, TheWrongFrameIsNamed) {
     expectFailure(
         eval({"--ref", in("ref.txt"), "--est", in("lidar.txt"), "--calib", in("no_tr.txt")}), 1,
         "no Tr");
+}
+
+TEST_F(DelioEval, TheWrongFrameIsNamedOfShortPathsTooOrAWarningSaysThatItIsNotKnown) {
+    const auto short_ = [&](double step_m, std::size_t count) {
+        io::writeKitti(cameraDrive(step_m, count), in("short.txt"));
+        io::writeKitti(lidarDrive(step_m, count), in("short_lidar.txt"));
+        return tsvOf("short.txt", "short_lidar.txt");
+    };
+    expectFailure(short_(0.5, 6), 1, "give --calib");
+    expectFailure(short_(0.05, 20), 1, "give --calib");
+    const auto unknown = short_(0.01, 5);
+    EXPECT_EQ(unknown.exitCode, 0);
+    EXPECT_NE(unknown.err.find("too short to tell whether both are poses of the same frame"),
+              std::string::npos)
+        << unknown.err;
+}
+
+TEST_F(DelioEval, TheHeadOfKittis00IsAWarning) {
+    DELIO_NEED_DATA("kitti/poses/00.txt");
+    const auto lines = test::linesOf(test::readText(test::dataFolder() / "kitti/poses/00.txt"));
+    for (const auto& [name, begin, warned] :
+         {std::tuple("head.txt", 0, true), std::tuple("later.txt", 100, false)}) {
+        std::string text;
+        for (int i = 0; i < 10; ++i) text += lines.at(static_cast<std::size_t>(begin + i)) + "\n";
+        test::writeText(in(name), text);
+        const auto result = tsvOf(name, name);
+        EXPECT_EQ(result.exitCode, 0);
+        EXPECT_EQ(result.err.find("first 16 scans of sequence 00") != std::string::npos, warned)
+            << result.err;
+    }
 }
 
 TEST_F(DelioEval, BadFilesEndInOneLine) {

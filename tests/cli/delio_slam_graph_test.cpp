@@ -14,6 +14,13 @@ using test::Words;
 using test::writeText;
 namespace fs = std::filesystem;
 
+/** What was done is said on stdout, as of drives. */
+void expectGraphTable(const std::string& out) {
+    for (const std::string line :
+         {"nodes                      4\n", "edges ", "cost ", "iterations ", "path ", "results "})
+        EXPECT_NE(out.find(line), std::string::npos) << line << out;
+}
+
 TEST_F(DelioSlam, OptimisesAGraphAgain) {
     writeDrive(4);
     ASSERT_EQ(slam().exitCode, 0);
@@ -27,6 +34,7 @@ TEST_F(DelioSlam, OptimisesAGraphAgain) {
     writeText(folder_ / "again" / "scans.csv", "of another run\n");
     const auto run = again();
     ASSERT_EQ(run.exitCode, 0) << run.err;
+    expectGraphTable(run.out);
     const auto before = io::readTrajectory(out_ / "trajectory_kitti.txt").poses;
     const auto after = io::readTrajectory(folder_ / "again" / "trajectory_kitti.txt").poses;
     ASSERT_EQ(before.size(), after.size());

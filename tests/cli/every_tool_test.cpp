@@ -27,4 +27,14 @@ TEST(EveryTool, HelpAndVersion) {
         EXPECT_EQ(nothing.out, "") << tool;
     }
 }
+
+TEST(EveryTool, AnArgumentWithoutAnOptionIsNamed) {
+    for (const auto& tool : test::kTools) {
+        test::expectFailure(runTool(tool, {"drive", "results"}), 2,
+                            {"unexpected argument 'drive'", "--help"});
+        test::expectFailure(runTool(tool, {"--nonsense"}), 2, {"unknown option '--nonsense'"});
+    }
+    test::expectFailure(runTool("delio-slam", {"drive", "results"}), 2,
+                        {"inputs are given with -i and outputs with -o"});
+}
 }  // namespace

@@ -85,6 +85,36 @@ TEST_F(KittiBenchmark, ASequenceThatFailsIsNamedAndTheOthersGoOn) {
     EXPECT_FALSE(fs::exists(out() / "accurate/00"));
 }
 
+TEST_F(KittiBenchmark, AFlagThatItGivesItselfMayBeGivenToo) {
+    const auto result = run({"--", "--no-map"});  // it gives --no-map to all sequences but 07
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_TRUE(fs::exists(out() / "accurate/00/summary.yaml"));
+    EXPECT_TRUE(fs::exists(out() / "accurate/07/summary.yaml"));
+    EXPECT_FALSE(fs::exists(out() / "accurate/07/map.ply"));
+}
+
+TEST_F(KittiBenchmark, ARefusedFirstCallSpoilsNoLaterOne) {
+    const auto refused = run({"--", "--threads", "1"});
+    EXPECT_EQ(refused.exitCode, 2);
+    EXPECT_TRUE(has(refused.err, "--threads after --")) << refused.err;
+    const auto later = run();
+    EXPECT_EQ(later.exitCode, 0) << later.err;
+    EXPECT_TRUE(fs::exists(out() / "table.md"));
+}
+
+TEST_F(KittiBenchmark, RowsOfOtherLengthsThanThePublishedOnesAreMarked) {
+    const std::string mark = "| measured, kitti-benchmark, **segments of 2,4 m** |";
+    const std::string why = "rows of other segments cannot be compared with them";
+    const auto table = [&] { return test::readText(out() / "table.md"); };
+    ASSERT_EQ(run({"--sequences", "07"}).exitCode, 0);
+    EXPECT_TRUE(has(table(), mark) && has(table(), why)) << table();
+    // The same results, but KITTI's own lengths: its rows are of the published ones' kind.
+    ASSERT_EQ(run({"--sequences", "07", "--lengths", "100,200,300,400,500,600,700,800"}).exitCode,
+              0);
+    EXPECT_TRUE(has(table(), "| measured, kitti-benchmark |")) << table();
+    EXPECT_FALSE(has(table(), why)) << table();
+}
+
 TEST_F(KittiBenchmark, BadInput) {
     const std::string script = test::profileFolder().parent_path() / "scripts/kitti-benchmark";
     const auto expect = [&](const std::vector<std::string>& words, int code,

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "delio/evaluation/comparison.h"
 #include "delio/evaluation/frame_check.h"
 #include "delio/evaluation/kitti_metric.h"
 #include "delio/io/trajectory.h"
@@ -63,6 +64,21 @@ TEST(Evaluator, GivesThePublishedFiguresOfEverySequence) {
     }
     RecordProperty("worst_translation_percent", std::to_string(worstTranslation));
     RecordProperty("worst_rotation_deg_per_100m", std::to_string(worstRotation));
+}
+
+TEST(Evaluator, WarnsOfTheHeadOf00AndOfNothingElse) {
+    DELIO_NEED_DATA("evaluator/expected.tsv");
+    for (const auto& expected : expectedFigures()) {
+        SCOPED_TRACE(expected.method + " " + expected.sequence);
+        const std::string file = expected.sequence + ".txt";
+        auto truth = io::readTrajectory(test::dataFolder() / "kitti/poses" / file);
+        auto estimate =
+            io::readTrajectory(test::dataFolder() / "evaluator" / expected.method / file);
+        EXPECT_EQ(evaluation::compare(truth, estimate, {}).referenceFault, "");
+        for (auto* trajectory : {&truth, &estimate}) trajectory->poses.resize(10);
+        EXPECT_EQ(evaluation::compare(truth, estimate, {}).referenceFault.empty(),
+                  expected.sequence != "00");
+    }
 }
 
 TEST(Evaluator, SeesTheWrongFrameOnEverySequence) {

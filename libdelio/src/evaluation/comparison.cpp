@@ -6,6 +6,7 @@
 
 #include "delio/evaluation/association.h"
 #include "delio/evaluation/kitti_metric.h"
+#include "known_faults.h"
 
 namespace delio::evaluation {
 using mrpt::format;
@@ -82,7 +83,10 @@ Comparison compare(io::Trajectory reference, const io::Trajectory& estimate,
     if (scans) comparison.unusedReference = dropUnused(reference, *scans);
     auto pairs = associate(reference, estimate);
     const auto mismatch = findFrameMismatch(pairs.reference, pairs.estimate);
-    if (mismatch != FrameMismatch::none) throw WrongFrames(mismatch);
+    comparison.framesAreUnknown = mismatch == FrameMismatch::unknown;
+    if (mismatch != FrameMismatch::none && !comparison.framesAreUnknown)
+        throw WrongFrames(mismatch);
+    comparison.referenceFault = knownFaultOf(pairs.reference);
     setTimes(comparison, pairs, scans);
     comparison.unmatchedReference = pairs.unmatchedReference;
     comparison.unmatchedEstimate = pairs.unmatchedEstimate;

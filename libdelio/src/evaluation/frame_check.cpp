@@ -1,17 +1,26 @@
 #include "delio/evaluation/frame_check.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+
+#include "delio/evaluation/kitti_metric.h"
 
 namespace delio::evaluation {
 namespace {
-constexpr double kStep_m = 1;      // long enough for a direction that noise does not hide
-constexpr int kStepsToTell = 5;    // fewer say too little
-constexpr double kDisagree = 0.5;  // mean cosines
+constexpr double kStep_m = 1;         // long enough for a direction that noise does not hide
+constexpr double kLeastStep_m = 0.2;  // of short paths: true poses are good to a few centimetres
+constexpr int kStepsToTell = 3;       // fewer say too little
+constexpr double kDisagree = 0.5;     // mean cosines
 constexpr double kAgree = 0.9;
 
 double metresBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
     return (b.translation() - a.translation()).norm();
+}
+
+/** How far apart poses have to be to give a direction: shorter where the path is short. */
+double stepFor(const std::vector<Eigen::Isometry3d>& poses) {
+    return std::clamp(pathLength_m(poses) / (2 * kStepsToTell), kLeastStep_m, kStep_m);
 }
 
 /** Where the moving frame went from pose `a` to pose `b`, in its own axes at `a`. */
@@ -27,8 +36,9 @@ FrameMismatch findFrameMismatch(const std::vector<Eigen::Isometry3d>& reference,
     double asIs = 0, fromLidar = 0, fromCamera = 0;
     int steps = 0;
     std::size_t begin = 0;
+    const double step_m = stepFor(reference);
     for (std::size_t i = 1; i < reference.size(); ++i) {
-        if (metresBetween(reference[begin], reference[i]) < kStep_m) continue;
+        if (metresBetween(reference[begin], reference[i]) < step_m) continue;
         const Eigen::Vector3d wanted = direction(reference[begin], reference[i]);
         const Eigen::Vector3d found = direction(estimate[begin], estimate[i]);
         asIs += wanted.dot(found);
@@ -37,7 +47,9 @@ FrameMismatch findFrameMismatch(const std::vector<Eigen::Isometry3d>& reference,
         ++steps;
         begin = i;
     }
-    if (steps < kStepsToTell || asIs >= kDisagree * steps) return FrameMismatch::none;
+    if (steps < kStepsToTell)
+        return steps > 0 && asIs > kAgree * steps ? FrameMismatch::none : FrameMismatch::unknown;
+    if (asIs >= kDisagree * steps) return FrameMismatch::none;
     if (fromLidar > kAgree * steps) return FrameMismatch::lidarAgainstCamera;
     if (fromCamera > kAgree * steps) return FrameMismatch::cameraAgainstLidar;
     return FrameMismatch::none;

@@ -74,8 +74,9 @@ FileKind kindOf(const std::string& path) {
         throw Error("'" + path + "' is a ROS bag of another version than 2.0: rosbag fix mends it");
     for (const char* other : {".osf", ".zstd", ".las", ".laz"})
         if (extension == other)
-            throw Error("'" + path + "': " + other +
-                        " files are not read; see share/doc/inputs.md");
+            throw Error(
+                "'" + path + "': " + other +
+                " files are not read; inputs.md of DeLiO's documentation lists those that are");
     return FileKind::kRawlog;
 }
 }  // namespace delio::io

@@ -14,9 +14,10 @@ using Eigen::Vector3d;
 
 namespace {
 constexpr double kDeg = M_PI / 180;
-constexpr double kMargin = 1.05;  // the content fills the picture but for this
+constexpr double kMargin = 1.05;   // the content fills the picture but for this
+constexpr double kStrays = 0.001;  // points on either side that may be outside
 
-/** Smallest and largest value, of points without the outermost half percent on either side. */
+/** Smallest and largest value, of points without the outermost thousandth on either side. */
 template <typename Value>
 std::pair<double, double> span(const Content& content, const Value& value) {
     double low = std::numeric_limits<double>::max(), high = -low;
@@ -30,8 +31,8 @@ std::pair<double, double> span(const Content& content, const Value& value) {
             std::nth_element(values.begin(), it, values.end());
             return *it;
         };
-        low = at(0.005);
-        high = at(0.995);
+        low = at(kStrays);
+        high = at(1 - kStrays);
     }
     for (const auto& p : content.lines) {
         low = std::min(low, value(p));

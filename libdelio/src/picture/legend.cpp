@@ -67,15 +67,19 @@ void addColourBar(COpenGLScene& scene, unsigned row, map::Colormap colormap,
     addText(scene, kMargin_px, row + kBarRows, kFirstId + kBarRows, what, ink);
 }
 
+bool isColourBar(mrpt::opengl::COpenGLViewport& viewport) {
+    return viewport.getName() == kBar;
+}
+
 void recolourBar(COpenGLScene& scene, map::Colormap colormap) {
     for (const auto& viewport : scene.viewports())
-        if (viewport->getName() == kBar) paint(*viewport, colormap);
+        if (isColourBar(*viewport)) paint(*viewport, colormap);
 }
 
 void repaintBar(COpenGLScene& scene) {
     for (const auto& viewport : scene.viewports())
         for (const auto& name : map::colormapNames())
-            if (viewport->getName() == kBar && viewport->getByName(name))
+            if (isColourBar(*viewport) && viewport->getByName(name))
                 return paint(*viewport, map::colormapNamed(name));
     recolourBar(scene, map::Colormap::Turbo);  // of a scene that does not say it
 }

@@ -24,6 +24,9 @@ void addColourBar(mrpt::opengl::COpenGLScene& scene, unsigned row, map::Colormap
  */
 void repaintBar(mrpt::opengl::COpenGLScene& scene);
 
+/** Whether this viewport is a bar of colours. */
+bool isColourBar(mrpt::opengl::COpenGLViewport& viewport);
+
 /** Changes the colours of the bar, if there is one. */
 void recolourBar(mrpt::opengl::COpenGLScene& scene, map::Colormap colormap);
 }  // namespace delio::picture

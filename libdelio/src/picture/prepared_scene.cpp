@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "legend.h"
 #include "marks.h"
 #include "point_spacing.h"
 
@@ -29,6 +30,7 @@ PreparedScene::PreparedScene(mrpt::opengl::COpenGLScene& scene, const SnapshotOp
     viewport_->getViewportClipDistances(clipNear_, clipFar_);
     background_ = viewport_->getCustomBackgroundColor();
     texts_ = viewport_->getTextMessages().messages;
+    viewport_->clearTextMessages();
     if (options.background) viewport_->setCustomBackgroundColor(TColorf(*options.background));
     enlargePoints(view);
     enlargeOtherViewports();
@@ -95,7 +97,9 @@ void PreparedScene::enlargeOtherViewports() {
         mrpt::serialization::archiveFrom(*kept.second) << *viewport;
         double x = 0, y = 0, w = 0, h = 0;
         viewport->getViewportPosition(x, y, w, h);
-        if (hasLegend(options_))
+        if (hasLegend(options_) && isColourBar(*viewport))
+            bars_.push_back({viewport, larger(x), larger(y), larger(w), larger(h)});
+        if (hasLegend(options_) && !isColourBar(*viewport))
             viewport->setViewportPosition(larger(x), larger(y), larger(w), larger(h));
         else
             viewport->setViewportPosition(0, 0, kNothing, kNothing);
@@ -107,29 +111,33 @@ void PreparedScene::lookFrom(const View& view) {
                                         static_cast<float>(view.farthest));
 }
 
-void PreparedScene::showTexts(const std::optional<ScaleBar>& bar) {
-    viewport_->clearTextMessages();
-    if (!hasLegend(options_)) return;
+LegendLayer PreparedScene::legend(const std::optional<ScaleBar>& bar) const {
+    constexpr double kAround_px = 7;  // so that the plates of neighbouring lines touch
+    LegendLayer layer(viewport_->getCustomBackgroundColor(), kAround_px * double{marks_});
+    if (!hasLegend(options_)) return layer;
     for (const auto& [id, text] : texts_) {
         TFontParams font = text;
         font.vfont_scale *= marks_;
         // On another background than the scene's own, a text must not vanish.
         const double behind = lightness(viewport_->getCustomBackgroundColor());
         if (std::abs(lightness(font.color) - behind) < 0.3) font.color = TColorf(ink());
-        viewport_->addTextMessage(larger(text.x), larger(text.y), text.text, id, font);
+        layer.addText(larger(text.x), larger(text.y), text.text, font);
     }
-    if (bar) showBarText(*bar);
+    for (const auto& own : bars_) layer.addBar(*own.viewport, own.x, own.y, own.width, own.height);
+    if (bar) addScaleBar(*bar, layer);
+    return layer;
 }
 
-void PreparedScene::showBarText(const ScaleBar& bar) {
+void PreparedScene::addScaleBar(const ScaleBar& bar, LegendLayer& layer) const {
     TFontParams font;
     font.vfont_name = "sans";
     font.vfont_scale = 14.0F * marks_;
     font.color = TColorf(ink());
-    constexpr unsigned kId = 1000;
-    const double above = options_.height_px - bar.bottom_px + 2.5 * bar.height_px;
-    viewport_->addTextMessage((bar.right_px - bar.width_px) * double{enlarged_},
-                              above * double{enlarged_}, bar.text, kId, font);
+    const auto pixels = [&](int px) { return px * double{enlarged_}; };
+    const double bottom = pixels(static_cast<int>(options_.height_px) - bar.bottom_px);
+    const double left = pixels(bar.right_px - bar.width_px), height = pixels(bar.height_px);
+    layer.addPlate(left, bottom, pixels(bar.width_px), height);
+    layer.addText(left, bottom + 2.5 * height, bar.text, font);
 }
 
 TColor PreparedScene::ink() const {

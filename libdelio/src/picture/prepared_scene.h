@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "framing.h"
+#include "legend_layer.h"
 #include "scale_bar.h"
 
 namespace delio::picture {
@@ -28,8 +29,9 @@ class PreparedScene {
 
     void lookFrom(const View& view);
 
-    /** The scene's own texts, and the bar's. */
-    void showTexts(const std::optional<ScaleBar>& bar);
+    /** The scene's own texts and its bar of colours, and the scale bar's text and plate. The
+     *  prepared scene has none of them. */
+    LegendLayer legend(const std::optional<ScaleBar>& bar) const;
 
     /** Stands out against the background. */
     mrpt::img::TColor ink() const;
@@ -46,7 +48,7 @@ class PreparedScene {
     /** Of the map's points, as they are rendered: such that surfaces look closed. */
     float mapPointSize(float stored_px, const View& view) const;
     void enlargeOtherViewports();
-    void showBarText(const ScaleBar& bar);
+    void addScaleBar(const ScaleBar& bar, LegendLayer& layer) const;
     /** From 1 on it is pixels, below a share of the picture. */
     double larger(double v) const { return v >= 1 ? v * double{marks_} : v; }
 
@@ -58,6 +60,11 @@ class PreparedScene {
     mrpt::img::TColorf background_;
     std::vector<Size> sizes_;
     std::vector<std::pair<Viewport, std::unique_ptr<mrpt::io::CMemoryStream>>> others_;
+    struct Bar {
+        Viewport viewport;
+        double x, y, width, height;
+    };
+    std::vector<Bar> bars_;
     std::map<uint32_t, mrpt::opengl::CTextMessageCapable::DataPerText> texts_;
 };
 }  // namespace delio::picture

@@ -122,9 +122,10 @@ class Painter {
           bands_(raster.padded, raster.height, isShaded_ ? reachOf(shading_) : 0, scenePoints),
           renderer_(openRenderer(raster.padded, bands_.rows)) {}
 
-    CImage paint(const View& view) {
+    CImage paint(const View& view, LegendLayer& legend) {
         CImage result(options_.width_px, options_.height_px, mrpt::img::CH_RGB);
         BandViewports viewports(scene_, raster_.height, bands_.rows);
+        BandViewports ofLegend(legend.scene(), raster_.height, bands_.rows);
         renderer_->setCamera(scene_, cameraOf(view, raster_, options_.ortho));
         CImage rendered;
         mrpt::math::CMatrixFloat depth;
@@ -136,6 +137,15 @@ class Painter {
                 shadeEyeDome(rendered, depth, shading_);
             } else
                 renderer_->render_RGB(scene_, rendered);
+            const int rows = static_cast<int>(bands_.rows);
+            const int lowest =
+                static_cast<int>(raster_.height) - static_cast<int>(band.first) - rows;
+            if (legend.isInRows(lowest, lowest + rows)) {
+                CImage texts;
+                ofLegend.show(band.first);
+                renderer_->render_RGB(legend.scene(), texts);
+                legend.copy(texts, rendered, lowest);
+            }
             copyRows(trimmed(rendered, band, raster_), band.begin / raster_.scale, result);
         }
         return result;
@@ -169,8 +179,8 @@ void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned picture
         CImage result;
         try {
             prepared.lookFrom(view);
-            prepared.showTexts(bar);
-            result = painter.paint(view);
+            LegendLayer legend = prepared.legend(bar);
+            result = painter.paint(view, legend);
         } catch (const std::exception& e) {
             throw Error("cannot render the scene: " + plainMessage(e));
         }

@@ -251,6 +251,7 @@ void Run::score() {
             warn(std::string(e.what()) + "; no evaluation");
         return;
     }
+    if (!record_.metrics->referenceFault.empty()) warn(record_.metrics->referenceFault);
     const auto& Tr = record_.calibration.Tr;
     const auto& reference = record_.metrics->reference;
     for (const auto& pose : reference) {

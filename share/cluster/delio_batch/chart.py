@@ -76,6 +76,7 @@ def _script(rows: list, key: str, swept: dict, picture: str) -> str:
         panels.insert(0, _panel(name, _lines(rows, key, swept, error), places))
     return (f"set terminal pngcairo size 1000,{450 * len(panels)} noenhanced font 'sans-serif,11'\n"
             f"set output {_quoted(picture)}\nset datafile missing 'NaN'\nset key outside top\nset grid\n"
+            f"set format y '%.10g'\n"  # gnuplot's own has five decimals: neighbouring ticks may read the same
             f"set offsets graph 0.05, graph 0.05, graph 0.1, graph 0.1\n"
             f"set xlabel {_quoted(key)}\nset xtics ({ticks})\n" + "".join(data for data, _ in panels) +
             f"set multiplot layout {len(panels)},1\n" + "".join(plot for _, plot in panels))

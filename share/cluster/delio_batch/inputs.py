@@ -136,6 +136,15 @@ def _name(drives: list) -> None:
             raise Problem(f"the name of '{drive.input}' is too long for a folder of results")
 
 
+def without_repeated(options: list, others: list) -> list:
+    """Options of one drive without the flags that all drives have: delio-slam takes each flag once."""
+    def is_flag(place: int) -> bool:
+        after = options[place + 1] if place + 1 < len(options) else "-"
+        return options[place].startswith("-") and after.startswith("-")
+
+    return [word for place, word in enumerate(options) if not (word in others and is_flag(place))]
+
+
 def resolve(drives: list, truths: str) -> list:
     """All of them by absolute paths, there, once, named; `truths`: a folder of NAME.txt."""
     for drive in drives:

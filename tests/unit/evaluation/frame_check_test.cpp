@@ -63,12 +63,24 @@ TEST(FrameCheck, TheFixedFrameDoesNotMatter) {
     EXPECT_EQ(findFrameMismatch(asCamera(lidar), moved), FrameMismatch::lidarAgainstCamera);
 }
 
+// KITTI's first scans, or a robot that went across a table.
+TEST(FrameCheck, ShortPathsTellAsWell) {
+    for (const auto& lidar : {lidarDrive(5, 0.8), lidarDrive(20, 0.05)}) {
+        const auto camera = asCamera(lidar);
+        EXPECT_EQ(findFrameMismatch(lidar, lidar), FrameMismatch::none);
+        EXPECT_EQ(findFrameMismatch(camera, camera), FrameMismatch::none);
+        EXPECT_EQ(findFrameMismatch(camera, lidar), FrameMismatch::lidarAgainstCamera);
+        EXPECT_EQ(findFrameMismatch(lidar, camera), FrameMismatch::cameraAgainstLidar);
+    }
+}
+
 TEST(FrameCheck, TooLittleMotionTellsNothing) {
-    const auto lidar = lidarDrive(5), camera = asCamera(lidar);
-    EXPECT_EQ(findFrameMismatch(camera, lidar), FrameMismatch::none);
+    const auto lidar = lidarDrive(3), camera = asCamera(lidar);
+    EXPECT_EQ(findFrameMismatch(camera, lidar), FrameMismatch::unknown);
+    EXPECT_EQ(findFrameMismatch(lidar, lidar), FrameMismatch::none);
     const Poses still(500, Eigen::Isometry3d::Identity());
-    EXPECT_EQ(findFrameMismatch(still, still), FrameMismatch::none);
-    EXPECT_EQ(findFrameMismatch({}, {}), FrameMismatch::none);
+    EXPECT_EQ(findFrameMismatch(still, still), FrameMismatch::unknown);
+    EXPECT_EQ(findFrameMismatch({}, {}), FrameMismatch::unknown);
 }
 
 TEST(FrameCheck, ABadEstimateIsNotAMismatch) {

@@ -27,15 +27,20 @@ TEST(BagTopics, OfSeveralOneHasToBeChosen) {
     expectHolds(faultWith(bag, "/front"), {"'/front'", "/points", "/rear/points"});
     expectHolds(faultWith(bag, "/chatter"), {"'/chatter'", "/points", "/rear/points"});
 
+    expectHolds(faultWith(bag, "points"), {"several topics 'points'", "/points", "/rear/points"});
+    expectHolds(faultWith(bag, "ear/points"), {"no scans of the topic 'ear/points'"});
+
     const test::TemporaryFolder folder;
     const auto file = folder / "d.bag";
     writeRos1Bag(file, bag);
-    const auto reader = io::openRos1Bag({file.string(), "/rear/points", "", ""});
-    EXPECT_EQ(reader->label(), "/rear/points");
-    EXPECT_TRUE(reader->otherLabels().empty());
-    const auto scan = reader->next();
-    ASSERT_TRUE(scan);
-    expectScan(*scan, 0, 9);
+    for (const char* label : {"/rear/points", "rear/points"}) {
+        const auto reader = io::openRos1Bag({file.string(), label, "", ""});
+        EXPECT_EQ(reader->label(), "/rear/points");
+        EXPECT_TRUE(reader->otherLabels().empty());
+        const auto scan = reader->next();
+        ASSERT_TRUE(scan);
+        expectScan(*scan, 0, 9);
+    }
 }
 
 TEST(BagTopics, CloudsAndPacketsAreSeveral) {

@@ -159,6 +159,11 @@ TEST_F(CloudFolder, TimesOfNames) {
 
 TEST_F(CloudFolder, FilesOfOneKindOnly) {
     expectError(error(), {scans_.string(), "no scans"});
+    EXPECT_EQ(error().find("KITTI"), std::string::npos);
+    fs::create_directories(scans_ / "sequences/04/velodyne");  // the root of KITTI's data
+    fs::create_directories(scans_ / "sequences/05/velodyne");
+    fs::create_directories(scans_ / "poses");
+    expectError(error(), {"no scans", "KITTI", (scans_ / "sequences/04").string()});
     expectError(errorOf([&] { io::CloudFolder{folder_ / "none"}; }), {"none", "not a folder"});
     writeScans(abc_);
     for (const char* name : {"README.txt", "calib.txt", "poses.txt", "a.jpg", "b", ".c.pcd"})

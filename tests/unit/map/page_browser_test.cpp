@@ -217,6 +217,14 @@ function drag(dx, dy, more) {
 }
 const key = (type, code, name) => document.body.dispatchEvent(
     new KeyboardEvent(type, {code, key: name || '', bubbles: true}));
+const box = eye.box, corners = [...Array(8).keys()].map(i => page.picture.seen(new THREE.Vector3(
+    ...['x', 'y', 'z'].map((axis, k) => (i >> k & 1 ? box.max : box.min)[axis]))));
+say('whole', corners.every(([x, y]) => x > page.picture.covered && x < view.clientWidth &&
+                                       y > 0 && y < view.clientHeight));
+view.focus();
+say('no frame', getComputedStyle(view).outlineStyle === 'none');
+key('keydown', 'Tab', 'Tab');
+say('frame', getComputedStyle(view).outlineStyle !== 'none');
 let before = [eye.yaw, eye.pitch];
 drag(100, -50);
 say('turn', eye.yaw < before[0] && eye.pitch > before[1]);
@@ -250,6 +258,7 @@ for (const place of [[-5, 0, 0], [5, 0, 0]]) {
 }
 say('measure', /^(9[.]9|10[.][01])/.test(byId('result').textContent));
 key('keydown', 'Escape');
+say('no frame', getComputedStyle(view).outlineStyle === 'none');
 say('end', byId('result').hidden && document.querySelectorAll('#marks i').length === 0);
 key('keydown', 'KeyG');
 say('walk', eye.onFoot && Math.abs(eye.target.z - 3.4) < 1e-6);
@@ -281,8 +290,9 @@ TEST_F(PageInBrowser, ObeysHands) {
         std::smatch found;
         ASSERT_TRUE(std::regex_search(shot.dom, found, std::regex("data-said=\"([^\"]*)\"")));
         EXPECT_EQ(found.str(1),
-                  "turn yes, pan yes, wheel yes, pinch yes, held yes, go yes, top yes, measure "
-                  "yes, end yes, walk yes, section yes, finger yes, width yes, labels yes, rest "
+                  "whole yes, no frame yes, frame yes, turn yes, pan yes, wheel yes, pinch yes, "
+                  "held yes, go yes, top yes, measure yes, no frame yes, end yes, walk yes, "
+                  "section yes, finger yes, width yes, labels yes, rest "
                   "yes");
     }
 }

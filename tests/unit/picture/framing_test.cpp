@@ -127,10 +127,10 @@ TEST(Framing, StrayPointsDoNotCountAndLinesDo) {
     for (int i = 0; i <= 1000; ++i) content.points.emplace_back(0.1 * i, 0, 0);
     content.points.emplace_back(1e5, 1e5, 1e4);
     const SnapshotOptions options = square(true, -90, 0);
-    // All but half a percent on either side.
-    EXPECT_NEAR(viewOf(content, options).metresAcross, 99 * kMargin, 0.2);
+    // All but a thousandth on either side.
+    EXPECT_NEAR(viewOf(content, options).metresAcross, 99.9 * kMargin, 0.02);
     content.lines.emplace_back(200, 0, 0);
-    EXPECT_NEAR(viewOf(content, options).metresAcross, 199.5 * kMargin, 0.2);
+    EXPECT_NEAR(viewOf(content, options).metresAcross, 199.9 * kMargin, 0.02);
 }
 
 TEST(Framing, AnOrbitIsAboutOneMiddleAndOfOneSize) {

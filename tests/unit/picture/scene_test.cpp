@@ -66,6 +66,27 @@ TEST(Scene, AMapShowsItsWaysAndALegend) {
               redPixels(picture::picture(*plain, options)) + 2000);
 }
 
+// Where points fill the picture, too: what is beside the words is the background.
+TEST(Scene, TheLegendStandsOnAPlate) {
+    SnapshotOptions options = picture::topView();
+    options.zoom_m = 60;
+    options.pointSize_px = 40;
+    const auto scene = picture::mapScene(someMap(), {someWay(), {}, {}, {}});
+    const auto image = picture::picture(*scene, options);
+    const auto background = [&](int left, int top, int right, int bottom) {
+        std::size_t found = 0;
+        for (int row = top; row < bottom; ++row)
+            for (int column = left; column < right; ++column) {
+                const auto p = pixel(image, column, row);
+                found += p[0] < 40 && p[1] < 40 && p[2] < 45;
+            }
+        return static_cast<double>(found) / ((right - left) * (bottom - top));
+    };
+    EXPECT_LT(background(600, 100, 1300, 800), 0.2);       // points and their shades
+    EXPECT_GT(background(45, 1080 - 230, 95, 1070), 0.6);  // the numbers beside the bar
+    EXPECT_GT(background(1897, 1030, 1901, 1060), 0.9);    // beside the scale bar
+}
+
 TEST(Scene, AMapShowsItsLoops) {
     picture::MapWays ways;
     ways.trajectory = someWay();

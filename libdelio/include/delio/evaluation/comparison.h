@@ -20,10 +20,12 @@ struct Comparison {
     std::vector<Eigen::Isometry3d> reference;  //!< true poses
     std::vector<Eigen::Isometry3d> estimate;   //!< their partners
     std::vector<double> times_s;               //!< since the first pose
-    bool timesAreAssumed = false;  //!< no file has times: ten poses a second, as KITTI has it
-    std::vector<bool> predicted;   //!< scans that were not registered; empty where not known
-    RelativeError perScan;         //!< of the motion from each pose to the next
-    std::string mapPage;           //!< path of a page with the estimate's map; empty: there is none
+    bool timesAreAssumed = false;   //!< no file has times: ten poses a second, as KITTI has it
+    std::vector<bool> predicted;    //!< scans that were not registered; empty where not known
+    RelativeError perScan;          //!< of the motion from each pose to the next
+    bool framesAreUnknown = false;  //!< the path is too short to tell whether both are of one frame
+    std::string referenceFault;     //!< a warning that true poses are known to be wrong, or empty
+    std::string mapPage;     //!< path of a page with the estimate's map; empty: there is none
     double end_error_m = 0;  //!< between the last poses, each seen from the first of its trajectory
     std::size_t unusedReference = 0;     //!< rows of the reference for scans that were not used
     std::size_t unmatchedReference = 0;  //!< poses of the reference (unused ones apart) and of the

@@ -119,6 +119,8 @@ std::string Chart::script() const {
            "set encoding utf8\n"
            "set border 3 lc rgb '#666666'\n"
            "set tics nomirror textcolor rgb '#333333'\n"
+           // gnuplot's own has five decimals: neighbouring ticks may read the same.
+           "set format '%.10g'\n"
            "set grid lc rgb '#cccccc' lw 0.5 lt 1\n"
            "set key outside top center horizontal Left reverse samplen 1.6\n" +
            settings_ +

@@ -55,9 +55,16 @@ Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
     if (asked.empty()) return scans.front();
     const auto found = std::find_if(scans.begin(), scans.end(),
                                     [&](const Topic& topic) { return topic.name == asked; });
-    if (found == scans.end())
+    if (found != scans.end()) return *found;
+    std::vector<Topic> ending;  // in what was asked for, as a whole name: /lidar/points in points
+    for (const Topic& topic : scans)
+        if (endsIn(topic.name, "/" + asked)) ending.push_back(topic);
+    if (ending.size() > 1)
+        throw Error("holds scans of several topics '" + asked + "': choose one of " +
+                    listed(ending));
+    if (ending.empty())
         throw Error("holds no scans of the topic '" + asked + "', but of " + listed(scans));
-    return *found;
+    return ending.front();
 }
 
 SideFile ousterDescription(const ScanSource& source, const std::string& topic,

@@ -64,10 +64,32 @@ FilesByExtension scansIn(const fs::path& folder) {
     return files;
 }
 
+/** A KITTI folder up to two levels below this one, the first by name; empty: there is none. */
+fs::path kittiFolderIn(const fs::path& folder, int levels = 2) {
+    std::vector<fs::path> inner;
+    std::error_code fault;
+    for (const auto& entry : fs::directory_iterator(folder, fault))
+        if (entry.is_directory(fault)) inner.push_back(entry.path());
+    std::sort(inner.begin(), inner.end());
+    for (const auto& one : inner)
+        if (isKittiFolder(one)) return one;
+    for (const auto& one : inner) {
+        if (levels == 1) break;
+        if (const auto found = kittiFolderIn(one, levels - 1); !found.empty()) return found;
+    }
+    return {};
+}
+
 /** The one kind there is. */
 FilesByExtension::value_type onlyKindOf(const FilesByExtension& files, const fs::path& folder) {
-    if (files.empty())
-        throw Error("'" + folder.string() + "' holds no .pcd, .ply, .bin, .txt or .csv: no scans");
+    if (files.empty()) {
+        const fs::path drive = kittiFolderIn(folder);
+        throw Error("'" + folder.string() + "' holds no .pcd, .ply, .bin, .txt or .csv: no scans" +
+                    (drive.empty() ? ""
+                                   : ", but KITTI's drives in folders of their own: give one of "
+                                     "them, as '" +
+                                         drive.string() + "'"));
+    }
     if (files.size() == 1) return *files.begin();
     std::string kinds;
     for (const auto& [extension, ofKind] : files)
