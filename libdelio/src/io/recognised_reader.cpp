@@ -11,24 +11,37 @@ RecognisedReader::RecognisedReader(std::unique_ptr<ScanReader> source)
     recognise();
 }
 
-void RecognisedReader::readAhead() {
-    constexpr std::size_t kScans = 3;
+/** Reads the next scan of the source into `ahead_`; false where there is none. */
+bool RecognisedReader::readOne() {
+    if (ended_) return false;
     try {
-        while (ahead_.size() < kScans) {
-            auto scan = source_->next();
-            if (!scan) return;
+        if (auto scan = source_->next()) {
             ahead_.push_back(std::move(*scan));
+            return true;
         }
     } catch (const std::exception&) {
         fault_ = std::current_exception();
     }
+    ended_ = true;
+    return false;
+}
+
+/** Empty scans tell nothing. */
+void RecognisedReader::readAhead() {
+    constexpr std::size_t kScans = 3, kMost = 20;
+    std::size_t withPoints = 0;
+    while (withPoints < kScans && ahead_.size() < kMost && readOne())
+        withPoints += ahead_.back().points->size() > 0;
 }
 
 void RecognisedReader::recognise() {
     recording_ = source_->recording();
     meta_ = source_->meta();
     if (ahead_.empty()) return;
-    recording_.pointTimes = !ahead_.front().times_s.empty();
+    for (const auto& scan : ahead_) {
+        recording_.anyPoints = recording_.anyPoints || scan.points->size() > 0;
+        recording_.pointTimes = recording_.pointTimes || !scan.times_s.empty();
+    }
     if (ahead_.size() > 1) {
         // The first scan of a stream is a part of a turn.
         const double period_s = ahead_.back().stamp_s - ahead_[ahead_.size() - 2].stamp_s;
@@ -48,16 +61,23 @@ void RecognisedReader::recognise() {
     meta_->motionCompensated = *recording_.motionCompensated;
 }
 
+Recording RecognisedReader::recording() const {
+    Recording recording = recording_;
+    recording.findings = source_->recording().findings;
+    const auto ofStamps = order_.findings();
+    recording.findings.insert(recording.findings.end(), ofStamps.begin(), ofStamps.end());
+    return recording;
+}
+
 std::optional<Scan> RecognisedReader::next() {
     std::optional<Scan> scan;
-    if (!ahead_.empty()) {
-        scan = std::move(ahead_.front());
-        ahead_.pop_front();
-        return scan;
+    while (!scan) {
+        while (ahead_.size() < StampOrder::kWindow && readOne()) continue;
+        if (fault_ && ahead_.empty()) std::rethrow_exception(std::exchange(fault_, nullptr));
+        if (ahead_.empty()) return {};
+        scan = order_.take(ahead_);
     }
-    if (fault_) std::rethrow_exception(std::exchange(fault_, nullptr));
-    scan = source_->next();
-    if (scan) lookAgain(*scan);
+    lookAgain(*scan);
     return scan;
 }
 
@@ -67,7 +87,7 @@ bool RecognisedReader::skip() {
         return true;
     }
     if (fault_) std::rethrow_exception(std::exchange(fault_, nullptr));
-    return source_->skip();
+    return !ended_ && source_->skip();
 }
 
 void RecognisedReader::lookAgain(const Scan& scan) {
