@@ -1,5 +1,6 @@
 #include "recognised_reader.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "compensation.h"
@@ -38,8 +39,9 @@ void RecognisedReader::recognise() {
     recording_ = source_->recording();
     meta_ = source_->meta();
     if (ahead_.empty()) return;
+    recording_.startsEmpty = true;
     for (const auto& scan : ahead_) {
-        recording_.anyPoints = recording_.anyPoints || scan.points->size() > 0;
+        recording_.startsEmpty = recording_.startsEmpty && scan.points->size() == 0;
         recording_.pointTimes = recording_.pointTimes || !scan.times_s.empty();
     }
     if (ahead_.size() > 1) {
@@ -64,15 +66,31 @@ void RecognisedReader::recognise() {
 Recording RecognisedReader::recording() const {
     Recording recording = recording_;
     recording.findings = source_->recording().findings;
-    const auto ofStamps = order_.findings();
-    recording.findings.insert(recording.findings.end(), ofStamps.begin(), ofStamps.end());
+    for (const auto& lines : {findings_.lines(), order_.findings()})
+        recording.findings.insert(recording.findings.end(), lines.begin(), lines.end());
     return recording;
+}
+
+/** The map begins with the first scan. One without times, where the next ones have them, would bend
+ *  it. */
+void RecognisedReader::leaveOutFirst() {
+    constexpr std::size_t kFew = 100;  // points: such a scan is not used in any case
+    if (recording_.motionCompensated.value_or(false)) return;
+    const auto isUntimed = [](const Scan& scan) {
+        return scan.times_s.empty() && scan.points->size() >= kFew;
+    };
+    const auto first = std::find_if_not(ahead_.begin(), ahead_.end(), isUntimed);
+    if (first == ahead_.end() || first->times_s.empty()) return;
+    for (; isUntimed(ahead_.front()); ahead_.pop_front())
+        findings_.add("first scans are left out because they have no point times, as the next have",
+                      ahead_.front().index);
 }
 
 std::optional<Scan> RecognisedReader::next() {
     std::optional<Scan> scan;
     while (!scan) {
         while (ahead_.size() < StampOrder::kWindow && readOne()) continue;
+        if (!std::exchange(began_, true)) leaveOutFirst();
         if (fault_ && ahead_.empty()) std::rethrow_exception(std::exchange(fault_, nullptr));
         if (ahead_.empty()) return {};
         scan = order_.take(ahead_);

@@ -28,6 +28,7 @@ class RecognisedReader : public ScanReader {
  private:
     bool readOne();
     void readAhead();
+    void leaveOutFirst();
     void recognise();
     void lookAgain(const Scan& scan);
 
@@ -36,6 +37,8 @@ class RecognisedReader : public ScanReader {
     std::exception_ptr fault_;  //!< comes after the scans that are ahead
     bool ended_ = false;        //!< the source has no more scans
     StampOrder order_;
+    bool began_ = false;  //!< next() was called
+    Findings findings_;
     Recording recording_;
     std::optional<DriveMeta> meta_;
 };

@@ -10,10 +10,10 @@ std::string describe(const Recording& recording) {
         std::snprintf(rate, sizeof(rate), ", %.3g Hz", *recording.rate_hz);
         text += rate;
     }
-    if (recording.pointTimes)
-        text += ", points with times";
+    if (recording.startsEmpty)
+        text += ", no points in its first scans";
     else
-        text += recording.anyPoints ? ", points without times" : ", no points in its first scans";
+        text += recording.pointTimes ? ", points with times" : ", points without times";
     const std::string how = recording.compensationMeasured  ? " (measured)"
                             : recording.compensationAssumed ? " (assumed)"
                                                             : "";

@@ -4,21 +4,35 @@
 #include <chrono>
 
 namespace delio::io {
+namespace {
+constexpr double kApart = 0.6;        // of the usual interval, at least
+constexpr double kMostUnknown_s = 1;  // scans are sorted over, where that is not known
+}  // namespace
+
 bool StampOrder::isClockSet(const std::deque<Scan>& ahead) const {
     const auto late = [&](const Scan& scan) { return isLate(scan); };
     return (wasSet_ || ahead.size() >= kWindow) && std::all_of(ahead.begin(), ahead.end(), late);
 }
 
-/** Sorted, scans are as far apart as usual. One that has a wrong stamp is not. */
+/** Where sorted scans are as far apart as usual. One that has a wrong stamp is not. */
 std::size_t StampOrder::earliestOf(const std::deque<Scan>& ahead) const {
     std::size_t earliest = 0;
-    const double least_s = usual_s_ / 2;
     for (std::size_t i = 1; i < std::min(kWindow, ahead.size()); ++i) {
-        const bool isApart = !latest_s_ || stampOf(ahead[i]) > *latest_s_ + least_s;
+        const bool isApart = !latest_s_ || stampOf(ahead[i]) > *latest_s_ + kApart * usual_s_;
         if (isApart && ahead[i].stamp_s < ahead[earliest].stamp_s) earliest = i;
     }
     const double gained_s = ahead.front().stamp_s - ahead[earliest].stamp_s;
-    return gained_s > least_s ? earliest : 0;
+    const bool isFar = usual_s_ == 0 && gained_s > kMostUnknown_s;
+    return gained_s > kApart * usual_s_ && !isFar ? earliest : 0;
+}
+
+/** True where the first scan ahead is not one to be given, now or later. Another one comes
+ *  `gained_s` before it. */
+bool StampOrder::isOutOfOrder(const Scan& first, double gained_s) const {
+    if (isLate(first)) return true;
+    if (usual_s_ == 0) return false;
+    if (gained_s > 0) return passedOver_ + 1 >= kWindow || gained_s > kWindow * usual_s_;
+    return passedOver_ > 0 && stampOf(first) < *latest_s_ + kApart * usual_s_;
 }
 
 Scan StampOrder::give(std::deque<Scan>& ahead, std::size_t place) {
@@ -52,8 +66,7 @@ std::optional<Scan> StampOrder::take(std::deque<Scan>& ahead) {
     }
     wasSet_ = false;
     const std::size_t place = earliestOf(ahead);
-    const bool isTooEarly = place > 0 && passedOver_ + 1 >= kWindow;
-    if (isLate(ahead.front()) || isTooEarly) {
+    if (isOutOfOrder(ahead.front(), ahead.front().stamp_s - ahead[place].stamp_s)) {
         findings_.add("scans with a stamp out of order are left out", index);
         ahead.pop_front();
         passedOver_ = 0;

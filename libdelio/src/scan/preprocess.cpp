@@ -99,7 +99,7 @@ std::string whyNoneIsLeft(const Scan& scan, const PreprocessOptions& options) {
     if (nearest > options.max_range)
         return all + mrpt::format(
                          "farther than scan.max_range (the nearest: %.3g m): are they in "
-                         "metres, relative to the sensor?",
+                         "metres and relative to the sensor?",
                          nearest);
     if (farthest < options.min_range)
         return all + mrpt::format(

@@ -10,7 +10,7 @@ struct Recording {
     std::string kind;                       //!< e.g. "ROS 1 bag, topic /points"
     std::string sensor;                     //!< e.g. "Velodyne VLP-16"; empty: not known
     std::optional<double> rate_hz;          //!< scans a second, where two were seen
-    bool anyPoints = false;                 //!< the first scans have points
+    bool startsEmpty = false;               //!< the first scans have no points
     bool pointTimes = false;                //!< points come with the times they were measured at
     std::optional<bool> motionCompensated;  //!< by the recorder; nothing: it does not say
     bool compensationMeasured = false;      //!< from the points: the source does not say it

@@ -12,7 +12,7 @@ namespace {
 /** True where points of that many bytes begin with x, y and z as floats: neither huge nor so small
  *  that a whole number was taken for a float. */
 bool areFloats(const std::vector<std::uint8_t>& bytes, std::size_t step) {
-    constexpr float kLeast = 1e-6F, kMost = 1e7F;
+    constexpr float kLeast = 1e-9F, kMost = 1e7F;
     constexpr std::size_t kSample = 500;
     const std::size_t count = bytes.size() / step;
     if (count == 0 || bytes.size() % step != 0) return false;
