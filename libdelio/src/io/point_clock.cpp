@@ -79,6 +79,7 @@ PointClock::Zero PointClock::zeroOf(const std::vector<Range>& scans, double unit
 /** A turn takes from 1 ms to 1 s: one unit fits. */
 PointClock::Clock PointClock::clockOf(const std::vector<Range>& scans) {
     std::vector<double> durations;
+    durations.reserve(scans.size());
     for (const auto& scan : scans) durations.push_back(scan.last - scan.first);
     std::sort(durations.begin(), durations.end());
     const double usual = durations[(durations.size() - 1) / 2];

@@ -32,7 +32,7 @@ void RecognisedReader::readAhead() {
     constexpr std::size_t kScans = 3, kMost = 20;
     std::size_t withPoints = 0;
     while (withPoints < kScans && ahead_.size() < kMost && readOne())
-        withPoints += ahead_.back().points->size() > 0;
+        withPoints += !ahead_.back().points->empty();
 }
 
 void RecognisedReader::recognise() {
@@ -41,7 +41,7 @@ void RecognisedReader::recognise() {
     if (ahead_.empty()) return;
     recording_.startsEmpty = true;
     for (const auto& scan : ahead_) {
-        recording_.startsEmpty = recording_.startsEmpty && scan.points->size() == 0;
+        recording_.startsEmpty = recording_.startsEmpty && scan.points->empty();
         recording_.pointTimes = recording_.pointTimes || !scan.times_s.empty();
     }
     if (ahead_.size() > 1) {
