@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace delio::io {
 namespace {
@@ -28,11 +29,25 @@ std::size_t StampOrder::earliestOf(const std::deque<Scan>& ahead) const {
 
 /** True where the first scan ahead is not one to be given, now or later. Another one comes
  *  `gained_s` before it. */
-bool StampOrder::isOutOfOrder(const Scan& first, double gained_s) const {
+bool StampOrder::isOutOfOrder(const std::deque<Scan>& ahead, double gained_s) const {
+    const Scan& first = ahead.front();
+    const double least_s = kApart * usual_s_;
     if (isLate(first)) return true;
-    if (usual_s_ == 0) return false;
-    if (gained_s > 0) return passedOver_ + 1 >= kWindow || gained_s > kWindow * usual_s_;
-    return passedOver_ > 0 && stampOf(first) < *latest_s_ + kApart * usual_s_;
+    if (usual_s_ == 0 || (gained_s == 0 && passedOver_ == 0)) return false;
+    if (gained_s > kWindow * usual_s_ || (gained_s > 0 && passedOver_ + 1 >= kWindow)) return true;
+    // A scan that belongs later has a gap there.
+    const auto isNear = [&](const Scan& other) {
+        return std::abs(other.stamp_s - first.stamp_s) < least_s;
+    };
+    return stampOf(first) < *latest_s_ + least_s ||
+           std::any_of(ahead.begin() + 1, ahead.end(), isNear);
+}
+
+/** A scan that is missing does not make another interval the usual one. */
+void StampOrder::learn(double passed_s) {
+    constexpr double kChange = 1.2;
+    usual_s_ =
+        usual_s_ == 0 ? passed_s : std::clamp(passed_s, usual_s_ / kChange, usual_s_ * kChange);
 }
 
 Scan StampOrder::give(std::deque<Scan>& ahead, std::size_t place) {
@@ -45,7 +60,7 @@ Scan StampOrder::give(std::deque<Scan>& ahead, std::size_t place) {
         scan.time += std::chrono::duration_cast<mrpt::Clock::duration>(
             std::chrono::duration<double>(added_s_));
     }
-    if (latest_s_ && stamp_s > *latest_s_) usual_s_ = stamp_s - *latest_s_;
+    if (latest_s_ && stamp_s > *latest_s_) learn(stamp_s - *latest_s_);
     latest_s_ = stamp_s;
     passedOver_ = place == 0 ? 0 : passedOver_ + 1;
     return scan;
@@ -66,7 +81,7 @@ std::optional<Scan> StampOrder::take(std::deque<Scan>& ahead) {
     }
     wasSet_ = false;
     const std::size_t place = earliestOf(ahead);
-    if (isOutOfOrder(ahead.front(), ahead.front().stamp_s - ahead[place].stamp_s)) {
+    if (isOutOfOrder(ahead, ahead.front().stamp_s - ahead[place].stamp_s)) {
         findings_.add("scans with a stamp out of order are left out", index);
         ahead.pop_front();
         passedOver_ = 0;

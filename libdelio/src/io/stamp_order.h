@@ -29,7 +29,8 @@ class StampOrder {
     bool isLate(const Scan& scan) const { return latest_s_ && !(stampOf(scan) > *latest_s_); }
     bool isClockSet(const std::deque<Scan>& ahead) const;
     std::size_t earliestOf(const std::deque<Scan>& ahead) const;
-    bool isOutOfOrder(const Scan& first, double gained_s) const;
+    bool isOutOfOrder(const std::deque<Scan>& ahead, double gained_s) const;
+    void learn(double passed_s);
     Scan give(std::deque<Scan>& ahead, std::size_t place);
 
     std::optional<double> latest_s_;  //!< stamp of the scan that was given last
