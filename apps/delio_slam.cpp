@@ -91,7 +91,9 @@ void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double 
         if (!cli::interrupted()) run.fail(plainMessage(e));
     }
     warnOfOthers(reader, [&](const std::string& text) { run.warn(text); });
-    if (const auto scan = reader.recording().compensatedAfterAll)
+    const auto recording = reader.recording();
+    for (const auto& finding : recording.findings) run.warn(finding);
+    if (const auto scan = recording.compensatedAfterAll)
         run.warn("from scan " + std::to_string(*scan) +
                  " on points look de-skewed by the recorder, at first they did not: run again with "
                  "--set scan.deskew=false");
@@ -130,7 +132,12 @@ Reading resume(SlamCommandLine& line, io::ScanReader& reader, const run::Keeper&
     const std::size_t done = run.record().rows.size(), count = line.count.getValue();
     cli::inform("going on after " + std::to_string(done) + " scans");
     if (count > 0 && done >= count) return {};
-    return read(reader, line.start.getValue() + done * line.every.getValue());
+    const std::size_t every = line.every.getValue();
+    auto next = read(reader, line.start.getValue() + done * every);
+    // Scans that the reader left out were passed over, too.
+    while (next.scan && done > 0 && next.scan->index < run.record().rows.back().scan + every)
+        next = read(reader, 0);
+    return next;
 }
 
 void warnOfRecording(const io::ScanReader& reader, run::Run& run) {

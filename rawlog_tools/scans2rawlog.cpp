@@ -162,6 +162,7 @@ int convert(Arguments& args) {
     Conversion conversion(args, *reader);
     if (!conversion.run()) return cli::kExitInterrupted;
     const std::size_t scans = conversion.finish();
+    for (const auto& finding : reader->recording().findings) cli::warn(finding);
     for (const auto& other : reader->otherLabels())
         cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
     if (!conversion.fault().empty())

@@ -151,7 +151,10 @@ TEST_F(DelioSlam, AnUnusableScanIsAPredictedRow) {
         ASSERT_EQ(run.exitCode, 0) << run.err;
         const auto csv = csvColumns(out_ / "scans.csv");
         EXPECT_EQ(csv.at("predicted"), Words({"0", "0", "1", "0", "1", "0"}));
-        EXPECT_EQ(csv.at("reason"), Words({"", "", "no points", "", "no points", ""}));
+        EXPECT_EQ(csv.at("reason"), Words({"", "", "no points", "",
+                                           "all " + std::to_string(scans[4].size() / 4) +
+                                               " points are NaN or at the sensor",
+                                           ""}));
         EXPECT_EQ(csv.at("points")[2], "0");
         EXPECT_EQ(csv.at("not_finite")[4], std::to_string(scans[4].size() / 4));
         EXPECT_EQ(csv.at("not_finite")[5], "2");
@@ -205,16 +208,42 @@ TEST_F(DelioSlam, AMalformedMetaIsRefused) {
 }
 
 TEST_F(DelioSlam, TimesThatDoNotRise) {
-    const auto scans = test::toyScans(4);
-    for (const auto& times :
-         {std::vector<double>{0, 0.1, 0.1, 0.2}, std::vector<double>{0.3, 0.2, 0.1, 0.0}}) {
+    struct Case {
+        std::vector<double> times;
+        std::size_t used;
+        std::string words;
+    };
+    for (const auto& [times, used, words] :
+         {Case{{0, 0.1, 0.1, 0.3, 0.4}, 4, "out of order are left out: 1 scan (first: scan 2)"},
+          Case{{0, 0.1, 0.3, 0.2, 0.4}, 5, "sorted by their stamps: 1 scan (first: scan 3)"},
+          Case{{10, 10.1, 0.2, 0.3, 0.4},
+               5,
+               "counted on from the scan before: 1 scan (first: scan 2)"},
+          Case{{3, 3, 3, 3, 3}, 5, "counted on from the scan before: 4 scans (first: scan 1)"}}) {
+        SCOPED_TRACE(words);
+        auto scans = test::toyScans(5);
+        if (times[3] < times[2]) std::swap(scans[2], scans[3]);
         writeDrive(rawlog_, scans, false, times);
         const auto run = slam({"--force"});
         EXPECT_EQ(run.exitCode, 0) << run.err;
-        EXPECT_NE(run.err.find("is not later than the one before"), std::string::npos) << run.err;
-        EXPECT_FALSE(fs::exists(out_ / "trajectory_tum.txt"));
-        EXPECT_EQ(rows("trajectory_kitti.txt"), 4U);
+        EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+        EXPECT_EQ(run.err.find(words), run.err.rfind(words)) << run.err;
+        ASSERT_EQ(summary()["warnings"].size(), 1U);
+        EXPECT_NE(summary()["warnings"](0).as<std::string>().find(words), std::string::npos);
+        for (const char* name : {"trajectory_tum.txt", "trajectory_kitti.txt"})
+            EXPECT_EQ(rows(name), used) << name;
+        EXPECT_EQ(rows("scans.csv"), used + 1);
         EXPECT_TRUE(summary().has("metrics"));  // KITTI's truth goes by rows
     }
+}
+
+TEST_F(DelioSlam, SaysWhyNoPointIsUsed) {
+    auto scans = test::toyScans(3);
+    for (auto& scan : scans)
+        for (std::size_t i = 0; i < scan.size(); i += 4) scan[i] += 4.6e6F;
+    writeDrive(rawlog_, scans);
+    test::expectFailure(slam(), 1, {"no scan", "farther than scan.max_range", "4.6e+06 m"});
+    EXPECT_NE(csvColumns(out_ / "scans.csv")["reason"][1].find("scan.max_range"),
+              std::string::npos);
 }
 }  // namespace

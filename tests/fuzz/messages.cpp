@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return fuzz::mayRefuse([&] {
         const auto maker = makerOf(kind);
         const auto* bytes = reinterpret_cast<const std::uint8_t*>(input.rest().data());
-        maker->add({"/points", kTypes[kind], encoding, 1.7e9, {bytes, input.rest().size()}});
+        maker->add({"/points", kTypes[kind], encoding, 1.7e9, {bytes, input.rest().size()}}, 0);
         maker->finish();
         while (maker->take()) {
         }

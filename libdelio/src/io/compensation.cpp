@@ -1,6 +1,6 @@
 #include "compensation.h"
 
-#include <Eigen/Core>
+#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -12,31 +12,47 @@
 namespace delio::io {
 namespace {
 struct Beam {
-    double time_s, azimuth;
+    double time_s, azimuth, range;
     std::uint16_t ring;
 };
 
 double turned(double angle) { return std::remainder(angle, 2 * M_PI); }
 
-/** Near enough for motion to show, and far enough that where a beam leaves the sensor does not. */
+/** Points that are near enough for motion to show, and far enough that where a beam leaves the
+ *  sensor does not; their indices. */
+std::vector<std::size_t> usefulOf(const Scan& scan) {
+    const auto& x = scan.points->getPointsBufferRef_x();
+    const auto& y = scan.points->getPointsBufferRef_y();
+    const auto& z = scan.points->getPointsBufferRef_z();
+    constexpr float kNear = 2, kFar = 30;
+    std::vector<std::size_t> useful;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const float range = std::hypot(x[i], y[i]);
+        if (range > kNear && range < kFar && std::isfinite(z[i]) && std::isfinite(scan.times_s[i]))
+            useful.push_back(i);
+    }
+    return useful;
+}
+
 std::vector<Beam> beamsOf(const Scan& scan) {
     const auto& x = scan.points->getPointsBufferRef_x();
     const auto& y = scan.points->getPointsBufferRef_y();
     const auto& z = scan.points->getPointsBufferRef_z();
-    std::vector<std::uint16_t> rings = scan.rings;
-    if (rings.empty()) {
-        Eigen::Matrix3Xf points(3, static_cast<Eigen::Index>(x.size()));
-        for (std::size_t i = 0; i < x.size(); ++i)
-            points.col(static_cast<Eigen::Index>(i)) << x[i], y[i], z[i];
-        if (!points.allFinite()) return {};
+    const auto useful = usefulOf(scan);
+    std::vector<std::uint16_t> rings;
+    if (scan.rings.empty()) {
+        Eigen::Matrix3Xf points(3, static_cast<Eigen::Index>(useful.size()));
+        for (std::size_t k = 0; k < useful.size(); ++k)
+            points.col(static_cast<Eigen::Index>(k)) << x[useful[k]], y[useful[k]], z[useful[k]];
         rings = scan::ringsOf(points);
+    } else {
+        for (const std::size_t i : useful) rings.push_back(scan.rings[i]);
     }
-    constexpr float kNear = 2, kFar = 30;
     std::vector<Beam> beams;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const float range = std::hypot(x[i], y[i]);
-        if (range > kNear && range < kFar)
-            beams.push_back({scan.times_s[i], std::atan2(y[i], x[i]), rings[i]});
+    for (std::size_t k = 0; k < useful.size(); ++k) {
+        const std::size_t i = useful[k];
+        beams.push_back(
+            {scan.times_s[i], std::atan2(y[i], x[i]), std::hypot(x[i], y[i]), rings[k]});
     }
     std::stable_sort(beams.begin(), beams.end(), [](const Beam& a, const Beam& b) {
         return a.ring != b.ring ? a.ring < b.ring : a.time_s < b.time_s;
@@ -102,6 +118,28 @@ double slopeOf(const std::vector<Beam>& beams, const std::vector<double>& deviat
     }
     return variance > 0 ? covariance / variance : 0;
 }
+/** What is left of the deviations, rad, when one motion of the sensor is taken out, even but for
+ * its turning: the quantile `share` of it. */
+double leftByMotion(const std::vector<Beam>& beams, const std::vector<double>& deviations,
+                    double share) {
+    constexpr int kUnknowns = 6;
+    const auto count = static_cast<Eigen::Index>(beams.size());
+    Eigen::Matrix<double, Eigen::Dynamic, kUnknowns> model(count, kUnknowns);
+    Eigen::VectorXd left(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Beam& beam = beams[static_cast<std::size_t>(i)];
+        constexpr double kTurn_s = 0.1;  // all columns are of one size
+        const double time = beam.time_s / kTurn_s, across = time / beam.range;
+        model.row(i) << -std::sin(beam.azimuth) * across, std::cos(beam.azimuth) * across, 1, time,
+            time * time, time * time * time;
+        left[i] = deviations[static_cast<std::size_t>(i)];
+    }
+    const Eigen::Matrix<double, kUnknowns, kUnknowns> square = model.transpose() * model;
+    const Eigen::Matrix<double, kUnknowns, 1> motion =
+        square.ldlt().solve(model.transpose() * left);
+    left = (left - model * motion).cwiseAbs();
+    return quantile(std::vector<double>(left.data(), left.data() + count), share);
+}
 }  // namespace
 
 std::optional<bool> isMotionCompensated(const Scan& scan) {
@@ -111,12 +149,17 @@ std::optional<bool> isMotionCompensated(const Scan& scan) {
     constexpr double kSlowest = 2 * M_PI, kFastest = 200 * M_PI;
     if (!(std::abs(rate) > kSlowest && std::abs(rate) < kFastest)) return {};
     for (int i = 0; i < 3; ++i) rate += slopeOf(beams, deviations(beams, rate));
-    auto off = deviations(beams, rate);
-    for (double& deviation : off) deviation = std::abs(deviation);
+    const auto off = deviations(beams, rate);
+    auto sizes = off;
+    for (double& size : sizes) size = std::abs(size);
     // A packet's block has one time for 0.4 deg of turning; what does not turn is far off.
-    constexpr double kMoved = 0.5 * M_PI / 180, kNoTurn = 20 * M_PI / 180;
-    const double most = quantile(off, 0.95);
+    constexpr double kMoved = 0.5 * M_PI / 180, kNoTurn = 20 * M_PI / 180, kShare = 0.95;
+    const double most = quantile(sizes, kShare);
     if (most > kNoTurn) return {};
-    return most > kMoved;
+    if (most <= kMoved) return false;
+    // Times of packets that are not those of the lasers, or rings that mix lasers, are no motion.
+    constexpr double kExplained = 0.7;
+    if (leftByMotion(beams, off, kShare) > kExplained * most) return {};
+    return true;
 }
 }  // namespace delio::io

@@ -7,7 +7,7 @@ namespace delio::io {
 /** Whether the recorder took the sensor's motion out of a scan's points, as the points tell: of a
  *  turning sensor that says when each was measured, the azimuths of a ring rise with time to a
  *  fraction of a degree, but for points that were moved. A sensor that stands still looks as if
- *  they were not, which does no harm. Nothing: there are no times, too few points, or nothing
- *  turns. */
+ *  they were not, which does no harm. Nothing: there are no times, too few points, nothing
+ *  turns, or no motion explains the azimuths. */
 std::optional<bool> isMotionCompensated(const Scan& scan);
 }  // namespace delio::io

@@ -32,7 +32,7 @@ void readPointExtras(const std::string& stem, Scan& scan) {
     readValues(stem + ".time", count, scan.times_s);
     constexpr float kLongest_s = 1;  // no LiDAR turns slower than so
     for (const float time_s : scan.times_s)
-        if (!(std::abs(time_s) <= kLongest_s))
+        if (std::abs(time_s) > kLongest_s)
             throw Error("'" + stem + ".time' has a time of " + std::to_string(time_s) +
                         " s from its scan's stamp");
 }

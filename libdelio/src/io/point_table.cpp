@@ -153,13 +153,36 @@ std::vector<std::uint16_t> ringsOf(const std::vector<double>& raw) {
     return rings;
 }
 
+/** Rows of an organised cloud, or its columns where there are fewer of them. */
 std::vector<std::uint16_t> rowsOf(std::size_t count, std::size_t rows) {
     constexpr std::size_t kFewest = 2, kMost = 256;
-    if (rows < kFewest || rows > kMost || count % rows != 0 || count / rows < rows) return {};
+    if (rows < kFewest || count == 0 || count % rows != 0) return {};
+    const std::size_t columns = count / rows, beams = std::min(rows, columns);
+    if (beams < kFewest || beams > kMost) return {};
     std::vector<std::uint16_t> rings(count);
     for (std::size_t i = 0; i < count; ++i)
-        rings[i] = static_cast<std::uint16_t>(i / (count / rows));
+        rings[i] = static_cast<std::uint16_t>(rows <= columns ? i / columns : i % columns);
     return rings;
+}
+/** A point at the origin is how many drivers write that there was no return. */
+std::vector<bool> measuredOf(const mrpt::maps::CPointsMap& cloud) {
+    const auto& x = cloud.getPointsBufferRef_x();
+    const auto& y = cloud.getPointsBufferRef_y();
+    const auto& z = cloud.getPointsBufferRef_z();
+    std::vector<bool> isMeasured(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const bool isFinite = std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i]);
+        isMeasured[i] = isFinite && (x[i] != 0 || y[i] != 0 || z[i] != 0);
+    }
+    return isMeasured;
+}
+
+std::optional<RecordedTimes> timesIn(const PointLayout& layout, const Values& values,
+                                     const Scan& scan) {
+    const PointField* time = find(layout, kTimes);
+    if (!time) return {};
+    return RecordedTimes{values.of<double>(*time), measuredOf(*scan.points),
+                         time->kind == NumberKind::kUint32, scan.stamp_s, scan.index};
 }
 }  // namespace
 
@@ -182,55 +205,31 @@ std::size_t bytesOf(NumberKind kind) {
 }
 
 Scan PointTable::scan(const PointLayout& layout, const std::uint8_t* data, std::size_t bytes,
-                      std::size_t count, std::size_t rows, double stamp_s) {
+                      std::size_t count, std::size_t rows, const ScanPlace& place) {
     check(layout, bytes, count);
     const Values values(layout, data, count);
     Scan scan;
-    scan.stamp_s = stamp_s;
-    scan.time = timeOf(stamp_s);
+    scan.index = place.index;
+    scan.stamp_s = place.stamp_s;
+    scan.time = timeOf(place.stamp_s);
     scan.points = cloudOf(layout, values, count);
     if (const PointField* ring = find(layout, kRings))
         scan.rings = ringsOf(values.of<double>(*ring));
     else
         scan.rings = rowsOf(count, rows);
-    if (const PointField* time = find(layout, kTimes))
-        setTimes(values.of<double>(*time), stamp_s, scan);
+    if (auto times = timesIn(layout, values, scan))
+        scan.times_s = clock_.secondsOf(std::move(*times));
     return scan;
 }
 
-void PointTable::setTimes(const std::vector<double>& raw, double stamp_s, Scan& scan) {
-    double first = INFINITY, last = -INFINITY;
-    for (const double time : raw)
-        if (std::isfinite(time)) {
-            first = std::min(first, time);
-            last = std::max(last, time);
-        }
-    if (!(last > first)) return;
-    if (!clock_) {
-        constexpr std::size_t kEnough = 8;  // points, of which some are of another part of a turn
-        if (raw.size() < kEnough) return;
-        Clock clock;
-        // A turn takes from 1 ms to 1 s: one unit fits.
-        while (clock.unit_s > 1e-9 && (last - first) * clock.unit_s >= 1) clock.unit_s *= 1e-3;
-        constexpr double kNear_s = 2;
-        if (std::abs(first * clock.unit_s - stamp_s) < kNear_s && stamp_s > kNear_s)
-            clock.zero = Clock::Zero::kUnix;
-        else if (std::max(std::abs(first), std::abs(last)) * clock.unit_s >= 1)
-            clock.zero = Clock::Zero::kFirstPoint;
-        clock_ = clock;
-    }
-    double zero = 0;
-    if (clock_->zero == Clock::Zero::kFirstPoint) zero = first;
-    if (clock_->zero == Clock::Zero::kUnix) zero = stamp_s / clock_->unit_s;
-    scan.times_s.reserve(raw.size());
-    for (const double time : raw) {
-        // What was not measured has no time, nor coordinates that would need one.
-        const double time_s = std::isfinite(time) ? (time - zero) * clock_->unit_s : 0;
-        if (!(std::abs(time_s) <= 1)) {  // a clock that was set: it tells nothing
-            scan.times_s.clear();
-            return;
-        }
-        scan.times_s.push_back(static_cast<float>(time_s));
-    }
+bool PointTable::look(const PointLayout& layout, const std::uint8_t* data, std::size_t bytes,
+                      std::size_t count, double stamp_s) {
+    check(layout, bytes, count);
+    const Values values(layout, data, count);
+    Scan scan;
+    scan.stamp_s = stamp_s;
+    scan.points = cloudOf(layout, values, count);
+    auto times = timesIn(layout, values, scan);
+    return !times || clock_.look(std::move(*times));
 }
 }  // namespace delio::io

@@ -1,5 +1,6 @@
 #include "recognised_reader.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "compensation.h"
@@ -11,24 +12,38 @@ RecognisedReader::RecognisedReader(std::unique_ptr<ScanReader> source)
     recognise();
 }
 
-void RecognisedReader::readAhead() {
-    constexpr std::size_t kScans = 3;
+/** Reads the next scan of the source into `ahead_`; false where there is none. */
+bool RecognisedReader::readOne() {
+    if (ended_) return false;
     try {
-        while (ahead_.size() < kScans) {
-            auto scan = source_->next();
-            if (!scan) return;
+        if (auto scan = source_->next()) {
             ahead_.push_back(std::move(*scan));
+            return true;
         }
     } catch (const std::exception&) {
         fault_ = std::current_exception();
     }
+    ended_ = true;
+    return false;
+}
+
+/** Empty scans tell nothing. */
+void RecognisedReader::readAhead() {
+    constexpr std::size_t kScans = 3, kMost = 20;
+    std::size_t withPoints = 0;
+    while (withPoints < kScans && ahead_.size() < kMost && readOne())
+        withPoints += !ahead_.back().points->empty();
 }
 
 void RecognisedReader::recognise() {
     recording_ = source_->recording();
     meta_ = source_->meta();
     if (ahead_.empty()) return;
-    recording_.pointTimes = !ahead_.front().times_s.empty();
+    recording_.startsEmpty = true;
+    for (const auto& scan : ahead_) {
+        recording_.startsEmpty = recording_.startsEmpty && scan.points->empty();
+        recording_.pointTimes = recording_.pointTimes || !scan.times_s.empty();
+    }
     if (ahead_.size() > 1) {
         // The first scan of a stream is a part of a turn.
         const double period_s = ahead_.back().stamp_s - ahead_[ahead_.size() - 2].stamp_s;
@@ -48,16 +63,39 @@ void RecognisedReader::recognise() {
     meta_->motionCompensated = *recording_.motionCompensated;
 }
 
+Recording RecognisedReader::recording() const {
+    Recording recording = recording_;
+    recording.findings = source_->recording().findings;
+    for (const auto& lines : {findings_.lines(), order_.findings()})
+        recording.findings.insert(recording.findings.end(), lines.begin(), lines.end());
+    return recording;
+}
+
+/** The map begins with the first scan. One without times, where the next ones have them, would bend
+ *  it. */
+void RecognisedReader::leaveOutFirst() {
+    constexpr std::size_t kFew = 100;  // points: such a scan is not used in any case
+    if (recording_.motionCompensated.value_or(false)) return;
+    const auto isUntimed = [](const Scan& scan) {
+        return scan.times_s.empty() && scan.points->size() >= kFew;
+    };
+    const auto first = std::find_if_not(ahead_.begin(), ahead_.end(), isUntimed);
+    if (first == ahead_.end() || first->times_s.empty()) return;
+    for (; isUntimed(ahead_.front()); ahead_.pop_front())
+        findings_.add("first scans are left out because they have no point times, as the next have",
+                      ahead_.front().index);
+}
+
 std::optional<Scan> RecognisedReader::next() {
     std::optional<Scan> scan;
-    if (!ahead_.empty()) {
-        scan = std::move(ahead_.front());
-        ahead_.pop_front();
-        return scan;
+    while (!scan) {
+        while (ahead_.size() < StampOrder::kWindow && readOne()) continue;
+        if (!std::exchange(began_, true)) leaveOutFirst();
+        if (fault_ && ahead_.empty()) std::rethrow_exception(std::exchange(fault_, nullptr));
+        if (ahead_.empty()) return {};
+        scan = order_.take(ahead_);
     }
-    if (fault_) std::rethrow_exception(std::exchange(fault_, nullptr));
-    scan = source_->next();
-    if (scan) lookAgain(*scan);
+    lookAgain(*scan);
     return scan;
 }
 
@@ -67,7 +105,7 @@ bool RecognisedReader::skip() {
         return true;
     }
     if (fault_) std::rethrow_exception(std::exchange(fault_, nullptr));
-    return source_->skip();
+    return !ended_ && source_->skip();
 }
 
 void RecognisedReader::lookAgain(const Scan& scan) {

@@ -4,11 +4,13 @@
 #include <memory>
 
 #include "delio/io/scan_reader.h"
+#include "stamp_order.h"
 
 namespace delio::io {
-/** A reader whose recording() and meta() are whole from the beginning: it reads three scans ahead,
- *  and looks at the points where the source does not say whether they were de-skewed. That is
- *  looked at again now and then: a vehicle that stood first looks as if they were not. */
+/** A reader whose recording() and meta() are whole from the beginning, and whose stamps rise (see
+ *  StampOrder). It reads three scans with points ahead, and looks at these where the source does
+ * not say whether they were de-skewed. It looks again now and then: scans of a vehicle that stood
+ * first look as if they were not. */
 class RecognisedReader : public ScanReader {
  public:
     explicit RecognisedReader(std::unique_ptr<ScanReader> source);
@@ -19,18 +21,24 @@ class RecognisedReader : public ScanReader {
     const std::set<std::string>& otherLabels() const override { return source_->otherLabels(); }
     std::optional<double> fraction() const override { return source_->fraction(); }
     const std::optional<DriveMeta>& meta() const override { return meta_; }
-    Recording recording() const override { return recording_; }
+    Recording recording() const override;
     SideFile calibration() const override { return source_->calibration(); }
     SideFile truth() const override { return source_->truth(); }
 
  private:
+    bool readOne();
     void readAhead();
+    void leaveOutFirst();
     void recognise();
     void lookAgain(const Scan& scan);
 
     std::unique_ptr<ScanReader> source_;
     std::deque<Scan> ahead_;
     std::exception_ptr fault_;  //!< comes after the scans that are ahead
+    bool ended_ = false;        //!< the source has no more scans
+    StampOrder order_;
+    bool began_ = false;  //!< next() was called
+    Findings findings_;
     Recording recording_;
     std::optional<DriveMeta> meta_;
 };

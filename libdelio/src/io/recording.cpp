@@ -10,8 +10,13 @@ std::string describe(const Recording& recording) {
         std::snprintf(rate, sizeof(rate), ", %.3g Hz", *recording.rate_hz);
         text += rate;
     }
-    text += recording.pointTimes ? ", points with times" : ", points without times";
-    const std::string how = recording.compensationMeasured ? " (measured)" : "";
+    if (recording.startsEmpty)
+        text += ", no points in its first scans";
+    else
+        text += recording.pointTimes ? ", points with times" : ", points without times";
+    const std::string how = recording.compensationMeasured  ? " (measured)"
+                            : recording.compensationAssumed ? " (assumed)"
+                                                            : "";
     if (recording.motionCompensated)
         text += (*recording.motionCompensated ? ", de-skewed by the recorder"
                                               : ", not de-skewed by the recorder") +

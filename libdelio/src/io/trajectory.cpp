@@ -168,8 +168,6 @@ std::vector<double> readTimes(const std::string& path) {
     auto in = opened(path);
     forEachLine(in, path, [&](const std::vector<double>& numbers, const std::string& where) {
         if (numbers.size() != 1) throw Error(where + ": one time in seconds is wanted");
-        if (!times.empty() && numbers[0] < times.back())
-            throw Error(where + ": the times fall; they must be in order");
         times.push_back(numbers[0]);
     });
     return times;

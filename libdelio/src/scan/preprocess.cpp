@@ -1,5 +1,8 @@
 #include "delio/scan/preprocess.h"
 
+#include <mrpt/core/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "../core/portable_math.h"
@@ -75,6 +78,36 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     if (options.deskew && scan.times_s.empty() && options.sweep_s > 0)
         cloud.times_s = azimuthTimes(cloud.points, options.sweep_s);
     return cloud;
+}
+
+std::string whyNoneIsLeft(const Scan& scan, const PreprocessOptions& options) {
+    const std::size_t count = scan.points->size();
+    if (count == 0) return "no points";
+    if (!preprocess(scan, options).indices.empty()) return "";
+    double nearest = INFINITY, farthest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double range = Eigen::Vector3d(scan.points->getPointsBufferRef_x()[i],
+                                             scan.points->getPointsBufferRef_y()[i],
+                                             scan.points->getPointsBufferRef_z()[i])
+                                 .norm();
+        if (!(std::isfinite(range) && range > 0)) continue;
+        nearest = std::min(nearest, range);
+        farthest = std::max(farthest, range);
+    }
+    const std::string all = "all " + std::to_string(count) + " points are ";
+    if (farthest == 0) return all + "NaN or at the sensor";
+    if (nearest > options.max_range)
+        return all + mrpt::format(
+                         "farther than scan.max_range (the nearest: %.3g m): are they in "
+                         "metres and relative to the sensor?",
+                         nearest);
+    if (farthest < options.min_range)
+        return all + mrpt::format(
+                         "nearer than scan.min_range (the farthest: %.3g m): are they in "
+                         "metres?",
+                         farthest);
+    return "none of the " + std::to_string(count) +
+           " points lies between scan.min_range and scan.max_range and has a time";
 }
 
 std::vector<std::uint16_t> neighbouringRings(const PointCloud& cloud,

@@ -113,6 +113,15 @@ TEST(BagContainers, DatabaseIsReadInOrderOfTime) {
     EXPECT_EQ(outcome.scans, 5U);
 }
 
+TEST(BagContainers, DatabaseThatDoesNotNameItsFormat) {
+    const test::TemporaryFolder folder;
+    const auto file = folder / "d.db3";
+    BagContents bag = drive(3, Kind::kCdr);
+    bag.encoding = "";
+    test::writeDatabase(file, bag);
+    EXPECT_EQ(readAll(io::openRos2Database, {file.string(), "", "", ""}).scans, 3U);
+}
+
 /** Halves of a drive in two files of a ROS 2 folder. */
 void writeFolder(const std::filesystem::path& folder, bool mcap, const std::string& prefix) {
     const BagContents all = drive(6, Kind::kCdr);

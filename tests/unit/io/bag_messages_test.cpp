@@ -16,7 +16,7 @@ io::Message messageOf(const std::string& bytes, Kind kind, double log_s = 0) {
 
 Scan scanOf(const std::string& bytes, Kind kind, double log_s = 0) {
     const auto maker = io::makeCloudMaker();
-    maker->add(messageOf(bytes, kind, log_s));
+    maker->add(messageOf(bytes, kind, log_s), 0);
     auto scan = maker->take();
     if (!scan) throw Error("no scan");
     EXPECT_FALSE(maker->take());
@@ -143,9 +143,9 @@ TEST(BagMessages, PacketsAreAStream) {
         std::vector<double> times;
         const auto maker =
             io::makePacketMaker(io::ScanType::kVelodyne, std::make_unique<Notes>(times));
-        maker->add(messageOf(velodyneMessage(kind, {1, 1.5}), kind));
+        maker->add(messageOf(velodyneMessage(kind, {1, 1.5}), kind), 0);
         EXPECT_FALSE(maker->take());
-        maker->add(messageOf(velodyneMessage(kind, {2, 0}), kind, 2.5));
+        maker->add(messageOf(velodyneMessage(kind, {2, 0}), kind, 2.5), 0);
         EXPECT_TRUE(maker->take());
         EXPECT_FALSE(maker->take());
         maker->finish();
@@ -154,7 +154,7 @@ TEST(BagMessages, PacketsAreAStream) {
         EXPECT_EQ(times, (std::vector<double>{1, 1.5, 2, 2.5}));
         const std::string whole = velodyneMessage(kind, {1, 2});
         for (std::size_t bytes = 0; bytes < whole.size(); bytes += 13)
-            EXPECT_THROW(maker->add(messageOf(whole.substr(0, bytes), kind)), Error) << bytes;
+            EXPECT_THROW(maker->add(messageOf(whole.substr(0, bytes), kind), 0), Error) << bytes;
     }
 }
 
@@ -166,8 +166,8 @@ TEST(BagMessages, OusterPackets) {
         const auto message = [&](std::size_t size) {
             return test::WireWriter(kind).byteArray(std::string(size, 'p')).message();
         };
-        maker->add(messageOf(message(1206), kind, 7));
-        maker->add(messageOf(message(48), kind, 8));  // of its IMU
+        maker->add(messageOf(message(1206), kind, 7), 0);
+        maker->add(messageOf(message(48), kind, 8), 0);  // of its IMU
         EXPECT_EQ(times, std::vector<double>{7});
         maker->finish();
         const auto ofOther =
@@ -176,7 +176,7 @@ TEST(BagMessages, OusterPackets) {
         EXPECT_THROW(ofOther->finish(), Error);
         std::string lie = message(1206);
         lie.resize(100);
-        EXPECT_THROW(maker->add(messageOf(lie, kind)), Error);
+        EXPECT_THROW(maker->add(messageOf(lie, kind), 0), Error);
     }
 }
 

@@ -48,7 +48,7 @@ inline void writeBin(const fs::path& file, const std::vector<Xyzi>& points) {
 /** The scan that PointTable makes of records. */
 inline Scan scanOf(const io::CloudRecords& records) {
     return io::PointTable().scan(records.layout, records.bytes.data(), records.bytes.size(),
-                                 records.count, records.rows, 0);
+                                 records.count, records.rows, {});
 }
 
 inline std::vector<Xyzi> pointsOf(const Scan& scan) {

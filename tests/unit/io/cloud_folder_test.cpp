@@ -3,6 +3,8 @@
 
 #include <mrpt/core/Clock.h>
 
+#include <cmath>
+
 #include "cloud_files.h"
 #include "delio/io/rawlog_writer.h"
 #include "io/drive_clock.h"
@@ -120,8 +122,6 @@ TEST_F(CloudFolder, RefusesBrokenTimesFiles) {
     expectError(with("0\n1\n"), {file, "2 times", "3 scans"});
     expectError(with("0\n1\n2\n3\n"), {file, "4 times"});
     expectError(with(""), {file, "0 times"});
-    expectError(with("0\n1\n1\n"), {file, "scan 2"});
-    expectError(with("0\n2\n1\n"), {file, "scan 2"});
     expectError(with("0\nnoon\n1\n"), {file, "line 2"});
     expectError(with("0\n1 7\n1\n"), {file, "line 2"});
     expectError(with("0\nnan\n1\n"), {file, "line 2"});
@@ -154,7 +154,63 @@ TEST_F(CloudFolder, TimesOfNames) {
     fs::remove_all(scans_);
     fs::create_directory(scans_);
     writeScans({"1616513421.5.bin", "1616513421.50.bin"});
-    expectError(error(), {scans_.string(), "scan 1"});
+    EXPECT_EQ(stamps(), (Times{1616513421.5, 1616513421.5}));
+}
+
+// Whoever opens the folder by openScans() gets scans whose stamps rise.
+TEST_F(CloudFolder, TimesThatDoNotRiseAreNoFault) {
+    writeScans(abc_);
+    for (const auto& times : {std::vector<double>{0, 1, 1}, std::vector<double>{0, 2, 1}}) {
+        std::string text;
+        for (const double time : times) text += std::to_string(time) + "\n";
+        writeText(scans_ / "times.txt", text);
+        EXPECT_EQ(stamps(), times);
+        const auto reader = io::openScans(scans_.string());
+        std::vector<double> given;
+        while (const auto scan = reader->next()) given.push_back(scan->stamp_s);
+        EXPECT_EQ(given,
+                  times[1] == 2 ? (std::vector<double>{0, 1, 2}) : (std::vector<double>{0, 1}));
+        EXPECT_EQ(reader->recording().findings.size(), 1U);
+    }
+}
+
+// The first scan's times are those of another unit than the others', and one is of no time at all.
+TEST_F(CloudFolder, SeveralScansTellTheUnitOfPointTimes) {
+    for (int scan = 0; scan < 6; ++scan) {
+        std::string text = "x y z t\n";
+        for (int i = 0; i < 50; ++i) {
+            const double time_ns = scan == 3 && i == 4 ? 7e12 : (scan == 0 ? 4e9 : 1e8) * i / 49;
+            text += "5 " + std::to_string(i) + " 1 " + std::to_string(time_ns) + "\n";
+        }
+        writeText(scans_ / (std::to_string(scan) + ".txt"), text);
+    }
+    const auto reader = io::openScans(scans_.string());
+    EXPECT_TRUE(reader->recording().pointTimes);
+    for (int scan = 0; scan < 6; ++scan) {
+        const auto times_s = reader->next()->times_s;
+        ASSERT_EQ(times_s.size(), scan == 0 ? 0U : 50U) << scan;
+        if (scan == 0) continue;
+        EXPECT_NEAR(times_s.back(), 0.1, 1e-6) << scan;
+        EXPECT_EQ(std::isnan(times_s[4]), scan == 3) << scan;
+    }
+    const auto findings = reader->recording().findings;
+    ASSERT_EQ(findings.size(), 2U);
+    EXPECT_NE(findings[0].find("1 scan (first: scan 0)"), std::string::npos) << findings[0];
+    EXPECT_NE(findings[1].find("1 point of 1 scan (first: scan 3)"), std::string::npos);
+}
+
+TEST_F(CloudFolder, EmptyFirstScansTellNothingOfTimes) {
+    const std::string head = "FIELDS x y z time\nSIZE 4 4 4 4\nTYPE F F F F\nPOINTS ";
+    for (int scan = 0; scan < 6; ++scan) {
+        std::string text = head + (scan < 4 ? "0" : "20") + "\nDATA ascii\n";
+        for (int i = 0; scan >= 4 && i < 20; ++i)
+            text += "5 6 7 " + std::to_string(0.005 * i) + "\n";
+        writeText(scans_ / (std::to_string(scan) + ".pcd"), text);
+    }
+    const auto of = [&] { return describe(io::openScans(scans_.string())->recording()); };
+    EXPECT_NE(of().find(", points with times"), std::string::npos) << of();
+    for (int scan = 4; scan < 6; ++scan) fs::remove(scans_ / (std::to_string(scan) + ".pcd"));
+    EXPECT_NE(of().find(", no points in its first scans"), std::string::npos) << of();
 }
 
 TEST_F(CloudFolder, FilesOfOneKindOnly) {
@@ -221,6 +277,20 @@ TEST_F(CloudFolder, BinWithAndWithoutRings) {
         writeText(scans_ / "0.bin", text);
         expectError(error(), {(scans_ / "0.bin").string()});
     }
+}
+
+// 16 points of 28 bytes (x y z intensity, then whole numbers) are as many bytes as 28 of 16.
+TEST_F(CloudFolder, BinOfAnotherLayoutIsRefused) {
+    std::string bytes;
+    for (std::uint32_t i = 0; i < 16; ++i)
+        bytes += raw(Xyzi{0.5F, 1, 2, 30}) + raw(1000000 * i, 1U + i, 512 * i);
+    ASSERT_EQ(bytes.size(), 448U);
+    writeText(scans_ / "0.bin", bytes);
+    expectError(error(), {(scans_ / "0.bin").string(), "28 bytes", ".pcd"});
+    fs::create_directories(folder_ / "seq" / "velodyne");
+    writeText(folder_ / "seq" / "velodyne" / "000000.bin", bytes);
+    const auto kitti = io::openKittiFolder({folder_ / "seq", "", "", ""});
+    expectError(errorOf([&] { kitti->next(); }), {"000000.bin", "28 bytes"});
 }
 
 TEST_F(CloudFolder, EndsAtAFault) {

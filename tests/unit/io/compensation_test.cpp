@@ -63,6 +63,33 @@ TEST(Compensation, PointsThatWereMoved) {
     }
 }
 
+TEST(Compensation, PointsWithoutCoordinatesOrTimesDoNotCount) {
+    for (const double speed_ms : {0.0, 10.0})
+        for (const bool told : {true, false}) {
+            Turn turn;
+            turn.speed_ms = speed_ms;
+            turn.told = told;
+            Scan scan = scanOf(turn);
+            for (std::size_t i = 0; i < scan.points->size(); i += 5) {
+                scan.points->setPoint(i, NAN, NAN, NAN);
+                scan.times_s[i + 1] = NAN;
+            }
+            EXPECT_EQ(isMotionCompensated(scan), std::optional<bool>(speed_ms > 0)) << told;
+        }
+}
+
+// Some drivers' times are not those of the lasers.
+TEST(Compensation, NothingIsClaimedThatNoMotionExplains) {
+    for (const bool told : {true, false}) {
+        Turn turn;
+        turn.told = told;
+        Scan scan = scanOf(turn);
+        for (std::size_t i = 0; i < scan.times_s.size(); ++i)
+            scan.times_s[i] += 1e-3F * std::sin(static_cast<float>(i * 7919 % 1000));
+        EXPECT_FALSE(isMotionCompensated(scan)) << told;
+    }
+}
+
 TEST(Compensation, WhatDoesNotTell) {
     Scan untimed = scanOf({});
     untimed.times_s.clear();

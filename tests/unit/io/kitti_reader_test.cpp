@@ -153,6 +153,25 @@ TEST_F(KittiReader, NominalTimesAreSaid) {
     EXPECT_EQ(io::KittiReader{sequence_}.recording().kind, "KITTI odometry, nominal times");
 }
 
+// KITTI's own scans are de-skewed; those of another sensor in its format need not be.
+TEST_F(KittiReader, ThatScansAreDeskewedIsAssumedOfOtherSensors) {
+    const auto lineWith = [&](const std::string& calib) {
+        writeText(sequence_ / "calib.txt", calib);
+        return describe(io::KittiReader(sequence_).recording());
+    };
+    const std::string Tr = "Tr: 0 -1 0 0 0 0 -1 -0.08 1 0 0 -0.27\n";
+    EXPECT_NE(lineWith(Tr).find("de-skewed by the recorder (assumed)"), std::string::npos);
+    EXPECT_EQ(lineWith("P0: 1 0 0 0 0 1 0 0 0 0 1 0\n" + Tr).find("assumed"), std::string::npos);
+}
+
+TEST_F(KittiReader, TimesThatDoNotRiseAreNoFault) {
+    writeText(sequence_ / "times.txt", "0\n0.1\n0.1\n0.3\n");
+    const auto reader = io::openScans(sequence_.string());
+    std::vector<std::size_t> scans;
+    while (const auto scan = reader->next()) scans.push_back(scan->index);
+    EXPECT_EQ(scans, (std::vector<std::size_t>{0, 1, 3}));
+}
+
 TEST_F(KittiReader, RefusesADamagedScan) {
     const fs::path cut = sequence_ / "velodyne" / "000002.bin";
     writeText(cut, "123456789012345");

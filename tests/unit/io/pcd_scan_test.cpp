@@ -147,6 +147,53 @@ TEST_F(PcdScan, RowsOfAnOrganisedCloudAreRings) {
     EXPECT_EQ(scanOf(read(pcd)).rings, (std::vector<std::uint16_t>{0, 0, 0, 1, 1, 1}));
 }
 
+// As some programs write a cloud whose size they do not know yet.
+TEST_F(PcdScan, WidthAndHeightOfZero) {
+    std::string byField;
+    for (std::size_t k = 0; k < 4; ++k)
+        for (const auto& p : pointsOf(3, 500)) byField += raw(p[k]);
+    std::string lines;
+    for (int i = 0; i < 500; ++i) lines += "1 2 3 4\n";
+    for (const auto& [data, bytes] :
+         {std::pair<const char*, std::string>{"binary", rawPoints(pointsOf(3, 500))},
+          {"binary_compressed", compressed(byField)},
+          {"ascii", lines}})
+        for (const char* points : {"POINTS 500\n", "POINTS 0\n", ""}) {
+            Pcd pcd;
+            pcd.width = pcd.height = "0";
+            pcd.data = data;
+            pcd.bytes = bytes;
+            std::string text = pcd.text();
+            const std::string said = "POINTS 5\n";
+            text.replace(text.find(said), said.size(), points);
+            EXPECT_EQ(scanOf(read(text)).points->size(), 500U) << data << " " << points;
+        }
+    Pcd none;
+    none.width = none.points = "0";
+    none.bytes = "";
+    EXPECT_EQ(scanOf(read(none)).points->size(), 0U);
+}
+
+// As Livox's recorder writes tag and line: a line end and a space may be among them.
+TEST_F(PcdScan, RawCharactersInAscii) {
+    Pcd pcd;
+    pcd.fields = "x y z intensity tag line";
+    pcd.sizes = "4 4 4 4 1 1";
+    pcd.types = "F F F F U U";
+    pcd.counts = "1 1 1 1 1 1";
+    pcd.data = "ascii";
+    pcd.bytes.clear();
+    const std::string lines("\x00\x01\n \x05", 5);
+    for (const char line : lines) pcd.bytes += std::string("1.5 2 -3 4 \x10 ") + line + "\n";
+    const Scan scan = scanOf(read(pcd));
+    EXPECT_EQ(scan.points->getPointsBufferRef_z()[4], -3);
+    EXPECT_EQ(scan.rings, (std::vector<std::uint16_t>{0, 1, 10, 32, 5}));
+    pcd.bytes.resize(pcd.bytes.size() - 12);
+    refused(pcd, {"after 4 of 5"});
+    pcd.bytes = "1 2 3 4 16 5\n1 2 3 4 16 6\n1 2 3 4 0 7\n1 2 3 4 0 8\n1 2 3 4 0 9";
+    EXPECT_EQ(scanOf(read(pcd)).rings.back(), 9);
+}
+
 TEST_F(PcdScan, RefusesLyingHeaders) {
     const auto with = [](std::string Pcd::*member, const std::string& value) {
         Pcd pcd;

@@ -51,7 +51,7 @@ struct Records {
     Scan scan(PointTable& table, std::size_t rows = 1) const {
         std::vector<std::uint8_t> bytes;
         for (const auto& point : points) bytes.insert(bytes.end(), point.begin(), point.end());
-        return table.scan(layout, bytes.data(), bytes.size(), points.size(), rows, kStamp_s);
+        return table.scan(layout, bytes.data(), bytes.size(), points.size(), rows, {kStamp_s, 0});
     }
     Scan scan() const {
         PointTable table;
@@ -69,7 +69,7 @@ void expectTurn(const Scan& scan, double from_s, double tolerance_s = 1e-6) {
 
 TEST(PointTable, NothingIsNoPoints) {
     PointTable table;
-    EXPECT_EQ(table.scan(Records().layout, nullptr, 0, 0, 1, kStamp_s).points->size(), 0U);
+    EXPECT_EQ(table.scan(Records().layout, nullptr, 0, 0, 1, {kStamp_s, 0}).points->size(), 0U);
 }
 
 TEST(PointTable, CoordinatesIntensityAndRings) {
@@ -95,6 +95,10 @@ TEST(PointTable, CoordinatesIntensityAndRings) {
 TEST(PointTable, RowsOfAnOrganisedCloudAreRings) {
     PointTable table;
     EXPECT_EQ(Records().scan(table, 16).rings.at(kPoints - 1), 15);
+    // Columns where there are fewer of them, as Apollo writes its scans.
+    const auto columns = Records().scan(table, 50).rings;
+    EXPECT_EQ(columns.at(7), 7);
+    EXPECT_EQ(columns.at(8), 0);
     EXPECT_TRUE(Records().scan(table, 1).rings.empty());
     EXPECT_TRUE(Records().scan(table, 7).rings.empty());
 }
@@ -141,7 +145,32 @@ TEST(PointTable, TimesThatTellNothing) {
     Records holes;
     holes.add<float>("time", NumberKind::kFloat32,
                      [](double share) { return share > 0.5 ? NAN : 0.1 * share; });
-    EXPECT_EQ(holes.scan().times_s.back(), 0);
+    const auto times = holes.scan().times_s;
+    EXPECT_TRUE(std::isnan(times.back()));
+    EXPECT_EQ(times.front(), 0);
+}
+
+// What a driver writes where there was no return must not decide on the clock.
+TEST(PointTable, PointsWithoutCoordinatesDoNotCount) {
+    const std::vector<double> nothings{0, NAN};
+    for (const double nothing : nothings) {
+        Records records;
+        records.add<double>("timestamp", NumberKind::kFloat64, [&](double share) {
+            const auto i = static_cast<int>(std::lround(share * (kPoints - 1)));
+            return i % 3 == 1 ? nothing : kStamp_s + 0.1 * share;
+        });
+        for (std::size_t i = 1; i < kPoints; i += 3)
+            for (std::size_t at = 0; at < 12; at += 4) {
+                const float origin = i % 2 == 0 ? 0.0F : NAN;
+                std::memcpy(&records.points[i][at], &origin, sizeof(origin));
+            }
+        PointTable table;
+        const auto times = records.scan(table).times_s;
+        ASSERT_EQ(times.size(), kPoints);
+        EXPECT_NEAR(times.back(), 0.1, 1e-6);
+        EXPECT_TRUE(std::isnan(times[1]));
+        EXPECT_TRUE(table.findings().empty());
+    }
 }
 
 TEST(PointTable, BigEndian) {
@@ -168,8 +197,8 @@ TEST(PointTable, RefusesWhatCannotBeRead) {
     const Records records;
     PointTable table;
     const std::vector<std::uint8_t> bytes(24);
-    EXPECT_THROW(table.scan(records.layout, bytes.data(), bytes.size(), 3, 1, 0), Error);
-    EXPECT_THROW(table.scan(records.layout, bytes.data(), bytes.size(), SIZE_MAX, 1, 0), Error);
-    EXPECT_EQ(table.scan(records.layout, bytes.data(), bytes.size(), 2, 1, 1).points->size(), 2U);
+    EXPECT_THROW(table.scan(records.layout, bytes.data(), bytes.size(), 3, 1, {}), Error);
+    EXPECT_THROW(table.scan(records.layout, bytes.data(), bytes.size(), SIZE_MAX, 1, {}), Error);
+    EXPECT_EQ(table.scan(records.layout, bytes.data(), bytes.size(), 2, 1, {}).points->size(), 2U);
 }
 }  // namespace delio::io

@@ -113,7 +113,7 @@ TEST(RawlogReader, ExtrasThatDoNotFitTheirScanAreNamed) {
 }
 
 TEST(RawlogReader, TimesThatCannotBeAreNamed) {
-    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), 1e9F, -2.0F}) {
+    for (const float bad : {std::numeric_limits<float>::infinity(), 1e9F, -2.0F}) {
         const test::TemporaryFolder folder;
         std::filesystem::create_directory(folder / "a_Images");
         std::vector<float> times_s(50, 0.01F);
@@ -126,6 +126,20 @@ TEST(RawlogReader, TimesThatCannotBeAreNamed) {
         EXPECT_EQ(scans, 1U) << bad;
         EXPECT_NE(fault.find("000001.time"), std::string::npos) << fault;
     }
+}
+
+// As scans2rawlog writes a point whose time is not known.
+TEST(RawlogReader, APointWithoutATime) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "a_Images");
+    std::vector<float> times_s(50, 0.01F);
+    times_s[20] = std::numeric_limits<float>::quiet_NaN();
+    writeValues(folder / "a_Images/000000.time", times_s);
+    writeRawlog(folder / "a.rawlog", {cloudObservation(0)});
+    const auto scan = io::RawlogReader(folder / "a.rawlog").next();
+    ASSERT_EQ(scan->times_s.size(), 50U);
+    EXPECT_TRUE(std::isnan(scan->times_s[20]));
+    EXPECT_EQ(scan->times_s[21], 0.01F);
 }
 
 TEST(RawlogReader, ExternalCloudsThatMrptSerialised) {

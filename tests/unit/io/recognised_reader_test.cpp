@@ -16,7 +16,11 @@ class Source : public ScanReader {
  public:
     std::size_t scans = 4, departs = 1000, faultAt = 1000;
     bool timed = true;
+    std::size_t untimed = 0;  //!< the first ones have no times
     std::optional<bool> told;
+    std::function<double(std::size_t)> stampOf = [](std::size_t scan) {
+        return 100 + 0.1 * static_cast<double>(scan);
+    };
     std::optional<DriveMeta> known;
 
     std::optional<Scan> next() override {
@@ -44,7 +48,7 @@ class Source : public ScanReader {
     Scan scanAt(std::size_t index) const {
         Scan scan;
         scan.index = index;
-        scan.stamp_s = 100 + 0.1 * static_cast<double>(index);
+        scan.stamp_s = stampOf(index);
         auto points = mrpt::maps::CSimplePointsMap::Create();
         const double speed_ms = index >= departs ? 20 : 0;
         for (int i = 0; i < 2000; ++i) {
@@ -53,7 +57,7 @@ class Source : public ScanReader {
                 static_cast<float>(10 * std::cos(azimuth) + speed_ms * (time_s - 0.05)),
                 static_cast<float>(10 * std::sin(azimuth)), 1);
             scan.rings.push_back(0);
-            if (timed) scan.times_s.push_back(static_cast<float>(time_s));
+            if (timed && index >= untimed) scan.times_s.push_back(static_cast<float>(time_s));
         }
         scan.points = points;
         return scan;
@@ -110,6 +114,34 @@ TEST(RecognisedReader, AVehicleThatStoodFirstIsLookedAtAgain) {
     });
     while (reader.next()) continue;
     EXPECT_EQ(reader.recording().compensatedAfterAll, std::optional<std::size_t>(40));
+}
+
+TEST(RecognisedReader, StampsRise) {
+    auto reader = readerOf([](Source& source) {
+        source.scans = 10;
+        source.stampOf = [](std::size_t scan) {
+            if (scan == 7) return 100.6;
+            const std::size_t order[] = {0, 1, 2, 4, 3, 5, 6, 7, 8, 9};
+            return 100 + 0.1 * static_cast<double>(order[scan]);
+        };
+    });
+    std::vector<std::size_t> scans;
+    while (const auto scan = reader.next()) scans.push_back(scan->index);
+    EXPECT_EQ(scans, (std::vector<std::size_t>{0, 1, 2, 4, 3, 5, 6, 8, 9}));
+    EXPECT_EQ(reader.recording().findings.size(), 2U);
+}
+
+TEST(RecognisedReader, FirstScansWithoutTimesAreLeftOut) {
+    for (const std::size_t untimed : {1U, 2U, 1000U}) {
+        auto reader = readerOf([&](Source& source) {
+            source.scans = 6;
+            source.untimed = untimed;
+        });
+        const bool any = untimed < 6;
+        EXPECT_EQ(reader.recording().pointTimes, any);
+        EXPECT_EQ(reader.next()->index, any ? untimed : 0U);
+        ASSERT_EQ(reader.recording().findings.size(), any ? 1U : 0U);
+    }
 }
 
 TEST(RecognisedReader, AFaultComesAfterWhatIsAhead) {

@@ -32,6 +32,28 @@ TEST(Preprocess, WhatIsNotFiniteIsDroppedAndCounted) {
     EXPECT_EQ(scan::neighbouringRings(cloud).size(), 2U);
 }
 
+TEST(Preprocess, SaysWhyNoPointIsLeft) {
+    const auto why = [](float x, float y) {
+        Eigen::Matrix3Xf points(3, 2);
+        points << x, x, y, 2 * y, 0, 0;
+        return scan::whyNoneIsLeft(test::scanOf(points), {});
+    };
+    EXPECT_EQ(why(10, 1), "");
+    EXPECT_EQ(scan::whyNoneIsLeft(test::scanOf(Eigen::Matrix3Xf(3, 0)), {}), "no points");
+    EXPECT_EQ(why(431200, 4599850),
+              "all 2 points are farther than scan.max_range (the nearest: 4.62e+06 m): are they in "
+              "metres and relative to the sensor?");
+    EXPECT_NE(why(0.02F, 0.01F).find("nearer than scan.min_range (the farthest: 0.0283 m)"),
+              std::string::npos);
+    EXPECT_EQ(why(0, 0), "all 2 points are NaN or at the sensor");
+    EXPECT_EQ(why(kNaN, 3), "all 2 points are NaN or at the sensor");
+    EXPECT_NE(why(0.5F, 2000).find("farther"), std::string::npos);
+    Eigen::Matrix3Xf apart(3, 2);
+    apart << 1, 200, 0, 0, 0, 0;
+    EXPECT_EQ(scan::whyNoneIsLeft(test::scanOf(apart), {}),
+              "none of the 2 points lies between scan.min_range and scan.max_range and has a time");
+}
+
 TEST(Preprocess, PointsWithoutATimeAreDroppedWhereTimesCount) {
     Eigen::Matrix3Xf points(3, 3);
     points << 10, 20, 30, 1, 2, 3, 0, 0, 0;

@@ -10,9 +10,11 @@ struct Recording {
     std::string kind;                       //!< e.g. "ROS 1 bag, topic /points"
     std::string sensor;                     //!< e.g. "Velodyne VLP-16"; empty: not known
     std::optional<double> rate_hz;          //!< scans a second, where two were seen
+    bool startsEmpty = false;               //!< the first scans have no points
     bool pointTimes = false;                //!< points come with the times they were measured at
     std::optional<bool> motionCompensated;  //!< by the recorder; nothing: it does not say
-    bool compensationMeasured = false;      //!< that was told from the points, not by the source
+    bool compensationMeasured = false;      //!< from the points: the source does not say it
+    bool compensationAssumed = false;       //!< because most recordings of that kind are so
     /** A scan whose points tell that they were de-skewed, although the first ones, of a vehicle
      *  that stood, did not. */
     std::optional<std::size_t> compensatedAfterAll;

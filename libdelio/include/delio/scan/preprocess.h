@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "delio/core/stage_options.h"
@@ -42,6 +43,9 @@ struct PointCloud {
  *  `vertical_correction_deg` (range kept): KITTI's HDL-64E needs 0.205 deg (IMLS-SLAM, KISS-ICP).
  */
 PointCloud preprocess(const Scan& scan, const PreprocessOptions& options);
+
+/** Why preprocess() leaves no point of a scan, in words; empty where it leaves some. */
+std::string whyNoneIsLeft(const Scan& scan, const PreprocessOptions& options);
 
 /** Ring of each point, from 0, neighbours with consecutive numbers: the source's, sorted from the
  *  top, or where it does not say, told by ringsOf(). `upright` turns the cloud's frame such that

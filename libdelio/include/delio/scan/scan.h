@@ -22,7 +22,7 @@ struct Scan {
     std::vector<std::uint16_t> rings;
 
     /** When each point was measured, in seconds from the stamp (before it: negative), where the
-     *  source knows it, otherwise empty. */
+     *  source knows it, otherwise empty. NaN: the time of that point is not known. */
     std::vector<float> times_s;
 
     /** Pose of the sensor in the vehicle: maps sensor coordinates to vehicle coordinates. */

@@ -22,6 +22,7 @@ class BagReader : public ScanReader {
         bag_->only(topic_.name);
         if (type_ == ScanType::kCloud) {
             maker_ = makeCloudMaker();
+            lookAhead(open);
         } else if (type_ == ScanType::kVelodyne) {
             maker_ = makePacketMaker(type_, velodyneDecoder(source.sensorFile));
         } else {
@@ -69,6 +70,20 @@ class BagReader : public ScanReader {
     }
 
  private:
+    /** At the first messages. A fault is told when its scan is read. */
+    void lookAhead(const OpenSource& open) {
+        constexpr std::size_t kMessages = 8;  // some may be empty
+        try {
+            const auto bag = open();
+            bag->only(topic_.name);
+            for (std::size_t i = 0; i < kMessages; ++i) {
+                const auto message = bag->next();
+                if (!message || !maker_->look(*message)) return;
+            }
+        } catch (const std::exception&) {
+        }
+    }
+
     std::optional<Scan> nextScan() {
         while (true) {
             if (auto scan = maker_->take()) {
@@ -87,7 +102,7 @@ class BagReader : public ScanReader {
 
     void decode(const Message& message) {
         try {
-            maker_->add(message);
+            maker_->add(message, count_);
         } catch (const Error& e) {
             const std::string scan = "scan " + std::to_string(count_) + " of '" + bag_->path();
             fail(scan + "' (topic " + topic_.name + "): " + e.what());

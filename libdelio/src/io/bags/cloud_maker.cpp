@@ -45,12 +45,18 @@ Cloud readCloud(const Message& message) {
 
 class CloudMaker : public ScanMaker {
  public:
-    void add(const Message& message) override {
+    bool look(const Message& message) override {
+        Cloud cloud = readCloud(message);
+        const std::size_t count = checkedCount(cloud);
+        compact(cloud);
+        return table_.look(cloud.layout, cloud.data.data, cloud.data.size, count, cloud.stamp_s);
+    }
+    void add(const Message& message, std::size_t scan) override {
         Cloud cloud = readCloud(message);
         const std::size_t count = checkedCount(cloud);
         compact(cloud);
         scan_ = table_.scan(cloud.layout, cloud.data.data, cloud.data.size, count, cloud.rows,
-                            cloud.stamp_s);
+                            {cloud.stamp_s, scan});
         scan_->stamp_s = cloud.stamp_s;
         scan_->time = mrpt::Clock::fromDouble(cloud.stamp_s);
     }
@@ -61,6 +67,7 @@ class CloudMaker : public ScanMaker {
         return scan;
     }
     std::string sensor() const override { return ""; }
+    std::vector<std::string> findings() const override { return table_.findings(); }
 
  private:
     static std::size_t checkedCount(const Cloud& cloud) {

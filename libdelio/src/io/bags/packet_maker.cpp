@@ -12,7 +12,7 @@ class PacketMaker : public ScanMaker {
     PacketMaker(ScanType type, std::unique_ptr<PacketDecoder> decoder)
         : type_(type), decoder_(std::move(decoder)) {}
 
-    void add(const Message& message) override {
+    void add(const Message& message, std::size_t /*scan*/) override {
         WireReader in(message);
         if (type_ == ScanType::kOuster)
             addPacket(in.byteArray(), message.log_s);

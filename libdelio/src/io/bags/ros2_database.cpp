@@ -145,7 +145,9 @@ std::optional<Message> Ros2Database::next() {
     contents_.bind(1, order_.integer(0));
     if (!contents_.step()) throw Error("is damaged: a message's row is missing");
     ++read_;
-    return Message{contents_.text(0), contents_.text(1), encodingOf(contents_.text(2)),
+    const std::string format = contents_.text(2);  // some writers leave it empty
+    return Message{contents_.text(0), contents_.text(1),
+                   encodingOf(format.empty() ? "cdr" : format),
                    1e-9 * static_cast<double>(contents_.integer(3)), contents_.blob(4)};
 }
 

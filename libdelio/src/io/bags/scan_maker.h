@@ -23,8 +23,12 @@ class ScanMaker {
     ScanMaker(const ScanMaker&) = delete;
     ScanMaker& operator=(const ScanMaker&) = delete;
 
-    /** Throws Error, which does not name the file, for a message that cannot be decoded. */
-    virtual void add(const Message& message) = 0;
+    /** Looks at one of the first messages, before add(); several tell more than one. False: no
+     *  more are needed. Throws as add(). */
+    virtual bool look(const Message& /*message*/) { return false; }
+    /** `scan`: the index of the scan that is being made. Throws Error, which does not name the
+     *  file, for a message that cannot be decoded. */
+    virtual void add(const Message& message, std::size_t scan) = 0;
     /** There are no more messages. */
     virtual void finish() = 0;
     /** The next scan, if there is one, stamped in Unix seconds; the index is the caller's. */

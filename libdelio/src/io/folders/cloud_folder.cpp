@@ -108,6 +108,23 @@ CloudFolder::CloudFolder(const fs::path& folder) : FilesReader("lidar") {
     files_ = std::move(files);
     readRecords_ = recordsReader(extension);
     extension_ = extension;
+    lookAtTimes();
+}
+
+/** What the times of points mean is known from several scans. A fault is told when its scan is
+ *  read. */
+void CloudFolder::lookAtTimes() {
+    constexpr std::size_t kScans = 8;  // some may be empty
+    if (extension_ == ".bin") return;
+    try {
+        for (std::size_t i = 0; i < std::min(kScans, files_.size()); ++i) {
+            const auto records = readRecords_(files_[i]);
+            if (!table_.look(records.layout, records.bytes.data(), records.bytes.size(),
+                             records.count, times_.stamps_s[i]))
+                return;
+        }
+    } catch (const Error&) {
+    }
 }
 
 Recording CloudFolder::recording() const {
@@ -116,6 +133,7 @@ Recording CloudFolder::recording() const {
         "folder of " + extension_ + " files" + (times_.nominal ? ", nominal times" : "");
     recording.pointTimes = pointTimes_;
     recording.scans = files_.size();
+    recording.findings = table_.findings();
     return recording;
 }
 
@@ -125,7 +143,7 @@ Scan CloudFolder::read(std::size_t index) {
     Scan scan;
     try {
         scan = table_.scan(records.layout, records.bytes.data(), records.bytes.size(),
-                           records.count, records.rows, stamp_s);
+                           records.count, records.rows, {stamp_s, index});
     } catch (const Error& e) {
         throw Error("'" + files_[index].string() + "': " + e.what());
     }

@@ -24,6 +24,8 @@ class CloudFolder : public FilesReader {
     Scan read(std::size_t index) override;
 
  private:
+    void lookAtTimes();
+
     std::vector<std::filesystem::path> files_;
     std::string extension_;
     ScanTimes times_;

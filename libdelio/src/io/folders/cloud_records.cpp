@@ -42,24 +42,72 @@ std::string restOf(RecordFile& file, std::size_t bytes) {
     return text;
 }
 
+/** Columns before the last ones of one byte each. Some programs write these as raw characters. */
+std::size_t leadOf(const std::vector<Column>& columns) {
+    std::size_t lead = columns.size();
+    while (lead > 0 && columns[lead - 1].bytes == 1) --lead;
+    return lead;
+}
+
+/** Takes a line of numbers off `rest`; false where it is something else. */
+bool takeNumbers(std::string_view& rest, std::vector<double>& values, std::size_t width) {
+    const auto line = nextLine(rest);
+    return line && numbersIn(*line, values) == width;
+}
+
+/** The same of a line whose numbers are followed by raw characters, a space before each. A line end
+ *  may be one of them. */
+bool takeCharacters(std::string_view& rest, std::vector<double>& values,
+                    const std::vector<Column>& columns, std::size_t lead) {
+    constexpr std::string_view kBlanks = " \t\r\n";
+    rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < lead; ++i) {
+        end = rest.find_first_not_of(kBlanks, end);
+        if (end == rest.npos) return false;
+        end = rest.find_first_of(kBlanks, end);
+        if (end == rest.npos) return false;
+    }
+    const std::size_t tail = columns.size() - lead;
+    if (numbersIn(rest.substr(0, end), values) != lead || rest.size() - end < 2 * tail)
+        return false;
+    for (std::size_t i = 0; i < tail; ++i) {
+        if (rest[end + 2 * i] != ' ') return false;
+        const auto character = static_cast<std::uint8_t>(rest[end + 2 * i + 1]);
+        values[lead + i] =
+            columns[lead + i].kind == 'I' ? static_cast<std::int8_t>(character) : character;
+    }
+    rest.remove_prefix(end + 2 * tail);
+    const auto line = rest.find_first_not_of(" \r");
+    return line == rest.npos || rest[line] == '\n';
+}
+
 CloudRecords readLines(RecordFile& file, const std::vector<Column>& columns, std::size_t count) {
     std::vector<std::string> names;
     names.reserve(columns.size());
     for (const auto& column : columns) names.push_back(column.name);
     CloudRecords records{layoutOfDoubles(names), {}, count, 1};
-    const std::size_t width = columns.size();
+    const std::size_t width = columns.size(), lead = leadOf(columns);
     const std::size_t left = file.bytesLeft();
-    // A digit and a space or line end a number.
+    // A digit and a space or line end make a number.
     if (width == 0 || count > (left + 1) / (2 * width)) file.refuseCut(0, count);
     const std::string text = restOf(file, left);
     records.bytes.resize(count * records.layout.step);
     std::vector<double> values(width + 1);
-    std::string_view rest = text;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto line = nextLine(rest);
-        if (!line || numbersIn(*line, values) != width) file.refuseCut(i, count);
-        std::memcpy(&records.bytes[i * records.layout.step], values.data(), records.layout.step);
-    }
+    const auto readWith = [&](const auto& take) {
+        std::string_view rest = text;
+        std::size_t done = 0;
+        for (; done < count && take(rest); ++done)
+            std::memcpy(&records.bytes[done * records.layout.step], values.data(),
+                        records.layout.step);
+        return done;
+    };
+    std::size_t done = readWith([&](auto& rest) { return takeNumbers(rest, values, width); });
+    if (done < count && lead > 0 && lead < width)
+        done = std::max(done, readWith([&](auto& rest) {
+                            return takeCharacters(rest, values, columns, lead);
+                        }));
+    if (done < count) file.refuseCut(done, count);
     return records;
 }
 }  // namespace

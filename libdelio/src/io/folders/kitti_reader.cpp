@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "../drive_clock.h"
+#include "bin_scan.h"
 #include "delio/core/error.h"
 #include "file_bytes.h"
 #include "folder_reader.h"
@@ -17,6 +18,7 @@ namespace {
 mrpt::maps::CPointsMap::Ptr readPoints(const fs::path& file) {
     const auto bytes = bytesOfFile(file);
     constexpr std::size_t kPoint = 4 * sizeof(float);
+    refuseOtherLayout(file, bytes);
     if (bytes.size() % kPoint != 0)
         throw Error("'" + file.string() + "' is cut off: its size (" +
                     std::to_string(bytes.size()) + " bytes) is no multiple of 16");
@@ -44,6 +46,8 @@ Recording KittiReader::recording() const {
     if (drive_.nominalTimes) recording.kind += ", nominal times";
     if (meta_->sensorModel != "unknown") recording.sensor = meta_->sensorModel;
     recording.motionCompensated = meta_->motionCompensated;
+    // KITTI's own scans are known to be, those of another sensor in its format are not.
+    recording.compensationAssumed = meta_->motionCompensated && recording.sensor.empty();
     recording.scans = drive_.scans.size();
     recording.warnings = drive_.warnings;
     return recording;

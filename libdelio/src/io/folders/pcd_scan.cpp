@@ -60,15 +60,37 @@ std::vector<Column> fieldsOf(const std::vector<Column>& columns) {
     return fields;
 }
 
-std::size_t countOf(const PcdHeader& header, const RecordFile& file) {
-    if (!header.points) file.refuse("it does not say how many points it has");
-    const std::size_t count = *header.points, width = header.width.value_or(count),
-                      height = header.height.value_or(1);
-    const bool overflows = width != 0 && height > std::numeric_limits<std::size_t>::max() / width;
-    if (overflows || width * height != count)
-        file.refuse("it has " + std::to_string(count) + " points, but " + std::to_string(width) +
-                    " by " + std::to_string(height));
+/** Points that a file of which the header does not say it holds. */
+std::size_t countIn(RecordFile& file, const PcdHeader& header, std::size_t stride) {
+    if (header.data == "binary") return stride > 0 ? file.bytesLeft() / stride : 0;
+    const auto begin = file.stream().tellg();
+    std::size_t count = 0;
+    if (header.data == "binary_compressed") {
+        std::array<std::uint32_t, 2> sizes{};
+        file.stream().read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes));
+        if (file.stream() && stride > 0) count = sizes[1] / stride;
+    } else {
+        for (std::string line; file.line(line);)
+            count += line.find_first_not_of(" \t\r") != line.npos;
+    }
+    file.stream().clear();
+    file.stream().seekg(begin);
     return count;
+}
+
+/** A width and height of 0 are how some programs write a cloud whose size they do not know yet. */
+std::size_t countOf(const PcdHeader& header, RecordFile& file, std::size_t stride) {
+    const bool isSized = header.width.value_or(0) > 0 && header.height.value_or(0) > 0;
+    if (!isSized) {
+        if (header.points.value_or(0) > 0) return *header.points;
+        return countIn(file, header, stride);
+    }
+    const std::size_t width = *header.width, height = *header.height;
+    if (height > std::numeric_limits<std::size_t>::max() / width ||
+        width * height != header.points.value_or(width * height))
+        file.refuse("it has " + std::to_string(header.points.value_or(0)) + " points, but " +
+                    std::to_string(width) + " by " + std::to_string(height));
+    return width * height;
 }
 }  // namespace
 
@@ -76,8 +98,8 @@ CloudRecords readPcdScan(const std::string& path) {
     RecordFile file(path, "PCD");
     if (file.bytesLeft() == 0) file.refuse("it is empty");
     const auto header = readPcdHeader(file);
-    const std::size_t count = countOf(header, file);
     const auto columns = columnsOf(header, file);
+    const std::size_t count = countOf(header, file, strideOf(columns));
     CloudRecords records;
     if (header.data == "binary_compressed")
         records = readCompressed(file, fieldsOf(columns), count);
@@ -85,7 +107,8 @@ CloudRecords readPcdScan(const std::string& path) {
         records = readRecords(file, columns, count, header.data == "ascii");
     else
         file.refuse("its data is '" + header.data + "'");
-    if (header.width) records.rows = header.height.value_or(1);
+    if (header.width.value_or(0) > 0 && header.height.value_or(0) > 0)
+        records.rows = *header.height;
     return records;
 }
 }  // namespace delio::io

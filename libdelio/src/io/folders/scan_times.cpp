@@ -111,13 +111,6 @@ std::vector<double> timesOfNames(std::vector<fs::path>& scans) {
     }
     return times;
 }
-
-void requireRising(const std::vector<double>& times, const std::string& whose) {
-    for (std::size_t i = 1; i < times.size(); ++i)
-        if (!(times[i] > times[i - 1]))
-            throw Error(whose + ": the time of scan " + std::to_string(i) +
-                        " is not later than that of the one before it");
-}
 }  // namespace
 
 bool isTimesFile(const fs::path& file) {
@@ -133,10 +126,8 @@ ScanTimes timesOf(const fs::path& folder, std::vector<fs::path>& scans) {
             throw Error("'" + file->string() + "' has " + std::to_string(times.stamps_s.size()) +
                         " times, but there are " + std::to_string(scans.size()) + " scans in '" +
                         folder.string() + "'; complete or remove it");
-        requireRising(times.stamps_s, "'" + file->string() + "'");
     } else {
         times.stamps_s = timesOfNames(scans);
-        requireRising(times.stamps_s, "names of the files in '" + folder.string() + "'");
         times.nominal = times.stamps_s.empty();
         if (times.nominal)
             for (std::size_t i = 0; i < scans.size(); ++i)

@@ -5,7 +5,7 @@
 namespace delio::io {
 /** When the scans of a folder were taken. */
 struct ScanTimes {
-    std::vector<double> stamps_s;  //!< one per scan; rising
+    std::vector<double> stamps_s;  //!< one per scan; they need not rise
     bool nominal = false;          //!< not known: taken as 0.1 s apart
     /** Unix time of second 0: 0 where the stamps are Unix times, kDriveEpoch_s where they start
      *  near 0, which MRPT takes for no time. */
@@ -19,7 +19,7 @@ bool isTimesFile(const std::filesystem::path& file);
  *  (seconds, or where they are large milli-, micro- or nanoseconds, or dates as KITTI raw has them;
  *  one a line), those that the files are named after (Unix time: 1616513421.123456,
  *  1616513421_123456000, 1616513421123456), or nominal ones, the scan's place times 0.1 s. Sorts
- *  `scans` by time where they are named after it. Throws Error for a times file that does not fit,
- *  and for times that do not rise. */
+ *  `scans` by time where they are named after it. Throws Error for a times file that does not
+ *  fit. */
 ScanTimes timesOf(const std::filesystem::path& folder, std::vector<std::filesystem::path>& scans);
 }  // namespace delio::io

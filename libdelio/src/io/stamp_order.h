@@ -1,0 +1,43 @@
+#pragma once
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "delio/scan/scan.h"
+#include "findings.h"
+
+namespace delio::io {
+/** Gives scans with rising stamps, whatever the recorder wrote. Scans that came in another order
+ * are sorted. A scan whose stamp does not rise is left out. Where none of the next scans rises, the
+ *  clock was set back or stands: stamps count on from the scan before. One a drive. */
+class StampOrder {
+ public:
+    /** How many scans take() compares. */
+    static constexpr std::size_t kWindow = 3;
+
+    /** Takes a scan off `ahead`, the next scans as they were recorded: at least one, and kWindow
+     *  unless the drive ends before. Nothing: that scan is left out. */
+    std::optional<Scan> take(std::deque<Scan>& ahead);
+
+    /** What was left out or changed, a line each. */
+    std::vector<std::string> findings() const { return findings_.lines(); }
+
+ private:
+    double stampOf(const Scan& scan) const { return scan.stamp_s + added_s_; }
+    bool isLate(const Scan& scan) const { return latest_s_ && !(stampOf(scan) > *latest_s_); }
+    bool isClockSet(const std::deque<Scan>& ahead) const;
+    std::size_t earliestOf(const std::deque<Scan>& ahead) const;
+    bool isOutOfOrder(const std::deque<Scan>& ahead, double gained_s) const;
+    void learn(double passed_s);
+    Scan give(std::deque<Scan>& ahead, std::size_t place);
+
+    std::optional<double> latest_s_;  //!< stamp of the scan that was given last
+    double usual_s_ = 0;              //!< from one scan to the next; 0: not known
+    double added_s_ = 0;              //!< to the stamps that were recorded
+    bool wasSet_ = false;             //!< the scan before came with a clock that was set or stands
+    std::size_t passedOver_ = 0;      //!< how often the first of `ahead` was
+    Findings findings_;
+};
+}  // namespace delio::io
