@@ -221,6 +221,7 @@ void PaperOdometry::takeIncrement(const PaperRegistration& registration, double 
 }
 
 Step PaperOdometry::process(const Scan& scan) {
+    requireConsistent(scan);
     Step step;
     const Interval interval = timeline_.advance(scan.stamp_s);
     step.interrupted = !interval.believed;

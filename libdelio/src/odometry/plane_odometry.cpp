@@ -321,6 +321,7 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3
 }
 
 Step PlaneOdometry::process(const Scan& scan) {
+    requireConsistent(scan);
     Step step;
     step.times_ms = noTimes();
     const Interval interval = timeline_.advance(scan.stamp_s);
@@ -334,10 +335,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     });
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
-    if (started_)
-        processNext(cloud, interval, step);
-    else
-        processFirstOfMap(cloud, step);
+    started_ ? processNext(cloud, interval, step) : processFirstOfMap(cloud, step);
     if (!step.predicted) unregistered_s_ = 0;
     if (started_ && !lost_ && isOtherScale()) {
         takeScale(seenScale_);
