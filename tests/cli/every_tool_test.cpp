@@ -27,4 +27,13 @@ TEST(EveryTool, HelpAndVersion) {
         EXPECT_EQ(nothing.out, "") << tool;
     }
 }
+
+TEST(EveryTool, TakesAnOptionThatIsGivenAgain) {
+    for (const auto& tool : test::kTools) {
+        const auto run = runTool(tool, {"--verbose", "--verbose"});
+        EXPECT_EQ(run.exitCode, 2) << tool;  // what is required is missing
+        EXPECT_EQ(run.err.find("already set"), std::string::npos) << run.err;
+        EXPECT_NE(run.err.find("Required"), std::string::npos) << run.err;
+    }
+}
 }  // namespace
