@@ -187,6 +187,7 @@ void move(MapInput& map, const Eigen::Isometry3d& outFromMap) {
     for (auto& way : map.ways)
         for (auto& pose : way) pose = outFromMap * pose;
     for (auto& pose : map.keyframes) pose = outFromMap * pose;
+    for (auto& pose : map.sensor.poses) pose = outFromMap * pose;
 }
 
 /** All of the files or, where one cannot be written, none. */

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "delio/core/error.h"
 #include "delio/localisation/stored_map.h"
@@ -41,6 +42,21 @@ MapInput readSimplemap(const std::string& path) {
     return input;
 }
 
+/** The poses of the scans in the map. Its points count their times from the first of these. */
+io::Trajectory sensorOf(const RunFolder& folder) {
+    const auto table = folder.scans();
+    const auto poses = folder.trajectory().poses;
+    io::Trajectory sensor;
+    std::optional<double> first_s;
+    for (std::size_t i = 0; i < std::min(poses.size(), table.scans.size()); ++i) {
+        if (table.predicted[i]) continue;
+        sensor.poses.push_back(poses[i]);
+        if (!first_s) first_s = table.stamps_s[i];
+        sensor.stamps_s.push_back(table.stamps_s[i] - *first_s);
+    }
+    return sensor;
+}
+
 MapInput readFolder(const std::string& path) {
     const RunFolder folder(path);
     MapInput input = ofPoints(map::loadPly(mapFileIn(path)));
@@ -48,6 +64,7 @@ MapInput readFolder(const std::string& path) {
         input.dynamic = map::loadPly(folder.path(RunFolder::kDynamicPly));
     if (!folder.has(RunFolder::kTrajectory)) return input;
     input.ways.push_back(folder.trajectory().poses);
+    if (folder.has(RunFolder::kScans)) input.sensor = sensorOf(folder);
     if (folder.has(RunFolder::kLoops))
         for (const auto& loop : folder.loops())
             if (loop.accepted) input.loops.emplace_back(loop.fromNode, loop.toNode);

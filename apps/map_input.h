@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "delio/io/trajectory.h"
 #include "delio/map/map_point.h"
 #include "delio/picture/scene.h"
 
@@ -14,6 +15,8 @@ struct MapInput {
     std::vector<Eigen::Isometry3d> keyframes;
     std::string name;        //!< of the drive, or of the file
     map::MapPoints dynamic;  //!< what was taken out of it, where that was kept
+    /** Poses of the sensor, with stamps as MapPoint::time_s has them; empty: not known. */
+    io::Trajectory sensor;
     /** Poses of the first way between which a loop was closed. */
     std::vector<std::pair<std::size_t, std::size_t>> loops;
 

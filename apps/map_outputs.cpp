@@ -38,11 +38,13 @@ void writePage(const MapInput& input, const std::string& path, const Options&) {
 }
 
 void writeGridmap(const MapInput& input, const std::string& path, const Options& options) {
-    map::saveGridmap(map::occupancyGrid(input.points, input.ways, options.grid), path);
+    map::saveGridmap(map::occupancyGrid(input.points, input.ways, options.grid, input.sensor),
+                     path);
 }
 
 void writeMapServer(const MapInput& input, const std::string& path, const Options& options) {
-    map::saveMapServer(map::occupancyGrid(input.points, input.ways, options.grid), path);
+    map::saveMapServer(map::occupancyGrid(input.points, input.ways, options.grid, input.sensor),
+                       path);
 }
 }  // namespace
 

@@ -83,7 +83,9 @@ void printConfig(SlamCommandLine& line) {
     other.source = "kitti-raw";
     std::stringstream own, ofOther;
     optionsFor(line, {}).write(own);
-    optionsFor(line, other).write(ofOther);
+    Options otherOptions = optionsFor(line, other);
+    otherOptions.map = otherOptions.map.atScale(0.5);
+    otherOptions.write(ofOther);
     for (std::string text, otherText; std::getline(own, text) && std::getline(ofOther, otherText);)
         std::cout << (text == otherText ? "" : "# ") << text << "\n";
 }

@@ -64,13 +64,19 @@ std::istream& operator>>(std::istream& in, Count& count) {
 }
 
 namespace {
+/** The argument that `word` is the name of, or null. */
+TCLAP::Arg* argumentOf(TCLAP::CmdLine& cmd, const std::string& word) {
+    const auto& args = cmd.getArgList();
+    const auto found = std::find_if(args.begin(), args.end(),
+                                    [&](const TCLAP::Arg* arg) { return arg->argMatches(word); });
+    return found == args.end() ? nullptr : *found;
+}
+
 /** GNU's --name=VALUE as TCLAP takes it: two words. */
 std::vector<std::string> wordsOf(TCLAP::CmdLine& cmd, int argc, const char* const* argv) {
     const auto takesValue = [&](const std::string& word) {
-        const auto& args = cmd.getArgList();
-        return std::any_of(args.begin(), args.end(), [&](const TCLAP::Arg* arg) {
-            return arg->isValueRequired() && arg->argMatches(word);
-        });
+        const auto* arg = argumentOf(cmd, word);
+        return arg && arg->isValueRequired();
     };
     std::vector<std::string> words;
     bool isValue = false;
@@ -84,6 +90,29 @@ std::vector<std::string> wordsOf(TCLAP::CmdLine& cmd, int argc, const char* cons
         isValue = !isValue && !isBoth && takesValue(word);
     }
     return words;
+}
+
+/** Only the last of an argument that is given again, unless it may be repeated: TCLAP would refuse
+ *  it. */
+std::vector<std::string> lastOfEach(TCLAP::CmdLine& cmd, const std::vector<std::string>& words) {
+    struct Given {
+        const TCLAP::Arg* arg;
+        std::vector<std::string> words;
+    };
+    std::vector<Given> all;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        auto* const arg = argumentOf(cmd, words[i]);
+        if (arg && !arg->acceptsMultipleValues())
+            all.erase(std::remove_if(all.begin(), all.end(),
+                                     [&](const Given& other) { return other.arg == arg; }),
+                      all.end());
+        all.push_back({arg, {words[i]}});
+        if (arg && arg->isValueRequired() && i + 1 < words.size())
+            all.back().words.push_back(words[++i]);
+    }
+    std::vector<std::string> kept;
+    for (const auto& given : all) kept.insert(kept.end(), given.words.begin(), given.words.end());
+    return kept;
 }
 
 /** Where an exception reaches nobody: in a thread of TBB's that has no memory for its own needs, or
@@ -114,7 +143,7 @@ int run(TCLAP::CmdLine& cmd, const HelpText& help, int argc, const char* const* 
     const PlainOutput plain;
     CommandLineOutput output(cmd, help);
     cmd.setOutput(&output);
-    const auto words = wordsOf(cmd, argc, argv);
+    const auto words = lastOfEach(cmd, wordsOf(cmd, argc, argv));
     std::vector<const char*> plainWords;
     plainWords.reserve(words.size());
     for (const auto& word : words) plainWords.push_back(word.c_str());

@@ -46,6 +46,18 @@ TEST_F(DelioSlam, ABadCommandLineIsExit2) {
     EXPECT_EQ(withConfig("").exitCode, 0);
 }
 
+TEST_F(DelioSlam, OfAnOptionThatIsGivenAgainTheLastCounts) {
+    writeDrive(4);
+    const auto run = slam({"--no-map", "--every", "x", "--no-map", "--every=4", "--every", "2",
+                           "--set", "graph.window=3", "--set", "graph.min_overlap=0.25"});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_EQ(linesOf(readText(out_ / "scans.csv")).size(), 3U);  // with the names of the columns
+    EXPECT_FALSE(fs::exists(out_ / "map.ply"));
+    const std::string config = readText(out_ / "config.ini");
+    EXPECT_NE(config.find("window = 3\n"), std::string::npos);
+    EXPECT_NE(config.find("min_overlap = 0.25\n"), std::string::npos);
+}
+
 // An option that would do nothing is refused, by its section's name.
 TEST_F(DelioSlam, OptionsOfTheOtherMethodAreExit2) {
     writeDrive(1);

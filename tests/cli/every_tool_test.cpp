@@ -37,4 +37,13 @@ TEST(EveryTool, AnArgumentWithoutAnOptionIsNamed) {
     test::expectFailure(runTool("delio-slam", {"drive", "results"}), 2,
                         {"inputs are given with -i and outputs with -o"});
 }
+
+TEST(EveryTool, TakesAnOptionThatIsGivenAgain) {
+    for (const auto& tool : test::kTools) {
+        const auto run = runTool(tool, {"--verbose", "--verbose"});
+        EXPECT_EQ(run.exitCode, 2) << tool;  // what is required is missing
+        EXPECT_EQ(run.err.find("already set"), std::string::npos) << run.err;
+        EXPECT_NE(run.err.find("required arguments missing"), std::string::npos) << run.err;
+    }
+}
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "delio/io/rawlog_reader.h"
+#include "delio/io/scan_reader.h"
+#include "delio/run/run.h"
 #include "test_data.h"
 
 namespace {
@@ -44,5 +46,17 @@ TEST(MrptSamples, PacketsAndRangeImageGiveTheSameCloud) {
     // even turn, 0.1 deg on average, which is 1.5 cm at the median range of 9.4 m and less where a
     // neighbour is nearer.
     EXPECT_LT(distances[distances.size() / 2], 0.010F);
+}
+
+/** All within a few metres: as in a street, all but 44 points would be too near or in one voxel. */
+TEST(MrptSamples, ASmallPlaceHasAMap) {
+    DELIO_NEED_DATA("mrpt/sample_velodyne_vlp16_gps.pcap");
+    const auto reader = io::openScans(
+        {(test::dataFolder() / "mrpt" / "sample_velodyne_vlp16_gps.pcap").string(), "", "", ""});
+    run::Run run(Options(), {});
+    while (const auto scan = reader->next()) run.process(*scan);
+    run.finish(true);
+    EXPECT_EQ(run.record().options.map.voxelSize_m, 0.05);
+    EXPECT_GT(run.maps().points->build(run.record().final.poses).points.size(), 3000U);
 }
 }  // namespace

@@ -13,7 +13,7 @@ namespace delio::checkpoint {
 namespace {
 constexpr std::array<char, 8> kMagic = {'D', 'e', 'L', 'i', 'O', 's', 't', 'a'};
 /** Of all serialize() together: one more with every change of what they keep. */
-constexpr std::uint32_t kFormat = 3;
+constexpr std::uint32_t kFormat = 4;
 
 /** Begins every part. Without gaps, for it is written as it lies in memory. */
 struct Header {

@@ -1,10 +1,21 @@
 #include "delio/core/course.h"
 
 #include <algorithm>
+#include <string>
+
+#include "delio/core/error.h"
 
 namespace delio {
 Course::Course(const std::vector<double>& times_s, const std::vector<Eigen::Isometry3d>& poses)
     : times_s_(times_s), poses_(poses) {
+    const auto increases = [&] {
+        return std::adjacent_find(times_s.begin(), times_s.end(),
+                                  [](double a, double b) { return !(a < b); }) == times_s.end();
+    };
+    if (poses.size() < 2 || times_s.size() != poses.size() || !increases())
+        throw Error("a course of " + std::to_string(poses.size()) + " poses at " +
+                    std::to_string(times_s.size()) +
+                    " times: it needs at least two poses, and one time for each, which increase");
     for (std::size_t i = 1; i < poses.size(); ++i)
         motions_.push_back(
             Motion::of(poses[i - 1].inverse() * poses[i], times_s[i] - times_s[i - 1]));

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "delio/core/error.h"
+#include "delio/core/numbers.h"
 
 namespace delio::evaluation {
 namespace {
@@ -56,7 +57,7 @@ Association associate(const io::Trajectory& reference, const io::Trajectory& est
     if (reference.stamps_s.empty() || estimate.stamps_s.empty()) return byRow(reference, estimate);
     auto result = byStamp(reference, estimate, tolerance_s);
     if (result.estimate.empty())
-        throw Error("no pose of the estimate is within " + std::to_string(tolerance_s) +
+        throw Error("no pose of the estimate is within " + digitsOf(tolerance_s) +
                     " s of one of the reference; do their time stamps share a clock?");
     return result;
 }

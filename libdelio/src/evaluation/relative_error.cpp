@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "delio/core/percentile.h"
 #include "delio/evaluation/rotation_angle.h"
 
 namespace delio::evaluation {
@@ -20,7 +21,7 @@ Spread spreadOf(std::vector<double> errors) {
     Spread spread;
     spread.rmse = std::sqrt(squares / static_cast<double>(n));
     spread.median = (errors[(n - 1) / 2] + errors[n / 2]) / 2;
-    spread.p95 = errors[(95 * n + 99) / 100 - 1];
+    spread.p95 = percentileOf(errors, 95);
     spread.max = errors.back();
     return spread;
 }

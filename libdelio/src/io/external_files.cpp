@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <vector>
 
 #include "delio/core/error.h"
 #include "gz_input.h"
-#include "memory_budget.h"
 #include "names.h"
 #include "object_archive.h"
 
@@ -127,7 +127,6 @@ void load(CObservationPointCloud& cloud, const fs::path& file) {
     if (isKitti && size % (4 * sizeof(float)) != 0)
         throw Error("'" + file.string() + "' is cut off: its size is no multiple of 16 bytes");
     External::setFile(cloud, file.string());
-    const MemoryBudget budget(MemoryBudget::ofWholeFile(fs::file_size(file)));
     if (isKitti)
         cloud.pointcloud = readKittiPoints(file.string(), size);
     else if (External::formatOf(cloud) == Format::MRPT_Serialization)
@@ -152,13 +151,26 @@ void makeTrueOrFalse(bool& flag) {
     flag = byte != 0;
 }
 
+/** The same of the numbers of its coordinates: three lists, each with its count before it. */
+void checkPoints(const std::string& file, std::uint64_t bytes) {
+    if (fs::path(file).extension() == ".txt") return;
+    GzInput in(file);
+    std::vector<float> list;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::uint32_t count = 0;
+        in.Read(&count, sizeof(count));
+        if (std::uint64_t{count} * sizeof(float) > bytes - std::min(bytes, in.getPosition()))
+            throw Error("'" + file + "' is damaged: it has not as many points as it claims");
+        list.resize(count);
+        in.Read(list.data(), count * sizeof(float));
+    }
+}
+
 void loadRanges(CObservation3DRangeScan& scan, std::string& from,
                 const std::vector<std::string>& folders) {
     for (bool* flag : ExternalRanges::flagsOf(scan)) makeTrueOrFalse(*flag);
-    std::uintmax_t size = 0;
     const auto check = [&](const std::string& name) {
         from = found(name, folders).string();
-        size += fs::file_size(from);
         return unpackedSize(from);  // MRPT does not see that it is damaged
     };
     if (scan.hasRangeImage && scan.rangeImage_isExternallyStored()) {
@@ -168,10 +180,10 @@ void loadRanges(CObservation3DRangeScan& scan, std::string& from,
         scan.rangeImageOtherLayers.clear();  // these have files of their own, and are not used
     }
     if (scan.hasPoints3D && scan.points3D_isExternallyStored()) {
-        check(scan.points3D_getExternalStorageFile());
+        const auto bytes = check(scan.points3D_getExternalStorageFile());
+        checkPoints(from, bytes);
         ExternalRanges::setPoints(scan, from);
     }
-    const MemoryBudget budget(MemoryBudget::ofWholeFile(size));
     scan.load();
 }
 

@@ -4,6 +4,8 @@
 #include <mrpt/rtti/CObject.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -12,7 +14,6 @@
 #include <utility>
 
 #include "image_bytes.h"
-#include "memory_budget.h"
 
 namespace delio::io {
 namespace {
@@ -22,40 +23,65 @@ bool endsWith(std::string_view text, std::string_view end) {
     return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
 
-/** How many of the numbers that follow such an object's begin have to be checked: those for which
- *  MRPT makes room that it does not ask for as it should. None: those of what it is part of. */
-std::optional<unsigned> countsIn(std::string_view className) {
+constexpr std::uint64_t kPoints = 10'000'000;
+
+/** The same of shapes. Each begins with the length of its name and the six floats of its pose. */
+ObjectArchive::Counts countsInScene(std::string_view className) {
+    constexpr unsigned kBefore = 7, kOfList = 3;  // two names and the count of a list
+    constexpr std::array<std::pair<std::string_view, unsigned>, 8> kKnown{
+        {{"::CPointCloud", 2},
+         {"::CPointCloudColoured", 2 * kOfList},
+         {"::CSetOfLines", kOfList},
+         {"::CSetOfObjects", 1},
+         {"::CSetOfTriangles", 1},
+         {"::CSetOfTexturedTriangles", 1},
+         {"::CText", 1},
+         {"::CText3D", 2}}};
+    for (const auto& [end, counts] : kKnown)
+        if (endsWith(className, end)) return {counts, kPoints, true, false, kBefore};
+    return {};
+}
+
+/** Which numbers after the name of such a class are checked. Nothing: as in the object that it is
+ *  part of. The limits are above what a scan has, and no more than some hundred MB of elements. */
+std::optional<ObjectArchive::Counts> countsIn(std::string_view className, FileOf file) {
+    using Counts = ObjectArchive::Counts;
     const auto is = [&](std::string_view end) { return endsWith(className, end); };
-    if (is("::CMatrixF") || is("::CMatrixD")) return 2;
-    if (is("::CMatrixB")) return 3;
+    constexpr std::uint64_t kPacketsOrPoints = 600'000, kKeyframes = 1'000'000, kOther = 100'000;
+    if (is("::CMatrixF") || is("::CMatrixD")) return Counts{2, kPoints};
+    if (is("::CMatrixB")) return Counts{3, kPoints};
     if (is("RangeScan") || is("RotatingScan") || className.find("PointsMap") != className.npos)
-        return kAll;
+        return Counts{kAll, kPoints};
     const bool isPart = is("::TCamera") || is("::CImage") || is("::TMapGenericParams") ||
                         className.find("::CPose") != className.npos;
     if (isPart) return {};
-    return 0;
+    if (file == FileOf::Scene) return countsInScene(className);
+    if (is("::CObservationVelodyneScan")) return Counts{kAll, kPacketsOrPoints, true};
+    if (is("::CSimpleMap")) return Counts{kAll, kKeyframes, true};
+    const bool hasFloats = is("::CActionRobotMovement2D") || is("::CActionRobotMovement3D") ||
+                           is("::CObservationOdometry") || is("::CObservationBearingRange");
+    return Counts{kAll, kOther, true, hasFloats};
 }
 
-std::uint64_t budgetOf(const GzInput& in, FileOf file) {
-    return file == FileOf::Scans ? MemoryBudget::kOfOneScan
-                                 : MemoryBudget::ofWholeFile(in.getTotalBytesCount());
+/** Also -0, and what rounding leaves of 0; but not larger than lengths, angles and speeds are. */
+bool isLikeAFloat(std::uint32_t bits) {
+    float value = 0;
+    std::memcpy(&value, &bits, sizeof(value));
+    return std::abs(value) < 1e9F;
 }
 }  // namespace
 
-ObjectArchive::ObjectArchive(GzInput& in, FileOf file)
-    : in_(in), file_(file), budget_(budgetOf(in, file)) {}
+ObjectArchive::ObjectArchive(GzInput& in, FileOf file) : in_(in), file_(file) {}
 
 mrpt::serialization::CSerializable::Ptr ObjectArchive::next() {
     const char here = 0;
     begin(&here);
-    const MemoryBudget budget(budget_);
     return ReadObject();
 }
 
 void ObjectArchive::nextInto(mrpt::serialization::CSerializable& object) {
     const char here = 0;
     begin(&here);
-    const MemoryBudget budget(budget_);
     ReadObject(&object);
 }
 
@@ -64,7 +90,7 @@ void ObjectArchive::begin(const char* stack) {
     next_ = Next::Anything;
     movement_ = Movement::None;
     nameSize_ = oldNameSize_ = 0;
-    counts_ = 0;
+    counts_ = {};
     viewports_ = Viewports::None;
 }
 
@@ -100,19 +126,24 @@ void ObjectArchive::checkCount(const void* data, std::size_t bytes) {
     const auto* to = static_cast<const char*>(data);
     const bool isCount = (bytes == sizeof(std::uint32_t) || bytes == sizeof(std::uint16_t)) &&
                          std::less<>()(&here, to) && std::less<>()(to, stack_);
-    if (counts_ == 0 || !isCount) return;
-    if (counts_ != kAll) --counts_;
+    if (counts_.left == 0 || !isCount) return;
+    if (counts_.skip > 0) {
+        --counts_.skip;
+        return;
+    }
+    if (counts_.left != kAll) --counts_.left;
     std::uint32_t elements = 0;
     std::memcpy(&elements, data, bytes);
-    // Six numbers of four bytes for a point: none of these asks for more than the budget.
-    constexpr std::uint64_t kOfScan = 10'000'000, kBytes = 6 * sizeof(float);
-    static_assert(kOfScan * kBytes < MemoryBudget::kOfOneScan);
+    if (counts_.floatsToo && isLikeAFloat(elements)) return;
     const std::uint64_t size = in_.getTotalBytesCount();
-    std::uint64_t most = in_.compressed() ? kOfScan : size - in_.getPosition();
-    if (file_ == FileOf::Scans)
-        most = std::min(most, kOfScan);
+    std::uint64_t most = in_.compressed() ? counts_.most : size - in_.getPosition();
+    if (file_ != FileOf::Scene)
+        most = std::min(most, counts_.most);
     else if (in_.compressed())
         most += 2 * size;
+    // Among them are numbers that count nothing: small ones, such as a kind or a size of letters.
+    constexpr std::uint64_t kSmall = 4096;
+    if (counts_.othersToo) most = std::max(most, kSmall);
     if (elements > most || elements * before > most)
         throw std::length_error("it claims more than the file can hold");
     lastCount_ = elements;
@@ -157,9 +188,9 @@ void ObjectArchive::foreseeClass(std::string_view name) {
     checkMovement(className);
     if (className == "mrpt::img::CImage") next_ = Next::ImageVersion;
     if (className == "mrpt::maps::CSimpleMap") next_ = Next::SimplemapVersion;
-    const auto counts = countsIn(className);
+    const auto counts = countsIn(className, file_);
     const bool isIn =
-        counts_ == kAll && endsWith(className.substr(0, className.size() - 1), "::CMatrix");
+        counts_.left == kAll && endsWith(className.substr(0, className.size() - 1), "::CMatrix");
     if (counts && !isIn) counts_ = *counts;
 }
 

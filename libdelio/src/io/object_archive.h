@@ -15,9 +15,9 @@ namespace delio::io {
  *  (and writes to address 0 where a cloud or a matrix gets none), and hands pictures to libjpeg,
  *  which ends the process where one is damaged. Here
  *  - classes are those that such a file needs (known_classes.h): another one throws, see refused();
- *  - clouds, matrices and scans that claim more elements than the rest of the file can hold (of a
- *    compressed file: than any holds) throw std::length_error; whatever else claims too much gets
- *    a std::bad_alloc from a MemoryBudget;
+ *  - what claims more elements than the rest of the file can hold (of a compressed file: than such
+ *    an object has) throws std::length_error. Not seen are counts in the rarer shapes of a scene,
+ *    and in four classes of rawlogs that have floats of their own counts that look like floats;
  *  - objects within objects within objects throw where the stack would end;
  *  - a movement of another kind of distribution than MRPT expects, which it would use unseen,
  *    throws, and so do a scene that holds anything but viewports, and a simplemap of version 0,
@@ -25,6 +25,15 @@ namespace delio::io {
  *  - images are passed over and come out empty: nothing here looks at them. */
 class ObjectArchive : public mrpt::serialization::CArchive {
  public:
+    /** Which of the 2- and 4-byte numbers of an object are checked as counts of elements. */
+    struct Counts {
+        unsigned left = 0;       ///< so many to come
+        std::uint64_t most = 0;  ///< elements that such an object has at most
+        bool othersToo = false;  ///< among them are numbers that count nothing
+        bool floatsToo = false;  ///< among them are floats
+        unsigned skip = 0;       ///< so many before them are no counts
+    };
+
     ObjectArchive(GzInput& in, FileOf file);
     std::string getArchiveDescription() const override { return "file"; }
 
@@ -54,7 +63,6 @@ class ObjectArchive : public mrpt::serialization::CArchive {
 
     GzInput& in_;
     FileOf file_;
-    std::uint64_t budget_;
     std::string refused_;
     const char* stack_ = nullptr;  ///< where it was when the object was begun
     enum class Next {
@@ -70,7 +78,7 @@ class ObjectArchive : public mrpt::serialization::CArchive {
     std::ptrdiff_t viewportDepth_ = 0;  ///< how deep the stack was when a viewport was begun
     std::size_t nameSize_ = 0;          ///< if the next read is as long, it may be a class's name
     std::size_t oldNameSize_ = 0;  ///< the same, if three zeros come first: files from before 2008
-    unsigned counts_ = 0;          ///< of these many numbers to come that count something
+    Counts counts_;
     std::uint64_t lastCount_ = 1;  ///< the number just before, if it was one: rows of columns
 };
 }  // namespace delio::io

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "delio/core/error.h"
+#include "delio/core/numbers.h"
 #include "side_file.h"
 
 namespace delio::io {
@@ -33,7 +34,7 @@ void readPointExtras(const std::string& stem, Scan& scan) {
     constexpr float kLongest_s = 1;  // no LiDAR turns slower than so
     for (const float time_s : scan.times_s)
         if (std::abs(time_s) > kLongest_s)
-            throw Error("'" + stem + ".time' has a time of " + std::to_string(time_s) +
+            throw Error("'" + stem + ".time' has a time of " + digitsOf(time_s) +
                         " s from its scan's stamp");
 }
 }  // namespace delio::io

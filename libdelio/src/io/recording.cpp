@@ -1,15 +1,11 @@
 #include "delio/io/recording.h"
 
-#include <cstdio>
+#include "delio/core/numbers.h"
 
 namespace delio::io {
 std::string describe(const Recording& recording) {
     std::string text = recording.sensor.empty() ? "a LiDAR of unknown model" : recording.sensor;
-    if (recording.rate_hz) {
-        char rate[32];
-        std::snprintf(rate, sizeof(rate), ", %.3g Hz", *recording.rate_hz);
-        text += rate;
-    }
+    if (recording.rate_hz) text += ", " + rounded(*recording.rate_hz, 3) + " Hz";
     if (recording.startsEmpty)
         text += ", no points in its first scans";
     else

@@ -1,7 +1,5 @@
 #include "delio/io/scan_table.h"
 
-#include <mrpt/core/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -61,7 +59,7 @@ std::string scanTableHeading(const ScanRow& row) {
 }
 
 std::string scanTableLine(const ScanRow& row) {
-    std::string line = std::to_string(row.scan) + mrpt::format(",%.7f", row.stamp_s);
+    std::string line = std::to_string(row.scan) + ',' + fixed(row.stamp_s, 7);
     for (const auto& value : row.values) line += ',' + cellOf(value.second);
     return line + (row.predicted ? ",1," : ",0,") + cellOf(row.reason) + '\n';
 }

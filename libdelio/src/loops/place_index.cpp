@@ -92,7 +92,7 @@ class PlaceIndex::Overlaps {
         }
     }
 
-    using Row = std::array<std::uint16_t, kSide>;
+    using Row = std::array<std::uint32_t, kSide>;
     /** Of shifts by `dy` rows. */
     Row row(int dy) const {
         constexpr std::size_t kMost = 255;  // that a byte can count
@@ -107,8 +107,7 @@ class PlaceIndex::Overlaps {
             }
             std::array<std::uint8_t, kSide> bytes;
             std::memcpy(bytes.data(), counts.data(), kSide);
-            for (std::size_t dx = 0; dx < kSide; ++dx)
-                row[dx] = static_cast<std::uint16_t>(row[dx] + bytes[dx]);
+            for (std::size_t dx = 0; dx < kSide; ++dx) row[dx] += bytes[dx];
         }
         return row;
     }
@@ -128,11 +127,11 @@ Sighting PlaceIndex::best(const Raster& place, const std::vector<Turned>& turns)
     Overlaps overlaps(place);
     for (const auto& turned : turns) {
         overlaps.take(turned);
-        std::uint16_t most = 0;
+        std::uint32_t most = 0;
         for (int dy = 0; dy < kRows; ++dy) {
             const auto row = overlaps.row(dy);
             for (int dx = 0; dx < kRows; ++dx) {
-                const std::uint16_t bits = row[static_cast<std::size_t>(dx)];
+                const std::uint32_t bits = row[static_cast<std::size_t>(dx)];
                 if (bits <= most) continue;
                 most = bits;
                 const double share = bits / std::max(1.0, turned.bits);

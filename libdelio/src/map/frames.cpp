@@ -1,12 +1,12 @@
 #include "delio/map/frames.h"
 
-#include <mrpt/core/format.h>
 #include <mrpt/math/TPose3D.h>
 #include <mrpt/topography/conversions.h>
 
 #include <ostream>
 
 #include "delio/core/geometry.h"
+#include "delio/core/numbers.h"
 #include "delio/io/output_file.h"
 #include "ground_plane.h"
 
@@ -37,8 +37,7 @@ std::string rowsOf(const Isometry3d& pose) {
     for (int r = 0; r < 4; ++r) {
         text += r == 0 ? "\n  - [" : "  - [";
         for (int c = 0; c < 4; ++c)
-            text +=
-                mrpt::format(c == 0 ? "%.17g" : ", %.17g", pose.matrix()(r, c) + 0.0);  // no "-0"
+            text += (c == 0 ? "" : ", ") + rounded(pose.matrix()(r, c) + 0.0, 17);  // no "-0"
         text += "]\n";
     }
     return text;
@@ -75,10 +74,10 @@ void saveFrame(const Isometry3d& otherFromMap, const std::optional<GeoReference>
             << "transformation:" << rowsOf(otherFromMap);
         if (!place) return;
         out << "# x east, y north, z up from here (WGS84)\n"
-            << mrpt::format(
-                   "origin:\n  latitude_deg: %.17g\n  longitude_deg: %.17g\n  altitude_m: %.17g\n",
-                   place->latitude_deg, place->longitude_deg, place->altitude_m)
-            << mrpt::format("heading_deg: %.17g\n", place->heading_deg)
+            << "origin:\n  latitude_deg: " << rounded(place->latitude_deg, 17)
+            << "\n  longitude_deg: " << rounded(place->longitude_deg, 17)
+            << "\n  altitude_m: " << rounded(place->altitude_m, 17)
+            << "\nheading_deg: " << rounded(place->heading_deg, 17) << '\n'
             << "# p_ecef = ecef_from_enu * p_out\n"
             << "ecef_from_enu:" << rowsOf(ecefFromEnu(*place));
     });

@@ -77,12 +77,31 @@ std::vector<OptionField> MapOptions::fields() const {
         {"keyframe_angle_deg", &MapOptions::keyframeAngle_deg,
          "and after every turn by so many degrees", 0, 360},
         {"voxel_size", &MapOptions::voxelSize_m,
-         "edge in metres of the voxels of which one point is kept; 0 keeps every point", 0, 1e3},
+         "edge in metres of the voxels of which one point is kept; 0 keeps every point; where "
+         "absent: in small places less, down to a quarter",
+         0, 1e3},
         {"min_range", &MapOptions::minRange_m,
-         "metres; points nearer to the sensor (the car itself) are left out", 0, 1e6},
+         "metres; points nearer to the sensor (the car itself) are left out; where absent: in "
+         "small places less, down to a quarter",
+         0, 1e6},
         {"max_range", &MapOptions::maxRange_m,
          "metres; points farther from the sensor are left out", 0, 1e6},
     };
+}
+
+void MapOptions::loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
+                                    const std::string& section) {
+    StageOptions::loadFromConfigFile(source, section);
+    voxelSizeIsSet_ = voxelSizeIsSet_ || source.keyExists(section, "voxel_size");
+    minRangeIsSet_ = minRangeIsSet_ || source.keyExists(section, "min_range");
+}
+
+MapOptions MapOptions::atScale(double scale) const {
+    const MapOptions standard;
+    MapOptions scaled = *this;
+    if (!voxelSizeIsSet_ && voxelSize_m == standard.voxelSize_m) scaled.voxelSize_m *= scale;
+    if (!minRangeIsSet_ && minRange_m == standard.minRange_m) scaled.minRange_m *= scale;
+    return scaled;
 }
 
 void MapOptions::check(const std::string& section) const {
@@ -91,7 +110,8 @@ void MapOptions::check(const std::string& section) const {
 
 MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel, std::string folder,
                        bool isKept)
-    : options_(options),
+    : given_(options),
+      options_(options),
       sensorLabel_(std::move(sensorLabel)),
       folder_(std::move(folder)),
       isKept_(isKept) {}
@@ -99,6 +119,12 @@ MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel, std::
 MapBuilder::~MapBuilder() = default;
 MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
 MapBuilder& MapBuilder::operator=(MapBuilder&&) noexcept = default;
+
+void MapBuilder::takeScale(double scale) {
+    if (!scans_.empty()) return;
+    scale_ = scale;
+    options_ = given_.atScale(scale);
+}
 
 bool MapBuilder::isFarFromLastKeyframe(const Isometry3d& pose) const {
     const Eigen::Vector3d moved = pose.translation() - now_.keyPose.translation();
@@ -183,7 +209,8 @@ template <class Archive>
 void MapBuilder::serialize(Archive& archive) {
     std::uint64_t end = spool_ ? spool_->kept() : 0;
     bool hasSpool = spool_ != nullptr;
-    archive(scans_, now_, hasSpool, end);
+    archive(scale_, scans_, now_, hasSpool, end);
+    if constexpr (Archive::is_loading::value) options_ = given_.atScale(scale_);
     if constexpr (Archive::is_loading::value)
         if (hasSpool)
             spool_ =
@@ -191,11 +218,11 @@ void MapBuilder::serialize(Archive& archive) {
 }
 
 void MapBuilder::save(std::ostream& out) const {
-    checkpoint::save(out, {"map", checkpoint::textOf({&options_, &options_.removal})}, *this);
+    checkpoint::save(out, {"map", checkpoint::textOf({&given_, &given_.removal})}, *this);
 }
 
 void MapBuilder::restore(std::istream& in) {
-    checkpoint::restore(in, {"map", checkpoint::textOf({&options_, &options_.removal})}, *this);
+    checkpoint::restore(in, {"map", checkpoint::textOf({&given_, &given_.removal})}, *this);
     canUndo_ = false;
 }
 

@@ -15,7 +15,14 @@ constexpr double kGroundCell_m = 1;
 constexpr double kDeepest_m = -0.5;    // below the ground are reflections
 constexpr double kLongestStep_m = 10;  // between poses: over more than that nobody knows the way
 // What cells hold while the grid is made.
-enum Mark : COccupancyGridMap2D::cellType { kUnknown, kGround, kNearGround, kOccupied, kDriven };
+enum Mark : COccupancyGridMap2D::cellType {
+    kUnknown,
+    kGround,
+    kNearGround,
+    kSeenThrough,
+    kOccupied,
+    kDriven
+};
 
 /** A grid in the making: cells by number from that of the lowest corner. */
 class Marks {
@@ -27,6 +34,10 @@ class Marks {
     void markDisc(const Eigen::Vector2d& middle, double radius, Mark mark);
     /** Marks what is no more than `reach` cells, along x and along y, from the ground. */
     void widenGround(int reach);
+    /** Marks the cells on the line from `from` to `to`, without the last one, where the line is
+     *  not higher above the ground than `height`, nor deep below it. */
+    void markRay(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                 const GroundSurface& ground, double height);
     COccupancyGridMap2D grid();
 
  private:
@@ -116,6 +127,38 @@ void Marks::widenGround(int reach) {
     widenAlongX(reach);
 }
 
+/** One cell for each step along the longer axis, as Bresenham's line has it. */
+void Marks::markRay(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                    const GroundSurface& ground, double height) {
+    const Eigen::Vector3d way = to - from;
+    const std::int64_t column = numberOf(from.x()) - firstX_, row = numberOf(from.y()) - firstY_,
+                       columns = numberOf(to.x()) - firstX_ - column,
+                       rows = numberOf(to.y()) - firstY_ - row;
+    const auto steps = static_cast<double>(std::max(std::abs(columns), std::abs(rows)));
+    const auto groundAt = [&](const Eigen::Vector3d& at) {
+        return ground.isGround(at.x(), at.y()) ? ground.at(at.x(), at.y()) : std::nan("");
+    };
+    // About the sensor often no ground was seen: there it is as where the line meets it first.
+    double below = std::nan("");
+    const double leap = std::max(1.0, kGroundCell_m / resolution_);
+    for (double step = 0; step < steps && std::isnan(below); step += leap)
+        below = groundAt(from + way * (step / steps));
+    for (double step = 0; step < steps; ++step) {
+        const double part = step / steps;
+        const std::int64_t x = column + std::llround(part * static_cast<double>(columns)),
+                           y = row + std::llround(part * static_cast<double>(rows));
+        if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
+        auto& cell = grid_.getRow(static_cast<int>(y))[x];
+        if (cell >= kSeenThrough) continue;
+        // Where it was not seen farther on, it stays as it was.
+        const Eigen::Vector3d at = from + way * part;
+        const double here = groundAt(at);
+        if (!std::isnan(here)) below = here;
+        const double above = at.z() - below;
+        if (above >= kDeepest_m && above <= height) cell = kSeenThrough;
+    }
+}
+
 COccupancyGridMap2D Marks::grid() {
     const auto unknown = COccupancyGridMap2D::p2l(0.5F), free = COccupancyGridMap2D::p2l(0.98F),
                occupied = COccupancyGridMap2D::p2l(0.02F);
@@ -152,11 +195,24 @@ void markWay(const std::vector<Eigen::Isometry3d>& way, const OccupancyOptions& 
             marks.markDisc(from + (to - from) * k / steps, options.halfWidth_m, kDriven);
     }
 }
+/** From where the sensor was when each point was seen first, to the point. */
+void markRays(const MapPoints& points, const io::Trajectory& sensor, const GroundSurface& ground,
+              const OccupancyOptions& options, Marks& marks) {
+    constexpr double kNear_s = 0.05;
+    const auto& stamps_s = sensor.stamps_s;
+    for (const auto& point : points) {
+        const double time_s = double{point.time_s};
+        const auto next = std::lower_bound(stamps_s.begin(), stamps_s.end(), time_s - kNear_s);
+        if (next == stamps_s.end() || *next > time_s + kNear_s) continue;
+        marks.markRay(sensor.poses[static_cast<std::size_t>(next - stamps_s.begin())].translation(),
+                      point.position.cast<double>(), ground, options.height_m);
+    }
+}
 }  // namespace
 
 COccupancyGridMap2D occupancyGrid(const MapPoints& points,
                                   const std::vector<std::vector<Eigen::Isometry3d>>& ways,
-                                  const OccupancyOptions& options) {
+                                  const OccupancyOptions& options, const io::Trajectory& sensor) {
     if (points.empty()) throw Error("the map has no points to make a grid of");
     Marks marks(extentOf(points, ways, options.halfWidth_m), options.resolution_m);
     // Not finer than two cells of the grid: memory stays within a few times that of the grid.
@@ -170,6 +226,7 @@ COccupancyGridMap2D occupancyGrid(const MapPoints& points,
             marks.mark(x, y, kGround);
     }
     marks.widenGround(static_cast<int>(std::lround(options.groundReach_m / options.resolution_m)));
+    markRays(points, sensor, ground, options, marks);
     for (const auto& way : ways) markWay(way, options, marks);
     return marks.grid();
 }

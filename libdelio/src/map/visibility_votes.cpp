@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -71,7 +72,10 @@ void VisibilityVotes::hit(const Eigen::Vector3d& point, bool moving, std::uint32
     if (!block.has(number)) {
         block.taken[number >> 6] |= std::uint64_t{1} << (number & 63);
         const Eigen::Array3d place = (scaled - whole) * 256;
-        const auto byte = [&](int axis) { return static_cast<std::uint8_t>(place[axis]); };
+        // Just below a border the difference rounds to 1.
+        const auto byte = [&](int axis) {
+            return static_cast<std::uint8_t>(std::min(place[axis], 255.0));
+        };
         block.cells.insert(cell, {scan, 1, moving, 0, 0, {byte(0), byte(1), byte(2)}});
     } else if (cell->lastScan != scan) {
         cell->lastScan = scan;

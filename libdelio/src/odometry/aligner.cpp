@@ -1,6 +1,5 @@
 #include "delio/odometry/aligner.h"
 
-#include <mrpt/core/format.h>
 #include <mrpt/maps/CPointsMap.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
@@ -12,6 +11,7 @@
 #include "delio/core/error.h"
 #include "delio/core/estimates.h"
 #include "delio/core/geometry.h"
+#include "delio/core/numbers.h"
 #include "delio/core/stopwatch.h"
 #include "delio/graph/pose_pdf.h"
 #include "delio/odometry/make_odometry.h"
@@ -74,7 +74,7 @@ class Alignment {
         if (points_.cols() < options.planes.min_matches)
             throw Error(
                 "Aligner: the second map has too few points: " + std::to_string(points_.cols()) +
-                mrpt::format(" that are %g m apart, ", options.scan_spacing) +
+                " that are " + digitsOf(options.scan_spacing) + " m apart, " +
                 std::to_string(options.planes.min_matches) + " are needed");
     }
 
@@ -213,8 +213,8 @@ mrpt::poses::CPose3DPDF::Ptr Aligner::Align3DPDF(
         agreed = alignment.agreementAt(estimate);
     }
     if (!estimate.valid)
-        throw Error(mrpt::format("Aligner: within %g m of the initial estimate fewer than ",
-                                 options.planes.search_radius) +
+        throw Error("Aligner: within " + digitsOf(options.planes.search_radius) +
+                    " m of the initial estimate fewer than " +
                     std::to_string(options.planes.min_matches) +
                     " points of the second map lie on planes of the first");
     estimate = alignment.inFirst(estimate);

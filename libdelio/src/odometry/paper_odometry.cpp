@@ -226,6 +226,7 @@ void PaperOdometry::takeIncrement(const PaperRegistration& registration, double 
 }
 
 Step PaperOdometry::process(const Scan& scan) {
+    requireConsistent(scan);
     Step step;
     const Arrival arrival = arrivals_.take(scan);
     const Interval& interval = arrival.interval;

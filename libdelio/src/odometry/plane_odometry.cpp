@@ -365,6 +365,7 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3
 }
 
 Step PlaneOdometry::process(const Scan& scan) {
+    requireConsistent(scan);
     Step step;
     step.times_ms = noTimes();
     const Arrival arrival = arrivals_.take(scan);

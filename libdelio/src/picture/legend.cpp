@@ -1,8 +1,9 @@
 #include "legend.h"
 
-#include <mrpt/core/format.h>
 #include <mrpt/img/CImage.h>
 #include <mrpt/opengl/CSetOfObjects.h>
+
+#include "delio/core/numbers.h"
 
 namespace delio::picture {
 using mrpt::img::TColor;
@@ -59,7 +60,7 @@ void addColourBar(COpenGLScene& scene, unsigned row, map::Colormap colormap,
     for (const int step : {0, 1, 2, 3, 4, 5}) {
         if (step % (kBarRows - 1) != 0 && unit.empty()) continue;
         const double value = range.low + (range.high - range.low) * step / (kBarRows - 1);
-        std::string text = mrpt::format(unit.empty() ? "%.2f" : "%.1f", value);
+        std::string text = fixed(value, unit.empty() ? 2 : 1);
         if (text == "-0.0") text = "0.0";
         addText(scene, kMargin_px + kBarWidth_px + 8, row + step,
                 kFirstId + static_cast<unsigned>(step), text + unit, ink);

@@ -1,8 +1,8 @@
 #include "round_length.h"
 
-#include <mrpt/core/format.h>
-
 #include <cmath>
+
+#include "delio/core/numbers.h"
 
 namespace delio::picture {
 double roundLength(double length_m) {
@@ -13,7 +13,6 @@ double roundLength(double length_m) {
 }
 
 std::string metresText(double length_m) {
-    return length_m >= 1000 ? mrpt::format("%g km", length_m / 1000)
-                            : mrpt::format("%g m", length_m);
+    return length_m >= 1000 ? rounded(length_m / 1000, 6) + " km" : rounded(length_m, 6) + " m";
 }
 }  // namespace delio::picture

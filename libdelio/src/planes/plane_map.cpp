@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "../core/characteristic_polynomial.h"
 #include "../core/principal_axes.h"
@@ -131,7 +132,10 @@ const Plane* PlaneMap::planeIn(const Level& level, std::uint32_t number) const {
         now = fit(level, number);
         state.store(now, std::memory_order_release);
     }
-    while (now == State::BeingFitted) now = state.load(std::memory_order_acquire);
+    while (now == State::BeingFitted) {
+        std::this_thread::yield();
+        now = state.load(std::memory_order_acquire);
+    }
     return now == State::Plane ? &level.planes[number] : nullptr;
 }
 

@@ -1,7 +1,5 @@
 #include "delio/run/localisation_table.h"
 
-#include <mrpt/core/format.h>
-
 #include <array>
 #include <fstream>
 #include <ostream>
@@ -29,17 +27,16 @@ void writeLocalisationTable(const RunRows& rows, const std::vector<MapFix>& fixe
             const auto& pose = fix.vehicle.pose;
             const Eigen::Quaterniond q(pose.linear());
             const RunRow row = rows[n];
-            out << row.scan
-                << mrpt::format(",%.7f,%s,%d,%d,%.3f", row.stamp_s,
-                                kNames[static_cast<std::size_t>(fix.where)], fix.measured,
-                                fix.searched, fix.share);
+            out << row.scan << ',' << fixed(row.stamp_s, 7) << ','
+                << kNames[static_cast<std::size_t>(fix.where)] << ',' << fix.measured << ','
+                << fix.searched << ',' << fixed(fix.share, 3);
             const bool known = fix.where != Whereabouts::kUnknown;
             for (const double value :
                  {pose(0, 3), pose(1, 3), pose(2, 3), q.x(), q.y(), q.z(), q.w()})
-                out << ',' << (known ? mrpt::format("%.9g", value) : "");
+                out << ',' << (known ? rounded(value, 9) : "");
             for (int i = 0; i < 6; ++i)
                 for (int k = i; k < 6; ++k)
-                    out << ',' << (known ? mrpt::format("%.6g", fix.vehicle.covariance(i, k)) : "");
+                    out << ',' << (known ? rounded(fix.vehicle.covariance(i, k), 6) : "");
             out << ',' << fix.reason << '\n';
         }
     });

@@ -1,7 +1,5 @@
 #include "delio/run/loop_table.h"
 
-#include <mrpt/core/format.h>
-
 #include <fstream>
 #include <ostream>
 
@@ -20,11 +18,13 @@ void writeLoopTable(const std::vector<loops::LoopCandidate>& candidates, const s
             const auto& closure = loop.closure;
             const Eigen::Isometry3d& pose = closure.increment.pose;
             const double yaw_deg = portable::atan2(pose(1, 0), pose(0, 0)) * 180 / M_PI;
-            out << loop.fromNode << ',' << loop.toNode
-                << mrpt::format(",%.1f,%.1f,%.3f,%.3f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,", loop.path_m,
-                                loop.reach_m, loop.share, closure.share, closure.overlap,
-                                loop.moved_m(), pose(0, 3), pose(1, 3), pose(2, 3), yaw_deg)
-                << loop.accepted() << ',' << closure.reason << '\n';
+            out << loop.fromNode << ',' << loop.toNode;
+            for (const double value : {loop.path_m, loop.reach_m}) out << ',' << fixed(value, 1);
+            for (const double value : {loop.share, closure.share, closure.overlap, loop.moved_m()})
+                out << ',' << fixed(value, 3);
+            for (const double value : {pose(0, 3), pose(1, 3), pose(2, 3), yaw_deg})
+                out << ',' << fixed(value, 4);
+            out << ',' << loop.accepted() << ',' << closure.reason << '\n';
         }
     });
 }

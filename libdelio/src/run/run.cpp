@@ -274,6 +274,7 @@ void Run::finish(bool complete) {
     record_.complete = complete;
     slam_.close();
     optimise();
+    if (map_) record_.options.map = map_->builder().options();  // as they were used
     if (settings_.map) store();
     if (truth_) score();
 }

@@ -12,14 +12,15 @@ std::vector<std::string> namesOf(const std::vector<Named>& figures) {
     return names;
 }
 
-/** The place of `value` in the list, to whose end it goes if it is new. */
+/** The place of `value` among the last values of the list; a new one is appended. Looking at all
+ *  would take the square of the rows where each has another value. */
 template <typename Value, typename IsSame>
 double placeIn(std::vector<Value>& list, const Value& value, const IsSame& isSame) {
-    // What is the same again mostly was so in the row before.
-    const auto found = std::find_if(list.rbegin(), list.rend(),
-                                    [&](const Value& other) { return isSame(other, value); });
-    const auto place = list.rend() - found - 1;
-    if (place >= 0) return static_cast<double>(place);
+    constexpr std::ptrdiff_t kLast = 64;
+    const auto end = list.size() > kLast ? list.rbegin() + kLast : list.rend();
+    const auto found =
+        std::find_if(list.rbegin(), end, [&](const Value& other) { return isSame(other, value); });
+    if (found != end) return static_cast<double>(list.rend() - found - 1);
     list.push_back(value);
     return static_cast<double>(list.size() - 1);
 }

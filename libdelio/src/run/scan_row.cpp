@@ -1,16 +1,17 @@
 #include "scan_row.h"
 
-#include <mrpt/core/format.h>
+#include <string>
+
+#include "delio/core/numbers.h"
 
 namespace delio::run {
-using mrpt::format;
-
 namespace {
 /** Axes that were not observed, each as "x y z". */
 std::string axesText(const Eigen::Matrix3Xd& axes) {
     std::string text;
     for (Eigen::Index i = 0; i < axes.cols(); ++i)
-        text += format("%s%.3f %.3f %.3f", i > 0 ? "; " : "", axes(0, i), axes(1, i), axes(2, i));
+        text += (i > 0 ? "; " : "") + fixed(axes(0, i), 3) + ' ' + fixed(axes(1, i), 3) + ' ' +
+                fixed(axes(2, i), 3);
     return text;
 }
 
@@ -24,21 +25,20 @@ io::ScanRow scanRowOf(const RunRow& row) {
     };
     put("points", std::to_string(row.points));
     put("not_finite", std::to_string(step.notFinite));
-    put("read_ms", format("%.3f", row.read_ms));
-    for (const auto& [stage, ms] : step.times_ms)
-        put(std::string(stage) + "_ms", format("%.3f", ms));
+    put("read_ms", fixed(row.read_ms, 3));
+    for (const auto& [stage, ms] : step.times_ms) put(std::string(stage) + "_ms", fixed(ms, 3));
     for (const auto& [listener, ms] : row.report.listeners_ms)
-        put(std::string(listener) + "_ms", format("%.3f", ms));
-    for (const auto& [name, value] : step.details) put(name, format("%.9g", value));
+        put(std::string(listener) + "_ms", fixed(ms, 3));
+    for (const auto& [name, value] : step.details) put(name, rounded(value, 9));
     const Quality& quality = step.quality;
     put("matches", std::to_string(quality.matches));
-    put("residual_m", format("%.9g", quality.residual_m));
+    put("residual_m", rounded(quality.residual_m, 9));
     for (int k = 0; k < 3; ++k)
-        put(format("rotation_observability_%d", k + 1),
-            format("%.9g", quality.rotationObservability[k]));
+        put("rotation_observability_" + std::to_string(k + 1),
+            rounded(quality.rotationObservability[k], 9));
     for (int k = 0; k < 3; ++k)
-        put(format("translation_observability_%d", k + 1),
-            format("%.9g", quality.translationObservability[k]));
+        put("translation_observability_" + std::to_string(k + 1),
+            rounded(quality.translationObservability[k], 9));
     put("rotation_unobserved", axesText(quality.unobservedRotation));
     put("translation_unobserved", axesText(quality.unobservedTranslation));
     put("searched", step.searched ? "1" : "0");

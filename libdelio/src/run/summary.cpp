@@ -1,6 +1,5 @@
 #include "delio/run/summary.h"
 
-#include <mrpt/core/format.h>
 #include <sys/resource.h>
 #include <yaml-cpp/yaml.h>
 
@@ -11,6 +10,7 @@
 
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
+#include "delio/core/percentile.h"
 #include "delio/io/output_file.h"
 #include "delio/run/doubts.h"
 #include "delio/version.h"
@@ -95,15 +95,28 @@ void write(YAML::Emitter& yaml, const char* key, const std::array<std::size_t, 3
     yaml << YAML::EndMap;
 }
 
+/** As yaml-cpp's as(), which asks the locale. */
+template <typename Number>
+Number numberOf(const YAML::Node& node) {
+    const auto number = numberIn<Number>(node.as<std::string>());
+    if (!number) throw YAML::TypedBadConversion<Number>(node.Mark());
+    return *number;
+}
+template <typename Number>
+Number numberOf(const YAML::Node& node, Number otherwise) {
+    return node ? numberOf<Number>(node) : otherwise;
+}
+
 std::array<std::size_t, 3> countsIn(const YAML::Node& node) {
     if (!node) return {};
-    return {node["x"].as<std::size_t>(), node["y"].as<std::size_t>(), node["z"].as<std::size_t>()};
+    return {numberOf<std::size_t>(node["x"]), numberOf<std::size_t>(node["y"]),
+            numberOf<std::size_t>(node["z"])};
 }
 
 Summary::Figures figuresIn(const YAML::Node& node) {
     Summary::Figures figures;
     for (const auto& entry : node)
-        figures.emplace_back(entry.first.as<std::string>(), entry.second.as<double>());
+        figures.emplace_back(entry.first.as<std::string>(), numberOf<double>(entry.second));
     return figures;
 }
 }  // namespace
@@ -113,10 +126,7 @@ Summary::Figures latencyOf(const RunRows& rows) {
     for (const auto& row : rows) ms.push_back(row.total_ms());
     if (ms.empty()) ms.push_back(0);
     std::sort(ms.begin(), ms.end());
-    const auto within = [&](double share) {
-        return ms[static_cast<std::size_t>(share * static_cast<double>(ms.size() - 1))];
-    };
-    return {{"median", within(0.5)}, {"p95", within(0.95)}, {"worst", ms.back()}};
+    return {{"median", percentileOf(ms, 50)}, {"p95", percentileOf(ms, 95)}, {"worst", ms.back()}};
 }
 
 double peakMemory_mb() {
@@ -240,38 +250,38 @@ Summary readSummary(const std::string& path) {
         s.profile = node["profile"].as<std::string>();
         s.complete = node["complete"].as<bool>();
         s.fault = node["fault"].as<std::string>("");
-        s.scans = node["scans"].as<std::size_t>();
-        s.predicted = node["predicted"].as<std::size_t>();
-        s.longest_predicted = node["longest_predicted"].as<std::size_t>(0);
-        s.weakly_observed = node["weakly_observed"].as<std::size_t>(0);
-        s.longest_weakly_observed = node["longest_weakly_observed"].as<std::size_t>(0);
+        s.scans = numberOf<std::size_t>(node["scans"]);
+        s.predicted = numberOf<std::size_t>(node["predicted"]);
+        s.longest_predicted = numberOf<std::size_t>(node["longest_predicted"], 0);
+        s.weakly_observed = numberOf<std::size_t>(node["weakly_observed"], 0);
+        s.longest_weakly_observed = numberOf<std::size_t>(node["longest_weakly_observed"], 0);
         s.weakly_observed_along = countsIn(node["weakly_observed_along"]);
         s.weakly_observed_about = countsIn(node["weakly_observed_about"]);
-        s.searched = node["searched"].as<std::size_t>(0);
-        s.longest_searched = node["longest_searched"].as<std::size_t>(0);
-        s.interrupted = node["interrupted"].as<std::size_t>(0);
-        s.standing = node["standing"].as<std::size_t>(0);
+        s.searched = numberOf<std::size_t>(node["searched"], 0);
+        s.longest_searched = numberOf<std::size_t>(node["longest_searched"], 0);
+        s.interrupted = numberOf<std::size_t>(node["interrupted"], 0);
+        s.standing = numberOf<std::size_t>(node["standing"], 0);
         s.searched_loops = static_cast<bool>(node["loops_closed"]);
-        s.loop_candidates = node["loop_candidates"].as<std::size_t>(0);
-        s.loops_closed = node["loops_closed"].as<std::size_t>(0);
-        s.loop_search_ms = node["loop_search_ms"].as<double>(0);
+        s.loop_candidates = numberOf<std::size_t>(node["loop_candidates"], 0);
+        s.loops_closed = numberOf<std::size_t>(node["loops_closed"], 0);
+        s.loop_search_ms = numberOf<double>(node["loop_search_ms"], 0);
         s.stored_map = node["stored_map"].as<std::string>("");
-        s.in_map = node["in_map"].as<std::size_t>(0);
-        s.outside_map = node["outside_map"].as<std::size_t>(0);
-        s.not_found_in_map = node["not_found_in_map"].as<std::size_t>(0);
-        s.deskewed = node["deskewed"].as<std::size_t>();
-        s.path_m = node["path_m"].as<double>();
-        s.vertical_correction_deg = node["vertical_correction_deg"].as<double>();
-        s.ms_per_scan = node["ms_per_scan"].as<double>();
+        s.in_map = numberOf<std::size_t>(node["in_map"], 0);
+        s.outside_map = numberOf<std::size_t>(node["outside_map"], 0);
+        s.not_found_in_map = numberOf<std::size_t>(node["not_found_in_map"], 0);
+        s.deskewed = numberOf<std::size_t>(node["deskewed"]);
+        s.path_m = numberOf<double>(node["path_m"]);
+        s.vertical_correction_deg = numberOf<double>(node["vertical_correction_deg"]);
+        s.ms_per_scan = numberOf<double>(node["ms_per_scan"]);
         s.ms_per_scan_of_stages = figuresIn(node["ms_per_scan_of_stages"]);
         s.latency_ms = figuresIn(node["latency_ms"]);
-        s.map_ms_per_scan = node["map_ms_per_scan"].as<double>();
-        s.optimisation_ms = node["optimisation_ms"].as<double>();
-        s.optimisation_iterations = node["optimisation_iterations"].as<unsigned>();
-        s.optimisation_cost_before = node["optimisation_cost_before"].as<double>();
-        s.optimisation_cost_after = node["optimisation_cost_after"].as<double>();
-        s.map_and_pictures_ms = node["map_and_pictures_ms"].as<double>();
-        s.peak_rss_mb = node["peak_rss_mb"].as<double>();
+        s.map_ms_per_scan = numberOf<double>(node["map_ms_per_scan"]);
+        s.optimisation_ms = numberOf<double>(node["optimisation_ms"]);
+        s.optimisation_iterations = numberOf<unsigned>(node["optimisation_iterations"]);
+        s.optimisation_cost_before = numberOf<double>(node["optimisation_cost_before"]);
+        s.optimisation_cost_after = numberOf<double>(node["optimisation_cost_after"]);
+        s.map_and_pictures_ms = numberOf<double>(node["map_and_pictures_ms"]);
+        s.peak_rss_mb = numberOf<double>(node["peak_rss_mb"]);
         s.warnings = node["warnings"].as<std::vector<std::string>>();
         s.metrics = figuresIn(node["metrics"]);
         s.metrics_before_optimisation = figuresIn(node["metrics_before_optimisation"]);

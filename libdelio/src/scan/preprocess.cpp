@@ -31,6 +31,7 @@ void PreprocessOptions::check(const std::string& section) const {
 }
 
 PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
+    requireConsistent(scan);
     const auto& x = scan.points->getPointsBufferRef_x();
     const auto& y = scan.points->getPointsBufferRef_y();
     const auto& z = scan.points->getPointsBufferRef_z();

@@ -79,6 +79,7 @@ void GraphBuilder::addSkipEdges(const Recent& latest) {
     std::vector<std::optional<Link>> links(recent_.size());
     tbb::parallel_for(std::size_t{1}, std::max<std::size_t>(links.size(), 1), [&](std::size_t i) {
         const Recent& earlier = recent_[i];
+        if (!earlier.features) return;
         const Eigen::Isometry3d guess = (poses[earlier.node] * earlier.sensorPose).inverse() *
                                         (poses[latest.node] * latest.sensorPose);
         links[i] = latest.features->linkTo(*earlier.features, guess);

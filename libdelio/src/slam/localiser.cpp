@@ -8,8 +8,9 @@
 namespace delio {
 Localiser::Localiser(std::shared_ptr<const StoredMap> map, const OdometryOptions& options,
                      const PlaceSearchOptions& search, const LocalisationOptions& localisation)
-    : follower_(std::make_shared<MapFollower>(MapTracker(std::move(map), search, localisation))),
-      slam_(makeOdometry(options)) {
+    : follower_(std::make_shared<MapFollower>(MapTracker(std::move(map), search, localisation),
+                                              History::Last)),
+      slam_(makeOdometry(options), History::Last) {
     slam_.attach(follower_);
 }
 

@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <chrono>
+#include <utility>
 
 #include "../core/checkpoint.h"
 #include "delio/core/error.h"
@@ -22,12 +23,18 @@ void LoopCloser::add(const SlamScan& scan) {
         up_ = scan::upIn(scan.scan.sensorPose, points);
         upIsKnown_ = true;
     }
-    // Where a scan was taken that could not be registered is a guess.
-    auto ended =
-        builder_.add(scan.node, scan.increment,
-                     scan.step.predicted ? Eigen::Matrix3Xf(3, 0) : stillPoints(scan), up_);
-    end(std::move(ended));
+    // The pose of a scan that was not registered is a guess.
+    const auto still = scan.step.predicted ? Eigen::Matrix3Xf(3, 0) : stillPoints(scan);
     poses_.push_back(scan.pose);
+    std::optional<loops::Submap> ended;
+    try {
+        waiting_.reserve(waiting_.size() + 1);
+        ended = builder_.add(scan.node, scan.increment, still, up_);
+    } catch (...) {
+        poses_.pop_back();
+        throw;
+    }
+    end(std::move(ended));  // nothing throws from here on
     searchNext();
 }
 
@@ -67,32 +74,35 @@ void LoopCloser::end(std::optional<loops::Submap> submap) {
     waiting_.push_back({std::move(*submap), pose});
 }
 
-/** Whatever waits, unless the thread is busy. */
-void LoopCloser::searchNext() {
+/** Searches for all submaps that wait, unless the thread is busy: in a thread of its own, or here
+ *  if there is only one, or if the system has no more threads. */
+void LoopCloser::searchNext() noexcept {
     const bool isBusy =
         busy_.valid() && busy_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
     if (waiting_.empty() || isBusy) return;
+    taken_ = std::exchange(waiting_, {});
     using Control = tbb::global_control;
-    if (Control::active_value(Control::max_allowed_parallelism) > 1)
-        busy_ = std::async(std::launch::async, [this, submaps = std::move(waiting_)]() mutable {
-            search(std::move(submaps));
-        });
-    else
-        search(std::move(waiting_));
-    waiting_.clear();
+    if (Control::active_value(Control::max_allowed_parallelism) > 1) try {
+            busy_ = std::async(std::launch::async, [this] { searchTaken(); });
+            return;
+        } catch (const std::exception&) {
+            // The system has no more threads.
+        }
+    searchTaken();
 }
 
 /** By one thread: the others are the odometry's. */
-void LoopCloser::search(std::vector<Ended> submaps) {
+void LoopCloser::searchTaken() noexcept {
     Stopwatch watch;
-    tbb::task_arena(1).execute([&] {
-        try {
-            for (auto& [submap, pose] : submaps)
+    try {
+        tbb::task_arena(1).execute([&] {
+            for (auto& [submap, pose] : taken_)
                 if (!fault_) search_.add(std::move(submap), pose);
-        } catch (...) {
-            fault_ = std::current_exception();
-        }
-    });
+        });
+    } catch (...) {
+        fault_ = std::current_exception();
+    }
+    taken_.clear();
     search_ms_ += watch.lap_ms();
 }
 
@@ -100,7 +110,8 @@ loops::ClosedLoops LoopCloser::close(const graph::PoseGraph& graph,
                                      const graph::PoseGraphOptions& optimisation) {
     if (busy_.valid()) busy_.wait();
     end(builder_.finish());
-    search(std::move(waiting_));
+    taken_ = std::exchange(waiting_, {});
+    searchTaken();
     if (fault_) std::rethrow_exception(fault_);
     return loops::closeLoops(graph, search_, optimisation);
 }

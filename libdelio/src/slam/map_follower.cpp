@@ -9,6 +9,8 @@ void MapFollower::add(const SlamScan& scan) {
     if (!up_ && points.cols() > 0) up_ = scan::upIn(scan.scan.sensorPose, points);
     fixes_.push_back(
         tracker_.add(scan.increment, stillPoints(scan), up_.value_or(Eigen::Vector3d::UnitZ())));
+    // undo() needs the fix before the last one.
+    if (history_ == History::Last && fixes_.size() > 2) fixes_.erase(fixes_.begin());
 }
 
 namespace {

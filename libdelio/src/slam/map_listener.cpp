@@ -26,6 +26,8 @@ mrpt::maps::CPointsMap::Ptr pointsForMap(const Scan& scan, const UsedPoints& use
 void MapListener::add(const SlamScan& scan) {
     added_ = !scan.step.predicted;
     if (!added_) return;
+    for (const auto& [name, value] : scan.step.details)
+        if (name == "scale") builder_.takeScale(value);
     builder_.add(scan.node, scan.pose, *pointsForMap(scan.scan, scan.step.used),
                  scan.scan.sensorPose, scan.scan.time, scan.step.used.dynamic);
 }

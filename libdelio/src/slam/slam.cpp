@@ -59,10 +59,11 @@ void Slam::restore(std::istream& in) {
 
 ScanReport Slam::process(const Scan& scan) {
     requireOpen();
+    requireConsistent(scan);
     ScanReport report{odometry_->process(scan), {}};
     requireFinite(report.step.increment, scan);
     auto& [poses, stamps_s] = trajectory_;
-    const std::size_t node = poses.size();
+    const std::size_t node = nodes_, kept = poses.size();
     Increment increment;  // since the last scan that was taken
     SlamScan told{node, scan, report.step, {}, Eigen::Isometry3d::Identity()};
     if (node > 0) {
@@ -75,11 +76,16 @@ ScanReport Slam::process(const Scan& scan) {
         stamps_s.push_back(scan.stamp_s);
         tell(told, report);
     } catch (...) {
-        poses.resize(node);
-        stamps_s.resize(node);
+        poses.resize(kept);
+        stamps_s.resize(kept);
         if (node > 0) refused_ = increment;
         throw;
     }
+    if (history_ == History::Last) {
+        poses.erase(poses.begin(), poses.end() - 1);
+        stamps_s.erase(stamps_s.begin(), stamps_s.end() - 1);
+    }
+    ++nodes_;
     sensorPose_ = scan.sensorPose;
     refused_.reset();
     return report;

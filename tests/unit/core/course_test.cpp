@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "delio/core/error.h"
 #include "delio/core/pose_table.h"
 #include "tangents.h"
 
@@ -78,5 +79,17 @@ TEST(PoseTable, IsTheCourse) {
     }
     EXPECT_LT(difference(table.at(0.05), course.at(0.05)), 1e-12);
     EXPECT_LT(difference(PoseTable(course, 0.01, 0.01).at(0.01), course.at(0.01)), 1e-9);
+}
+
+TEST(Course, NeedsTwoPosesAtTimesThatIncrease) {
+    const auto pose = Isometry3d::Identity();
+    EXPECT_THROW(Course({}, {}), Error);
+    EXPECT_THROW(Course({0}, {pose}), Error);
+    EXPECT_THROW(Course({0, 1}, {pose}), Error);
+    EXPECT_THROW(Course({0}, {pose, pose}), Error);
+    EXPECT_THROW(Course({0, 0}, {pose, pose}), Error);
+    EXPECT_THROW(Course({0, 1, 0.5}, {pose, pose, pose}), Error);
+    EXPECT_THROW(Course({0, std::nan("")}, {pose, pose}), Error);
+    EXPECT_NO_THROW(Course({0, 1}, {pose, pose}));
 }
 }  // namespace

@@ -5,13 +5,17 @@
 #include <clocale>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <locale>
 #include <sstream>
 
 namespace {
 using delio::digitsOf;
+using delio::fixed;
 using delio::numberIn;
+using delio::numbersIn;
+using delio::rounded;
 
 constexpr double kMax = std::numeric_limits<double>::max();
 constexpr double kLeast = std::numeric_limits<double>::denorm_min();
@@ -83,6 +87,29 @@ TEST(Numbers, DigitsAreTheFewest) {
     EXPECT_EQ(digitsOf(-3), "-3");
 }
 
+TEST(Numbers, AreWrittenWithSoManyDigits) {
+    char text[400];
+    for (const double number :
+         {0.0, -0.0, 0.125, 2.5, -1234.56789, 1e-17, 1e22, kMax, kLeast, HUGE_VAL})
+        for (const int digits : {1, 3, 7, 17}) {
+            std::snprintf(text, sizeof(text), "%.*f", digits, number);
+            EXPECT_EQ(fixed(number, digits), text);
+            std::snprintf(text, sizeof(text), "%.*g", digits, number);
+            EXPECT_EQ(rounded(number, digits), text);
+        }
+    EXPECT_EQ(fixed(std::nan(""), 2), "nan");
+}
+
+TEST(Numbers, NumbersOfALineAreReadUpToItsEndOrAWord) {
+    using Numbers = std::vector<double>;
+    EXPECT_EQ(numbersIn(" 1 -2.5\t3e2\r\n4 "), (Numbers{1, -2.5, 300, 4}));
+    EXPECT_EQ(numbersIn("7 8 x 9"), (Numbers{7, 8}));
+    EXPECT_EQ(numbersIn("7 nan 9"), Numbers{7});
+    EXPECT_EQ(numbersIn("1,5 2"), Numbers());
+    EXPECT_EQ(numbersIn("   "), Numbers());
+    EXPECT_EQ(numbersIn(""), Numbers());
+}
+
 /** 1.234,5 in place of 1234.5: a locale that is there wherever the test runs. */
 struct Commas : std::numpunct<char> {
     char do_decimal_point() const override { return ','; }
@@ -112,5 +139,8 @@ TEST_F(InALocaleWithCommas, NumbersAreReadAndWrittenAsEver) {
     EXPECT_FALSE(numberIn<int>("1.234"));
     EXPECT_EQ(digitsOf(1234.5), "1234.5");
     EXPECT_EQ(digitsOf(1234567), "1234567");
+    EXPECT_EQ(fixed(1234.5, 2), "1234.50");
+    EXPECT_EQ(rounded(1234.5, 9), "1234.5");
+    EXPECT_EQ(numbersIn("1234.5 2"), (std::vector<double>{1234.5, 2}));
 }
 }  // namespace

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "cloud_files.h"
+#include "comma_locale.h"
 #include "delio/io/rawlog_reader.h"
 #include "delio/io/rawlog_writer.h"
 #include "io/folders/folder_reader.h"
@@ -87,6 +88,30 @@ TEST_F(KittiReader, RawDriveIsTheSameAsItsRawlog) {
         test::expectSameDrive(reader, rawlog);
         EXPECT_EQ(test::linesOf(reader.truth().text).size(), 2U);
     }
+}
+
+/** Calibration and OXTS have fractions, which a locale may write with a comma. */
+TEST_F(KittiReader, ARawDriveIsTheSameInAnyLocale) {
+    const fs::path date = folder_ / "2011_09_26", drive = date / "drive_0001_sync";
+    fs::create_directories(drive / "velodyne_points" / "data");
+    fs::create_directories(drive / "oxts" / "data");
+    for (const std::string number : {"0000000000", "0000000001"}) {
+        test::writeFloats(drive / "velodyne_points" / "data" / (number + ".bin"), fewScans(3)[2]);
+        writeText(drive / "oxts" / "data" / (number + ".txt"),
+                  "49.000" + number + " 8.4 116.5 0.01 0.02 1.3 0 0\n");
+    }
+    writeText(drive / "velodyne_points" / "timestamps.txt",
+              "2011-09-26 13:02:25.951199337\n2011-09-26 13:02:26.157989654\n");
+    for (const char* name : {"calib_velo_to_cam.txt", "calib_imu_to_velo.txt"})
+        writeText(date / name, "R: 0 -1 0 0 0 -1 1 0 0\nT: 0.1 0.2 0.3\n");
+    writeText(date / "calib_cam_to_cam.txt", "R_rect_00: 0.8 0 0.6 0 1 0 -0.6 0 0.8\n");
+    const auto before = io::openKittiDrive(drive, 0, 0);
+    EXPECT_EQ(before.poseRows.size(), 2U);
+    const test::CommaLocale locale;
+    const auto after = io::openKittiDrive(drive, 0, 0);
+    EXPECT_EQ(after.calibText, before.calibText);
+    EXPECT_EQ(after.poseRows, before.poseRows);
+    EXPECT_EQ(after.times_s, before.times_s);
 }
 
 TEST_F(KittiReader, SaysWhatItIs) {

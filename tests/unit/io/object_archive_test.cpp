@@ -9,18 +9,29 @@
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservation6DFeatures.h>
+#include <mrpt/obs/CObservationComment.h>
+#include <mrpt/obs/CObservationGPS.h>
+#include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationImage.h>
+#include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationRotatingScan.h>
+#include <mrpt/obs/CObservationVelodyneScan.h>
 #include <mrpt/opengl/CAssimpModel.h>
 #include <mrpt/opengl/CBox.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/CSetOfObjects.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstring>
+#include <thread>
 
 #include "delio/map/simplemap.h"
 #include "delio/picture/scene.h"
+#include "io/object_archive.h"
 #include "memory_limit.h"
 #include "rawlog_files.h"
 
@@ -62,7 +73,24 @@ std::vector<CSerializable::Ptr> scans() {
     rotating->intensityImage.setZero(2, 3);
     auto matrix = mrpt::math::CMatrixF::Create();
     matrix->setSize(5, 7);
-    return {scanOf<mrpt::maps::CSimplePointsMap>(),
+    auto packets = mrpt::obs::CObservationVelodyneScan::Create();
+    packets->scan_packets.resize(2);
+    packets->point_cloud.x = packets->point_cloud.y = packets->point_cloud.z = {1, 2, 3};
+    auto features = mrpt::obs::CObservation6DFeatures::Create();
+    features->sensedFeatures.resize(2);
+    auto actions = mrpt::obs::CActionCollection::Create();
+    auto odometry = mrpt::obs::CObservationOdometry::Create();
+    odometry->sensorLabel = "wheels";
+    auto comment = mrpt::obs::CObservationComment::Create();
+    comment->text = "a word";
+    return {packets,
+            features,
+            actions,
+            odometry,
+            comment,
+            mrpt::obs::CObservationGPS::Create(),
+            mrpt::obs::CObservationIMU::Create(),
+            scanOf<mrpt::maps::CSimplePointsMap>(),
             scanOf<mrpt::maps::CWeightedPointsMap>(),
             scanOf<mrpt::maps::CColouredPointsMap>(),
             cloudObservation(0, "lidar", 3),
@@ -229,5 +257,34 @@ TEST_F(ObjectArchive, NamesOfExternalFilesDoNotLeadOutOfTheirFolder) {
         EXPECT_NE(fault(name).find("leads out of the folder"), std::string::npos) << fault(name);
     EXPECT_NE(fault("").find("does not say which"), std::string::npos) << fault("");
     EXPECT_NE(fault(std::string(5000, 'x')).find("none of the folders"), std::string::npos);
+}
+
+/** The limit is the host program's: its other threads allocate while an object is read. */
+TEST_F(ObjectArchive, TheProcessKeepsItsMemoryLimitWhileAnObjectIsRead) {
+    const std::string bytes = bytesOf({cloudObservation(0, "lidar", 200'000)});
+    int ends[2] = {};
+    ASSERT_EQ(pipe(ends), 0);
+    const int input = dup(STDIN_FILENO);
+    dup2(ends[0], STDIN_FILENO);
+    close(ends[0]);
+    io::GzInput in("-");
+    dup2(input, STDIN_FILENO);
+    close(input);
+    rlimit before{}, during{};
+    getrlimit(RLIMIT_DATA, &before);
+    std::thread writer([&] {
+        const auto put = [&](std::size_t from, std::size_t to) {
+            while (from < to)
+                from += static_cast<std::size_t>(write(ends[1], bytes.data() + from, to - from));
+        };
+        put(0, bytes.size() / 2);  // more than a pipe holds: the reader is in the object now
+        getrlimit(RLIMIT_DATA, &during);
+        put(bytes.size() / 2, bytes.size());
+        close(ends[1]);
+    });
+    io::ObjectArchive archive(in, io::FileOf::Scans);
+    EXPECT_NO_THROW(EXPECT_TRUE(archive.next()));
+    writer.join();
+    EXPECT_EQ(during.rlim_cur, before.rlim_cur);
 }
 }  // namespace

@@ -98,4 +98,18 @@ TEST(PlaceIndex, SharesAreWhatCountingGives) {
         EXPECT_NEAR(found.shift.share, mostOf(place, seen), 1e-12);
     }
 }
+
+// 110 x 110 cells of 2 m with six bands or more: more than 16 bits count.
+TEST(PlaceIndex, OfAPlaceWithVeryManyBands) {
+    Eigen::Matrix2Xd cells(2, 110 * 110);
+    for (Eigen::Index i = 0; i < cells.cols(); ++i)
+        cells.col(i) = Eigen::Vector2d(2.0 * static_cast<double>(i % 110) - 109.75,
+                                       2.0 * static_cast<double>(i / 110) - 109.75);
+    const HeightImage large(cells, std::vector<std::uint8_t>(110 * 110, 0xFF), {}, {});
+    PlaceIndex index;
+    index.add(large);
+    const auto found = index.find(large, 1).at(0);
+    EXPECT_EQ(found.shift.share, 1);
+    EXPECT_LT(found.shift.translation.norm(), 1e-9);
+}
 }  // namespace

@@ -199,4 +199,44 @@ TEST(Occupancy, MapServerGetsBothFilesOrNone) {
     EXPECT_FALSE(std::filesystem::exists(folder / "b.pgm"));
     EXPECT_THROW(map::saveMapServer(grid, folder / "no/such/c.yaml"), Error);
 }
+
+/** A sensor at the origin, 1 m above the ground, of which only that about it was seen; walls at 10
+ * m, ahead and behind; a box in the way; a high wall to the left. */
+struct Hall {
+    Hall() {
+        for (double x = -2; x <= 2; x += 0.1)
+            for (double y = -2; y <= 2; y += 0.1) points.push_back(pointAt(x, y, 0));
+        for (double y = -3; y <= 3; y += 0.05)
+            for (double z = 0.4; z < 2.6; z += 0.2) {
+                points.push_back(pointAt(10, y, z));
+                points.push_back(pointAt(-10, y, z));
+                points.back().time_s = 7;  // seen when nobody knows where the sensor was
+            }
+        for (double z = 0.2; z < 1.3; z += 0.1) points.push_back(pointAt(5, 1, z));
+        for (double x = -3; x <= 3; x += 0.1) points.push_back(pointAt(x, 10, 9));
+        sensor.poses = {poseAt(0, 0, 1), poseAt(100, 0, 1)};
+        sensor.stamps_s = {0, 1};
+    }
+    map::MapPoints points;
+    io::Trajectory sensor;
+};
+
+TEST(Occupancy, WhatALineOfSightPassesIsFree) {
+    const Hall hall;
+    const auto blind = map::occupancyGrid(hall.points, {}),
+               grid = map::occupancyGrid(hall.points, {}, {}, hall.sensor);
+    const auto at = [](const COccupancyGridMap2D& of, double x, double y) {
+        return of.getPos(static_cast<float>(x), static_cast<float>(y));
+    };
+    for (double x = 2.6; x < 9.8; x += 0.1) {
+        EXPECT_NEAR(at(blind, x, 0.05), 0.5, 0.02) << x;
+        EXPECT_GT(at(grid, x, 0.05), 0.9) << x;
+        EXPECT_NEAR(at(grid, -x, 0.05), 0.5, 0.02) << x;
+    }
+    for (double y = -2.95; y < 3; y += 0.1) EXPECT_LT(at(grid, 10.05, y), 0.1) << y;
+    EXPECT_LT(at(grid, 5.05, 1.05), 0.1);          // the box: lines of sight pass above it
+    EXPECT_NEAR(at(grid, 5.05, 6.05), 0.5, 0.02);  // beside all lines of sight
+    EXPECT_NEAR(at(grid, 0.05, 6.05), 0.5, 0.02);  // below those to the high wall
+    EXPECT_NEAR(at(grid, 10.05, 4.05), 0.5, 0.02);
+}
 }  // namespace

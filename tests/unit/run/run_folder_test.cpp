@@ -2,7 +2,9 @@
 
 #include <sstream>
 
+#include "comma_locale.h"
 #include "delio/core/error.h"
+#include "delio/run/summary.h"
 #include "toy_run.h"
 
 namespace {
@@ -39,6 +41,30 @@ std::string textOf(const Options& options) {
     std::ostringstream text;
     options.write(text);
     return text.str();
+}
+
+TEST_F(ToyRun, FilesAreTheSameInAnyLocale) {
+    writeSideFiles();
+    run::Run run(Options(), {});
+    run.readSideFiles(drive_);
+    process(run);
+    run.finish(true);
+    const std::string other = folder_ / "other";
+    EXPECT_EQ(RunFolder(out_).write(run.record(), run.maps()), "");
+    const test::CommaLocale locale;
+    EXPECT_EQ(RunFolder(other).write(run.record(), run.maps()), "");
+    ASSERT_EQ(test::namesIn(other), kNames);
+    for (const auto& name : kNames) {
+        if (name == RunFolder::kSummary) continue;  // it has times of its own
+        EXPECT_TRUE(test::readText(fs::path(other) / name) == test::readText(fs::path(out_) / name))
+            << name;
+    }
+    const auto read = RunFolder(other).scans();
+    ASSERT_EQ(read.stamps_s.size(), kScans);
+    EXPECT_EQ(read.stamps_s[1], 0.2);
+    EXPECT_EQ(textOf(RunFolder(other).options()), textOf(RunFolder(out_).options()));
+    EXPECT_EQ(run::readSummary(fs::path(other) / RunFolder::kSummary).path_m,
+              run.record().path_m());
 }
 
 TEST_F(ToyRun, EveryFileIsReadBack) {

@@ -82,4 +82,15 @@ TEST(RunRows, ComeBackAsTheyWerePutInAndAfterTheyWereKept) {
     checkpoint::save(five, {"rows", ""}, rows);
     EXPECT_LT(five.str().size() - bytes.str().size(), 2 * 500U);
 }
+
+TEST(RunRows, OfASensorThatTurnsOnItsVehicle) {
+    run::RunRows rows;
+    std::vector<run::RunRow> put;
+    for (int i = 0; i < 300; ++i) {
+        put.push_back(someRow());
+        put.back().sensorPose.translation().x() = i % 200;
+        rows.push_back(put.back());
+    }
+    for (std::size_t i = 0; i < put.size(); ++i) expectSame(rows[i], put[i]);
+}
 }  // namespace

@@ -1,6 +1,12 @@
 #include "delio/run/run.h"
 
+#include <algorithm>
+#include <memory>
+#include <sstream>
+
 #include "delio/core/error.h"
+#include "poses.h"
+#include "ring_scan.h"
 #include "toy_run.h"
 
 namespace {
@@ -157,5 +163,47 @@ TEST_F(ToyRun, AListenerThatThrowsLeavesWhatWasDoneBefore) {
         EXPECT_EQ(io::readTrajectory(results.path(run::RunFolder::kTrajectory)).poses.size(), 2U);
         EXPECT_TRUE(std::filesystem::exists(results.path(run::RunFolder::kPly)));
     }
+}
+
+// A room: the map is finer than in a street, and what config.ini says makes it again.
+TEST_F(ToyRun, TheMapFollowsTheSizeOfThePlace) {
+    std::vector<Scan> scans;
+    test::Noise noise;
+    for (int i = 0; i < 3; ++i) {
+        const auto pose = test::poseAt(0.2 * i, 0, 0);
+        scans.push_back(test::scanOf(
+            test::ringScan(test::room(), pose, {32, 720, -24, 24, 0.01}, noise).points));
+        scans.back().stamp_s = 0.1 * i;
+        scans.back().time = mrpt::Clock::fromDouble(1e9 + 0.1 * i);
+    }
+    const auto driven = [&](const Options& options) {
+        auto run = std::make_unique<run::Run>(options, run::RunSettings());
+        for (const auto& scan : scans) run->process(scan);
+        run->finish(true);
+        return run;
+    };
+    const auto pointsOf = [](const run::Run& run) {
+        return run.maps().points->build(run.record().final.poses).points;
+    };
+    const auto first = driven({});
+    const auto details = first->record().rows.front().report.step.details;
+    const auto scale = std::find_if(details.begin(), details.end(),
+                                    [](const auto& detail) { return detail.first == "scale"; });
+    ASSERT_NE(scale, details.end());
+    ASSERT_LT(scale->second, 1);
+    const auto& used = first->record().options.map;
+    EXPECT_EQ(used.voxelSize_m, scale->second * 0.2);
+    EXPECT_EQ(used.minRange_m, scale->second * 2.5);
+    std::ostringstream config;
+    first->record().options.write(config);
+    Options again, set;
+    again.load(config.str());
+    set.load("[map]\nvoxel_size = 0.2\nmin_range = 2.5\n");
+    const auto points = pointsOf(*first), same = pointsOf(*driven(again)),
+               coarse = pointsOf(*driven(set));
+    ASSERT_EQ(same.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        ASSERT_EQ(same[i].position, points[i].position) << i;
+    EXPECT_GT(points.size(), coarse.size());
 }
 }  // namespace

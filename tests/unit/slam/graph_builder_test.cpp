@@ -80,4 +80,21 @@ TEST(GraphBuilder, AScanThatTheGraphRefusesChangesNothing) {
     reference.add(drive.at(5));
     expectSameBytes(builder.graph(), reference.graph());
 }
+
+// An odometry may keep features of some scans only.
+TEST(GraphBuilder, AScanWithoutFeaturesHasNoSkipEdges) {
+    const Told drive(withWindow());
+    GraphBuilder builder(withWindow().graph);
+    for (std::size_t i = 0; i < drive.size(); ++i) {
+        const SlamScan told = drive.at(i);
+        Step step = told.step;
+        if (i == 3) step.features.reset();
+        builder.add({told.node, told.scan, step, told.increment, told.pose});
+    }
+    EXPECT_TRUE(isThere(builder.graph(), 3, 4));
+    EXPECT_FALSE(isThere(builder.graph(), 1, 3));
+    EXPECT_FALSE(isThere(builder.graph(), 3, 5));
+    EXPECT_TRUE(isThere(builder.graph(), 2, 4));
+    EXPECT_TRUE(isThere(builder.graph(), 4, 6));
+}
 }  // namespace

@@ -78,4 +78,52 @@ TEST(Localiser, GoesOnWhereAnotherEnded) {
         }
     }
 }
+
+TEST(Localiser, DoesNotGrowWithTheDrive) {
+    const test::TemporaryFolder folder;
+    {
+        const TownDrive drive(roundTheBlock(0));
+        StoredMap::save(drive.content, fileIn(folder));
+    }
+    Localiser localiser(std::make_shared<const StoredMap>(fileIn(folder)));
+    const auto odometry = makeOdometry({});  // what it keeps of the place is its own
+    test::Noise noise(21);
+    Scan scan = test::scanOf(seenFrom(town(), test::poseAt(10, 0, 0), noise));
+    std::vector<std::size_t> sizes;
+    for (int i = 0; i < 40; ++i) {
+        scan.stamp_s = 0.1 * i;
+        localiser.process(scan);
+        odometry->process(scan);
+        if (i % 20 == 19)
+            sizes.push_back(test::stateOf(localiser).size() - test::stateOf(*odometry).size());
+    }
+    // A pose alone has 96 bytes.
+    EXPECT_LT(sizes[1], sizes[0] + 20 * 96);
+}
+
+TEST(MapFollower, WithoutAHistoryItCanTakeTheLastScanBack) {
+    const test::TemporaryFolder folder;
+    {
+        const TownDrive drive(roundTheBlock(0));
+        StoredMap::save(drive.content, fileIn(folder));
+    }
+    MapFollower follower(MapTracker(std::make_shared<const StoredMap>(fileIn(folder)), {}, {}),
+                         History::Last);
+    test::Noise noise(3);
+    const auto poses = roundTheBlock(0);
+    Scan scan;
+    Step step;
+    for (std::size_t i = 0; i < 6; ++i) {
+        step.used.points = seenFrom(town(), poses[i], noise);
+        Increment increment{Eigen::Isometry3d::Identity(), 1e-5 * Matrix6::Identity()};
+        if (i > 0) increment.pose = poses[i - 1].inverse() * poses[i];
+        follower.add({i, scan, step, increment, poses[i]});
+        EXPECT_LE(follower.fixes().size(), 2U);
+        if (i == 0) continue;
+        const MapFix before = follower.fixes().front();
+        follower.undo();
+        EXPECT_EQ(follower.fixes().back().vehicle.pose.matrix(), before.vehicle.pose.matrix());
+        follower.add({i, scan, step, increment, poses[i]});
+    }
+}
 }  // namespace

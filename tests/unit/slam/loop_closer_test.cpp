@@ -1,9 +1,12 @@
 #include "delio/slam/loop_closer.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <tbb/global_control.h>
 
 #include <functional>
+#include <system_error>
+#include <thread>
 
 #include "../loops/town.h"
 #include "delio/core/error.h"
@@ -56,6 +59,40 @@ TEST(LoopCloser, FindsTheSameBesideTheDriveAndInIt) {
     const auto beside = driven(true);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const auto within = driven(true);
+    ASSERT_EQ(beside.candidates.size(), within.candidates.size());
+    for (std::size_t i = 0; i < beside.graph.poses().size(); ++i)
+        ASSERT_EQ(beside.graph.poses()[i].matrix(), within.graph.poses()[i].matrix()) << i;
+}
+
+/** While it lives, no thread can be started: its stack would be larger than any memory. */
+class NoMoreThreads {
+ public:
+    NoMoreThreads() {
+        pthread_attr_t none;
+        pthread_getattr_default_np(&before_);
+        pthread_attr_init(&none);
+        pthread_attr_setstacksize(&none, std::size_t{1} << 46);
+        pthread_setattr_default_np(&none);
+        pthread_attr_destroy(&none);
+    }
+    ~NoMoreThreads() {
+        pthread_setattr_default_np(&before_);
+        pthread_attr_destroy(&before_);
+    }
+    NoMoreThreads(const NoMoreThreads&) = delete;
+    NoMoreThreads& operator=(const NoMoreThreads&) = delete;
+
+ private:
+    pthread_attr_t before_{};
+};
+
+TEST(LoopCloser, FindsTheSameWhereTheSystemHasNoMoreThreads) {
+    const tbb::global_control two(tbb::global_control::max_allowed_parallelism, 2);
+    const auto beside = driven(true);
+    const NoMoreThreads none;
+    EXPECT_THROW(std::thread([] {}).join(), std::system_error);
+    const auto within = driven(true);
+    EXPECT_GE(beside.accepted, 2U);
     ASSERT_EQ(beside.candidates.size(), within.candidates.size());
     for (std::size_t i = 0; i < beside.graph.poses().size(); ++i)
         ASSERT_EQ(beside.graph.poses()[i].matrix(), within.graph.poses()[i].matrix()) << i;

@@ -278,4 +278,18 @@ TEST(Profile, SetsTellsWhatATextSets) {
     EXPECT_FALSE(Options::sets(text, "graph", "min_range"));
     EXPECT_FALSE(Options::sets("", "scan", "min_range"));
 }
+
+TEST(MapOptions, FollowTheSizeOfThePlaceWhereTheyAreNotSet) {
+    const auto scaled = Options().map.atScale(0.25);
+    EXPECT_EQ(scaled.voxelSize_m, 0.05);
+    EXPECT_EQ(scaled.minRange_m, 0.625);
+    EXPECT_EQ(scaled.maxRange_m, Options().map.maxRange_m);
+    Options loaded, assigned;
+    loaded.load("[map]\nvoxel_size = 0.2\n");  // the same as by default, but asked for
+    assigned.map.minRange_m = 2;
+    EXPECT_EQ(loaded.map.atScale(0.25).voxelSize_m, 0.2);
+    EXPECT_EQ(loaded.map.atScale(0.25).minRange_m, 0.625);
+    EXPECT_EQ(assigned.map.atScale(0.25).minRange_m, 2);
+    EXPECT_EQ(assigned.map.atScale(0.25).voxelSize_m, 0.05);
+}
 }  // namespace

@@ -1,12 +1,15 @@
 #include "delio/slam/slam.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/maps/CSimplePointsMap.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 
 #include "delio/core/error.h"
+#include "delio/scan/preprocess.h"
 #include "gauss_newton.h"
 #include "slam_drive.h"
 
@@ -195,5 +198,70 @@ TEST(Slam, NothingButEmptyScans) {
         ASSERT_EQ(mapping.poses().size(), 3U);
         EXPECT_LT(mapping.poses()[2].translation().norm(), 1e-9);
     }
+}
+
+TEST(Slam, WithoutAHistoryItKeepsTheLastPose) {
+    const auto scans = scansOf(drive(5), mounting());
+    Slam whole(makeOdometry(withoutGraph())), last(makeOdometry(withoutGraph()), History::Last);
+    for (const auto& scan : scans) {
+        whole.process(scan);
+        last.process(scan);
+        ASSERT_EQ(last.trajectory().poses.size(), 1U);
+        EXPECT_EQ(last.trajectory().poses[0].matrix(), whole.trajectory().poses.back().matrix());
+        EXPECT_EQ(last.trajectory().stamps_s[0], scan.stamp_s);
+    }
+}
+
+/** It reads no scan: what Slam lets through. */
+class AnyScan : public Odometry {
+ public:
+    Step process(const Scan&) override { return {}; }
+};
+
+std::string faultOf(const std::function<void()>& act) {
+    try {
+        act();
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+TEST(Slam, ScansThatContradictThemselvesAreRefused) {
+    Scan good = scansOf(drive(1))[0];
+    good.index = 7;
+    struct Case {
+        Scan scan;
+        std::string fault;
+    };
+    std::vector<Case> bad(4, {good, ""});
+    const std::string points = std::to_string(good.points->size());
+    bad[0].scan.points = nullptr;
+    bad[0].fault = "scan 7: points is null: give a points map, which may be empty";
+    bad[1].scan.times_s.resize(3);
+    bad[1].fault =
+        "scan 7: times_s has 3 values for " + points + " points: give one for each point, or none";
+    bad[2].scan.rings.resize(good.points->size() + 1);
+    bad[2].fault = "scan 7: rings has " + std::to_string(good.points->size() + 1) + " values for " +
+                   points + " points: give one for each point, or none";
+    bad[3].scan.sensorPose.translation().x() = std::nan("");
+    bad[3].fault = "scan 7: sensorPose is not finite";
+    for (const Case& one : bad) {
+        Slam slam(std::make_unique<AnyScan>());
+        EXPECT_EQ(faultOf([&] { slam.process(one.scan); }), one.fault);
+        for (const auto& profile : Options::profileNames())
+            EXPECT_EQ(
+                faultOf([&] { makeOdometry(Options::ofProfile(profile))->process(one.scan); }),
+                one.fault)
+                << profile;
+        EXPECT_EQ(faultOf([&] { scan::preprocess(one.scan, {}); }), one.fault);
+    }
+    good.rings.resize(good.points->size());
+    good.times_s.resize(good.points->size());
+    EXPECT_EQ(faultOf([&] { makeOdometry({})->process(good); }), "");
+    good.points = mrpt::maps::CSimplePointsMap::Create();
+    good.rings.clear();
+    good.times_s.clear();
+    EXPECT_EQ(faultOf([&] { makeOdometry({})->process(good); }), "");
 }
 }  // namespace

@@ -8,8 +8,8 @@ namespace delio {
 /** A motion through known poses, at constant twist from each to the next, and on beyond them. */
 class Course {
  public:
-    /** At `times_s`, which rise, two at least; there as many `poses`: they map the moving frame to
-     *  one that rests. */
+    /** `times_s`: at least two, which increase. `poses`: one for each time; they map the moving
+     * frame to a frame at rest. Throws Error where this does not hold. */
     Course(const std::vector<double>& times_s, const std::vector<Eigen::Isometry3d>& poses);
 
     /** Through the identity at time 0, always at the same twist. */

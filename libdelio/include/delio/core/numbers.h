@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace delio {
 /** The number that all of `text` is, whatever the locale; nothing where it is anything else: empty,
@@ -23,4 +24,14 @@ std::string digitsOf(Number value) {
     char text[64];
     return {text, std::to_chars(text, text + sizeof(text), value).ptr};
 }
+
+/** With so many decimals, whatever the locale: as printf's "%.*f" in the locale "C". */
+std::string fixed(double value, int decimals);
+
+/** With so many significant digits, whatever the locale: as printf's "%.*g" in the locale "C". */
+std::string rounded(double value, int digits);
+
+/** All finite numbers that `text` begins with, separated by white space, whatever the locale: up to
+ *  its end, or to the first word that is anything else. */
+std::vector<double> numbersIn(std::string_view text);
 }  // namespace delio

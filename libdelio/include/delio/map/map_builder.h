@@ -31,10 +31,20 @@ struct MapOptions : StageOptions {
     double maxRange_m = 60.0;
     RemovalOptions removal;  //!< a section of its own
 
+    /** The options with the voxel size and the least range, which are given for streets, times
+     *  `scale`. A length that has another value than by default, or was loaded from a text, stays.
+     */
+    MapOptions atScale(double scale) const;
+
+    void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
+                            const std::string& section) override;
     void check(const std::string& section) const override;
 
  protected:
     std::vector<OptionField> fields() const override;
+
+ private:
+    bool voxelSizeIsSet_ = false, minRangeIsSet_ = false;  //!< loaded from a text
 };
 
 /** A map at the final poses, in their world's frame. */
@@ -69,6 +79,11 @@ class MapBuilder {
     MapBuilder(MapBuilder&&) noexcept;
     /** Likewise. */
     MapBuilder& operator=(MapBuilder&&) noexcept;
+
+    /** `scale`: size of the place, see MapOptions::atScale(). No effect once there are scans. */
+    void takeScale(double scale);
+    /** Of the map, at the scale that was taken. */
+    const MapOptions& options() const { return options_; }
 
     /** Adds a scan; returns true if it became a keyframe: the first one, and every one that is
      *  keyframeDistance_m or keyframeAngle_deg away from the keyframe before it. Its points between
@@ -129,7 +144,8 @@ class MapBuilder {
     void putAside(const std::vector<float>& points, const mrpt::maps::CPointsMap* view,
                   StoredScan& scan);
 
-    MapOptions options_;
+    MapOptions given_, options_;  //!< as they were given, and at the scale
+    double scale_ = 1;
     std::string sensorLabel_, folder_;
     std::vector<StoredScan> scans_;
     std::shared_ptr<io::Spool> spool_;  //!< made with the first scan

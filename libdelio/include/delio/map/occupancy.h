@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "delio/io/trajectory.h"
 #include "delio/map/map_point.h"
 
 namespace delio::map {
@@ -20,15 +21,19 @@ struct OccupancyOptions {
 /** The most cells that a grid may have. */
 constexpr double kMostCells = 400e6;
 
-/** A grid to plan ways with, from a map whose z is up: a cell is occupied where a point lies
- * between `low_m` and `height_m` above the ground, free where there is ground and nothing on it or
- * the vehicle drove over it, and unknown (0.5) elsewhere. The ground is made of the low points
- * around, and may rise by a half; what is steeper is in the way.
- *  @param ways poses of the vehicle in the map's frame, a list a drive; may be empty
+/** A grid to plan ways with, from a map whose z is up. A cell is occupied if a point lies between
+ *  `low_m` and `height_m` above the ground. It is free if there is ground and nothing on it, if the
+ *  vehicle drove over it, or if a line of sight passes it no higher than `height_m` above the
+ *  ground. All other cells are unknown (0.5). What a line of sight passes over and a point hits
+ *  stays occupied. The ground is made of the low points around, and may rise by a half; what is
+ *  steeper is in the way.
+ *  @param ways poses of the vehicle in the map's frame, a list for each drive; may be empty
+ *  @param sensor poses of the sensor in the map's frame, with stamps that count like
+ *  MapPoint::time_s: lines of sight go from them to the points. Empty: there are none
  *  Throws Error where there are no points, or the grid would have more than kMostCells. */
 mrpt::maps::COccupancyGridMap2D occupancyGrid(
     const MapPoints& points, const std::vector<std::vector<Eigen::Isometry3d>>& ways,
-    const OccupancyOptions& options = {});
+    const OccupancyOptions& options = {}, const io::Trajectory& sensor = {});
 
 /** Writes MRPT's gzip-compressed .gridmap. Throws Error if that fails. */
 void saveGridmap(const mrpt::maps::COccupancyGridMap2D& grid, const std::string& path);

@@ -28,8 +28,9 @@ using Correspondences = std::vector<Correspondence>;
  *  next. */
 class Matcher {
  public:
-    /** Map and points (metres, the sensor's frame) stay as they are while it lives. `point_sigma`:
-     *  of a measured point, metres. */
+    /** Keeps references to the map, which must not change, and to the points (metres, the sensor's
+     *  frame), whose coordinates may change between two calls but not their number.
+     *  `point_sigma`: of a measured point, metres. Not for several threads at once. */
     Matcher(const PlaneMap& map, const Eigen::Matrix3Xd& points, double point_sigma);
 
     /** Points next to a plane of the map at `pose` (sensor to map), with robust weights

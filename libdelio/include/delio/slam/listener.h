@@ -6,6 +6,10 @@
 #include "delio/scan/scan.h"
 
 namespace delio {
+/** How many poses an object keeps that follows a drive: those of all scans, or only what the next
+ *  scan needs, so that its size does not grow with the drive. */
+enum class History { All, Last };
+
 /** One scan as Slam tells its listeners of it; what it refers to lives as long as the call. */
 struct SlamScan {
     std::size_t node;  //!< number of its pose, from 0

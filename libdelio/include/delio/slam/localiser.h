@@ -17,7 +17,8 @@ struct Localisation {
     MapFix fix;  //!< where that is in the map
 };
 
-/** Localises a vehicle in a stored map, scan by scan. */
+/** Localises a vehicle in a stored map, scan by scan. Its size does not grow with the number of
+ *  scans: it keeps no trajectory. */
 class Localiser {
  public:
     /** `options`: of the odometry that goes before. Error where they contradict each other. */

@@ -55,12 +55,13 @@ class LoopCloser : public SlamListener {
     std::string faultText() const;  //!< empty: none
     void takeFault(const std::string& text);
     void end(std::optional<loops::Submap> submap);
-    void searchNext();
-    void search(std::vector<Ended> submaps);
+    void searchNext() noexcept;
+    void searchTaken() noexcept;
 
     loops::SubmapBuilder builder_;
     std::vector<Eigen::Isometry3d> poses_;  //!< of all nodes
     std::vector<Ended> waiting_;            //!< submaps that are not searched for yet
+    std::vector<Ended> taken_;              //!< belongs, as search_, to the thread while it is busy
     loops::LoopSearch search_;              //!< belongs to the thread while that is busy
     double search_ms_ = 0;
     std::exception_ptr fault_;  //!< of the search

@@ -9,8 +9,9 @@ namespace delio {
 /** Follows a drive through a stored map. */
 class MapFollower : public SlamListener {
  public:
-    /** `tracker`: of the map. */
-    explicit MapFollower(MapTracker tracker) : tracker_(std::move(tracker)) {}
+    /** `tracker`: of the map. `history`: which fixes are kept. */
+    explicit MapFollower(MapTracker tracker, History history = History::All)
+        : tracker_(std::move(tracker)), history_(history) {}
 
     /** See MapTracker. */
     void expect(const Eigen::Isometry3d& vehicle) { tracker_.expect(vehicle); }
@@ -21,7 +22,7 @@ class MapFollower : public SlamListener {
     void save(std::ostream& out) const override;
     void restore(std::istream& in) override;
 
-    /** Of every scan. */
+    /** One for each scan; with History::Last those of the last one or two scans. */
     const std::vector<MapFix>& fixes() const { return fixes_; }
     const StoredMap& map() const { return tracker_.map(); }  //!< that is followed through
 
@@ -33,6 +34,7 @@ class MapFollower : public SlamListener {
 
  private:
     MapTracker tracker_;
+    History history_;
     std::vector<MapFix> fixes_;
     std::optional<Eigen::Vector3d> up_;  //!< in the vehicle's frame, once it is known
 };

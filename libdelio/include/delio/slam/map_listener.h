@@ -4,7 +4,8 @@
 
 namespace delio {
 /** Puts the points of a drive into a map, without those of dynamic objects. A scan that could not
- *  be registered is left out: where it was taken is a guess. */
+ *  be registered is left out: where it was taken is a guess. The map's lengths follow the size of
+ *  the place ("scale" among the step's details) at the first scan. */
 class MapListener : public SlamListener {
  public:
     /** `builder`: empty. */

@@ -26,8 +26,9 @@ struct ScanReport {
  *  are the vehicle's: they map its coordinates to those it had at the first scan. */
 class Slam {
  public:
-    /** Without listeners yet. */
-    explicit Slam(std::unique_ptr<Odometry> odometry) : odometry_(std::move(odometry)) {}
+    /** Without listeners yet. `history`: which poses trajectory() keeps. */
+    explicit Slam(std::unique_ptr<Odometry> odometry, History history = History::All)
+        : odometry_(std::move(odometry)), history_(history) {}
 
     /** From the next scan on it is told of every scan, after those that were attached before. */
     void attach(std::shared_ptr<SlamListener> listener);
@@ -42,7 +43,7 @@ class Slam {
      *  process() and save() need; they are an Error from then on. */
     void close() { odometry_.reset(); }
 
-    /** Of the odometry alone. */
+    /** Of the odometry alone: the poses of all scans, or the last one (see History). */
     const io::Trajectory& trajectory() const { return trajectory_; }
 
     /** The drive as far as it has come, with odometry and listeners: written between two scans, it
@@ -56,7 +57,7 @@ class Slam {
     /** What has to be kept to go on later: see core/checkpoint.h. */
     template <class Archive>
     void serialize(Archive& archive) {
-        archive(trajectory_, sensorPose_, refused_);
+        archive(trajectory_, nodes_, sensorPose_, refused_);
     }
 
  private:
@@ -66,7 +67,9 @@ class Slam {
 
     std::unique_ptr<Odometry> odometry_;
     std::vector<std::shared_ptr<SlamListener>> listeners_;
+    History history_;
     io::Trajectory trajectory_;
+    std::size_t nodes_ = 0;  //!< scans that were taken
     /** Sensor in the vehicle at the last scan that was taken. */
     Eigen::Isometry3d sensorPose_ = Eigen::Isometry3d::Identity();
     /** From the last scan that was taken to the one that was refused after it, of the sensor. */

@@ -15,6 +15,7 @@
 #include <ostream>
 
 #include "delio/core/error.h"
+#include "delio/core/numbers.h"
 #include "delio/core/printable.h"
 #include "delio/io/output_file.h"
 
@@ -99,7 +100,7 @@ void Chart::curve(const std::string& title, const std::string& style, const Rows
     for (const auto& row : rows) {
         const char* separator = "";
         for (const double value : row) {
-            data_ += separator + mrpt::format("%.9g", value);
+            data_ += separator + rounded(value, 9);
             separator = " ";
         }
         data_ += "\n";

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "delio/core/error.h"
+#include "delio/core/numbers.h"
 #include "delio/core/printable.h"
 #include "palette.h"
 
@@ -96,7 +97,7 @@ std::string dataAddress(const std::string& svgFile) {
 }
 
 std::string number(double value, int decimals) {
-    return std::isfinite(value) ? format("%.*f", decimals, value) : "-";
+    return std::isfinite(value) ? fixed(value, decimals) : "-";
 }
 
 /** A column of figures of which the lowest is the best. */

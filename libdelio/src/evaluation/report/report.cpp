@@ -1,18 +1,18 @@
 #include "delio/evaluation/report/report.h"
 
-#include <mrpt/core/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <ostream>
 #include <string>
+
+#include "delio/core/numbers.h"
 
 namespace delio::evaluation {
 namespace {
 using Cells = std::vector<std::string>;
 
 std::string number(double value, int decimals) {
-    return std::isfinite(value) ? mrpt::format("%.*f", decimals, value) : "-";
+    return std::isfinite(value) ? fixed(value, decimals) : "-";
 }
 
 Cells cellsOf(const ReportRow& row, int decimals) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "delio/core/numbers.h"
 #include "delio/evaluation/frame_check.h"
 #include "delio/evaluation/segment_curves.h"
 #include "palette.h"
@@ -17,7 +18,7 @@ namespace {
 constexpr double kSmallestError = 1e-6;
 
 std::string line(const std::string& colour, double width) {
-    return format("with lines lc rgb '%s' lw %g", colour.c_str(), width);
+    return "with lines lc rgb '" + colour + "' lw " + digitsOf(width);
 }
 
 std::string steps(const std::string& colour) {
@@ -117,7 +118,8 @@ void setSquare(Chart& chart, const std::vector<Chart::Rows>& curves) {
     const char* const names[] = {"x", "y"};
     for (std::size_t k = 0; k < 2; ++k) {
         const double middle = (low[k] + high[k]) / 2;
-        chart.set(format("set %srange [%.9g:%.9g]", names[k], middle - half, middle + half));
+        chart.set(std::string("set ") + names[k] + "range [" + rounded(middle - half, 9) + ':' +
+                  rounded(middle + half, 9) + ']');
     }
     chart.set("set size ratio -1");
 }

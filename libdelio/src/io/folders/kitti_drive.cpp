@@ -7,11 +7,13 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <string_view>
 
 #include "../side_file.h"
 #include "date_text.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
+#include "delio/core/numbers.h"
 #include "delio/io/rawlog_writer.h"
 #include "delio/io/trajectory.h"
 
@@ -160,9 +162,7 @@ Rows readRawCalibration(const fs::path& file) {
     for (const auto& line : linesOf(file)) {
         const auto colon = line.find(':');
         if (colon == line.npos) continue;
-        std::istringstream in(line.substr(colon + 1));
-        auto& row = rows[line.substr(0, colon)];
-        for (double number; in >> number;) row.push_back(number);
+        rows[line.substr(0, colon)] = numbersIn(std::string_view(line).substr(colon + 1));
     }
     return rows;
 }
@@ -183,10 +183,11 @@ CPose3D rigid(const Rows& rows, const std::string& R, const std::string& T, cons
 
 /** Pose of the OXTS unit in KITTI's Mercator world; `scale` is the cosine of the first latitude. */
 CPose3D poseOfOxts(const fs::path& file, double& scale) {
-    std::istringstream in(textOf(file));
-    double lat = 0, lon = 0, alt = 0, roll = 0, pitch = 0, yaw = 0;
-    if (!(in >> lat >> lon >> alt >> roll >> pitch >> yaw))
+    const auto row = numbersIn(textOf(file));
+    if (row.size() < 6)
         throw Error("'" + file.string() + "' does not begin with six numbers, as OXTS files do");
+    const double lat = row[0], lon = row[1], alt = row[2], roll = row[3], pitch = row[4],
+                 yaw = row[5];
     constexpr double earthRadius_m = 6378137.0;
     if (scale == 0) scale = std::cos(lat * M_PI / 180);
     const double x = scale * earthRadius_m * lon * M_PI / 180;
