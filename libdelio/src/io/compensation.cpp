@@ -162,4 +162,27 @@ std::optional<bool> isMotionCompensated(const Scan& scan) {
     if (leftByMotion(beams, off, kShare) > kExplained * most) return {};
     return true;
 }
+
+bool timesFitDirections(const Scan& scan) {
+    const auto& x = scan.points->getPointsBufferRef_x();
+    const auto& y = scan.points->getPointsBufferRef_y();
+    const auto& z = scan.points->getPointsBufferRef_z();
+    const auto directionOf = [&](std::size_t i) {
+        return Eigen::Vector3f(x[i], y[i], z[i]).normalized();
+    };
+    constexpr std::size_t kPairs = 2000, kFewest = 100;
+    constexpr float kNear = 0.996F;  // cosine of 5 deg: rings are up to 2 deg apart
+    std::vector<float> gaps_s, times_s;
+    for (std::size_t i = 0; i + 1 < scan.times_s.size(); i += 1 + x.size() / kPairs) {
+        const float gap_s = std::abs(scan.times_s[i + 1] - scan.times_s[i]);
+        // NaN: a point without return, or without time.
+        if (!(directionOf(i).dot(directionOf(i + 1)) > kNear) || !std::isfinite(gap_s)) continue;
+        gaps_s.push_back(gap_s);
+        times_s.push_back(scan.times_s[i]);
+    }
+    if (gaps_s.size() < kFewest) return true;
+    constexpr float kMost = 0.1F;  // of the sweep; unrelated times are a third of it apart
+    const float sweep_s = quantile(times_s, 0.95) - quantile(times_s, 0.05);
+    return quantile(gaps_s, 0.5) <= kMost * sweep_s;
+}
 }  // namespace delio::io

@@ -10,4 +10,9 @@ namespace delio::io {
  *  they were not, which does no harm. Nothing: there are no times, too few points, nothing
  *  turns, or no motion explains the azimuths. */
 std::optional<bool> isMotionCompensated(const Scan& scan);
+
+/** False where the times of a scan's points do not fit their directions: points that follow each
+ *  other and lie in one direction were measured at times far apart. Such times describe no sweep of
+ *  a sensor. True also where too few points tell. */
+bool timesFitDirections(const Scan& scan);
 }  // namespace delio::io

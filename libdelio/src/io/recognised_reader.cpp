@@ -18,6 +18,7 @@ bool RecognisedReader::readOne() {
     try {
         if (auto scan = source_->next()) {
             ahead_.push_back(std::move(*scan));
+            dropUnfitTimes(ahead_.back());
             return true;
         }
     } catch (const std::exception&) {
@@ -25,6 +26,14 @@ bool RecognisedReader::readOne() {
     }
     ended_ = true;
     return false;
+}
+
+/** De-skewing by times that do not belong to the points would do more harm than none. */
+void RecognisedReader::dropUnfitTimes(Scan& scan) {
+    if (scan.times_s.size() != scan.points->size() || timesFitDirections(scan)) return;
+    scan.times_s.clear();
+    findings_.add("point times do not fit the directions of the points and are not used",
+                  scan.index);
 }
 
 /** Empty scans tell nothing. */

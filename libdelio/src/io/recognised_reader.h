@@ -27,6 +27,7 @@ class RecognisedReader : public ScanReader {
 
  private:
     bool readOne();
+    void dropUnfitTimes(Scan& scan);
     void readAhead();
     void leaveOutFirst();
     void recognise();

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace delio::io {
 namespace {
@@ -38,6 +40,42 @@ Scan scanOf(const Turn& turn) {
         }
     scan.points = points;
     return scan;
+}
+/** Points and times in the same new order. */
+Scan reordered(const Scan& scan, const std::vector<std::size_t>& order) {
+    Scan other;
+    auto points = mrpt::maps::CSimplePointsMap::Create();
+    for (const std::size_t i : order) {
+        float x = 0, y = 0, z = 0;
+        scan.points->getPointFast(i, x, y, z);
+        points->insertPoint(x, y, z);
+        other.times_s.push_back(scan.times_s[i]);
+    }
+    other.points = points;
+    return other;
+}
+
+TEST(TimesFitDirections, OfEverySensorThatTurnsInWhateverOrderItsPointsAre) {
+    for (const double clockwise : {1.0, -1.0}) {
+        Turn turn;
+        turn.clockwise = clockwise;
+        turn.speed_ms = 20;
+        const Scan byColumn = scanOf(turn);
+        EXPECT_TRUE(timesFitDirections(byColumn));
+        std::vector<std::size_t> byRing, atRandom;
+        for (std::size_t ring = 0; ring < 16; ++ring)
+            for (std::size_t i = ring; i < byColumn.times_s.size(); i += 16) byRing.push_back(i);
+        EXPECT_TRUE(timesFitDirections(reordered(byColumn, byRing)));
+        atRandom = byRing;
+        std::shuffle(atRandom.begin(), atRandom.end(), std::mt19937(1));
+        EXPECT_TRUE(timesFitDirections(reordered(byColumn, atRandom)));
+    }
+}
+
+TEST(TimesFitDirections, NotWhereTheTimesAreThoseOfOtherPoints) {
+    Scan scan = scanOf({});
+    std::shuffle(scan.times_s.begin(), scan.times_s.end(), std::mt19937(1));
+    EXPECT_FALSE(timesFitDirections(scan));
 }
 }  // namespace
 

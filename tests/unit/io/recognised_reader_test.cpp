@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 
 #include "delio/core/error.h"
 
@@ -17,6 +19,7 @@ class Source : public ScanReader {
     std::size_t scans = 4, departs = 1000, faultAt = 1000;
     bool timed = true;
     std::size_t untimed = 0;  //!< the first ones have no times
+    bool shuffled = false;    //!< times are those of other points
     std::optional<bool> told;
     std::function<double(std::size_t)> stampOf = [](std::size_t scan) {
         return 100 + 0.1 * static_cast<double>(scan);
@@ -60,6 +63,8 @@ class Source : public ScanReader {
             if (timed && index >= untimed) scan.times_s.push_back(static_cast<float>(time_s));
         }
         scan.points = points;
+        if (shuffled)
+            std::shuffle(scan.times_s.begin(), scan.times_s.end(), std::mt19937(index + 1));
         return scan;
     }
 
@@ -142,6 +147,16 @@ TEST(RecognisedReader, FirstScansWithoutTimesAreLeftOut) {
         EXPECT_EQ(reader.next()->index, any ? untimed : 0U);
         ASSERT_EQ(reader.recording().findings.size(), any ? 1U : 0U);
     }
+}
+
+TEST(RecognisedReader, TimesOfOtherPointsAreNotUsed) {
+    auto reader = readerOf([](Source& source) { source.shuffled = true; });
+    EXPECT_FALSE(reader.recording().pointTimes);
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(reader.next()->times_s.empty());
+    EXPECT_EQ(
+        reader.recording().findings,
+        std::vector<std::string>{"point times do not fit the directions of the points and are "
+                                 "not used: 4 scans (first: scan 0)"});
 }
 
 TEST(RecognisedReader, AFaultComesAfterWhatIsAhead) {
