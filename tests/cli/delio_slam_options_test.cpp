@@ -159,6 +159,12 @@ TEST(PrintConfig, PrintsEveryOptionOfEachProfileWithItsMeaning) {
             ASSERT_NE(at, std::string::npos) << key;
             expected.insert(at + 1, "# ");
         }
+        // And those of the map that follow the size of the place.
+        for (const std::string key : {"voxel_size", "min_range"}) {
+            const auto at = expected.find("\n" + key + " = ", expected.find("\n[map]\n"));
+            ASSERT_NE(at, std::string::npos) << key;
+            expected.insert(at + 1, "# ");
+        }
         EXPECT_EQ(printed.out, expected);
         EXPECT_GT(expectMeanings(printed.out), 60U) << profile;
         writeText(folder / "c.ini", printed.out);

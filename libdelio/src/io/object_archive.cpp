@@ -47,7 +47,7 @@ ObjectArchive::Counts countsInScene(std::string_view className) {
 std::optional<ObjectArchive::Counts> countsIn(std::string_view className, FileOf file) {
     using Counts = ObjectArchive::Counts;
     const auto is = [&](std::string_view end) { return endsWith(className, end); };
-    constexpr std::uint64_t kPacketsOrPoints = 600'000, kKeyframes = 1'000'000, kOther = 100'000;
+    constexpr std::uint64_t kPacketsOrPoints = 600'000, kMany = 1'000'000;
     if (is("::CMatrixF") || is("::CMatrixD")) return Counts{2, kPoints};
     if (is("::CMatrixB")) return Counts{3, kPoints};
     if (is("RangeScan") || is("RotatingScan") || className.find("PointsMap") != className.npos)
@@ -57,10 +57,10 @@ std::optional<ObjectArchive::Counts> countsIn(std::string_view className, FileOf
     if (isPart) return {};
     if (file == FileOf::Scene) return countsInScene(className);
     if (is("::CObservationVelodyneScan")) return Counts{kAll, kPacketsOrPoints, true};
-    if (is("::CSimpleMap")) return Counts{kAll, kKeyframes, true};
+    if (is("::CObservationComment")) return Counts{kAll, kPoints, true};  // its text
     const bool hasFloats = is("::CActionRobotMovement2D") || is("::CActionRobotMovement3D") ||
                            is("::CObservationOdometry") || is("::CObservationBearingRange");
-    return Counts{kAll, kOther, true, hasFloats};
+    return Counts{kAll, kMany, true, hasFloats};
 }
 
 /** Also -0, and what rounding leaves of 0; but not larger than lengths, angles and speeds are. */
