@@ -7,7 +7,7 @@
 
 namespace delio::io {
 RecognisedReader::RecognisedReader(std::unique_ptr<ScanReader> source)
-    : source_(std::move(source)) {
+    : source_(std::move(source)), fraction_(source_->fraction()) {
     readAhead();
     recognise();
 }
@@ -19,6 +19,7 @@ bool RecognisedReader::readOne() {
         if (auto scan = source_->next()) {
             ahead_.push_back(std::move(*scan));
             dropUnfitTimes(ahead_.back());
+            fractions_.push_back(source_->fraction());
             return true;
         }
     } catch (const std::exception&) {
@@ -95,6 +96,13 @@ void RecognisedReader::leaveOutFirst() {
                       ahead_.front().index);
 }
 
+/** Scans were taken off `ahead_`. */
+void RecognisedReader::passed() {
+    for (; fractions_.size() > ahead_.size(); fractions_.pop_front())
+        fraction_ = fractions_.front();
+    if (ahead_.empty()) fraction_ = source_->fraction();
+}
+
 std::optional<Scan> RecognisedReader::next() {
     std::optional<Scan> scan;
     while (!scan) {
@@ -103,6 +111,7 @@ std::optional<Scan> RecognisedReader::next() {
         if (fault_ && ahead_.empty()) std::rethrow_exception(std::exchange(fault_, nullptr));
         if (ahead_.empty()) return {};
         scan = order_.take(ahead_);
+        passed();
     }
     lookAgain(*scan);
     return scan;
@@ -111,10 +120,13 @@ std::optional<Scan> RecognisedReader::next() {
 bool RecognisedReader::skip() {
     if (!ahead_.empty()) {
         ahead_.pop_front();
+        passed();
         return true;
     }
     if (fault_) std::rethrow_exception(std::exchange(fault_, nullptr));
-    return !ended_ && source_->skip();
+    const bool skipped = !ended_ && source_->skip();
+    passed();
+    return skipped;
 }
 
 void RecognisedReader::lookAgain(const Scan& scan) {

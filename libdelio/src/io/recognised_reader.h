@@ -19,7 +19,7 @@ class RecognisedReader : public ScanReader {
     bool skip() override;
     const std::string& label() const override { return source_->label(); }
     const std::set<std::string>& otherLabels() const override { return source_->otherLabels(); }
-    std::optional<double> fraction() const override { return source_->fraction(); }
+    std::optional<double> fraction() const override { return fraction_; }
     const std::optional<DriveMeta>& meta() const override { return meta_; }
     Recording recording() const override;
     SideFile calibration() const override { return source_->calibration(); }
@@ -30,11 +30,14 @@ class RecognisedReader : public ScanReader {
     void dropUnfitTimes(Scan& scan);
     void readAhead();
     void leaveOutFirst();
+    void passed();
     void recognise();
     void lookAgain(const Scan& scan);
 
     std::unique_ptr<ScanReader> source_;
     std::deque<Scan> ahead_;
+    std::deque<std::optional<double>> fractions_;  //!< of the drive, after each scan that is ahead
+    std::optional<double> fraction_;
     std::exception_ptr fault_;  //!< comes after the scans that are ahead
     bool ended_ = false;        //!< the source has no more scans
     StampOrder order_;

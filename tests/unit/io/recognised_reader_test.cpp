@@ -37,7 +37,9 @@ class Source : public ScanReader {
     bool skip() override { return next().has_value(); }
     const std::string& label() const override { return label_; }
     const std::set<std::string>& otherLabels() const override { return others_; }
-    std::optional<double> fraction() const override { return {}; }
+    std::optional<double> fraction() const override {
+        return static_cast<double>(given_) / static_cast<double>(scans);
+    }
     const std::optional<DriveMeta>& meta() const override { return known; }
     Recording recording() const override {
         Recording recording;
@@ -134,6 +136,16 @@ TEST(RecognisedReader, StampsRise) {
     while (const auto scan = reader.next()) scans.push_back(scan->index);
     EXPECT_EQ(scans, (std::vector<std::size_t>{0, 1, 2, 4, 3, 5, 6, 8, 9}));
     EXPECT_EQ(reader.recording().findings.size(), 2U);
+}
+
+// Not how far was read ahead.
+TEST(RecognisedReader, FractionIsThatOfTheScansThatWereGiven) {
+    auto reader = readerOf([](Source& source) { source.scans = 10; });
+    EXPECT_EQ(reader.fraction(), std::optional<double>(0));
+    for (int given = 1; given <= 10; ++given) {
+        EXPECT_TRUE(given == 4 ? reader.skip() : reader.next().has_value());
+        EXPECT_EQ(reader.fraction(), std::optional<double>(given / 10.0));
+    }
 }
 
 TEST(RecognisedReader, FirstScansWithoutTimesAreLeftOut) {
