@@ -67,9 +67,7 @@ void addColourBar(COpenGLScene& scene, unsigned row, map::Colormap colormap,
     addText(scene, kMargin_px, row + kBarRows, kFirstId + kBarRows, what, ink);
 }
 
-bool isColourBar(mrpt::opengl::COpenGLViewport& viewport) {
-    return viewport.getName() == kBar;
-}
+bool isColourBar(mrpt::opengl::COpenGLViewport& viewport) { return viewport.getName() == kBar; }
 
 void recolourBar(COpenGLScene& scene, map::Colormap colormap) {
     for (const auto& viewport : scene.viewports())
