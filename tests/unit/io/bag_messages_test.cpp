@@ -172,7 +172,7 @@ TEST(BagMessages, OusterPackets) {
         maker->finish();
         const auto ofOther =
             io::makePacketMaker(io::ScanType::kOuster, std::make_unique<Notes>(times));
-        ofOther->add(messageOf(message(6464), kind, 7));
+        ofOther->add(messageOf(message(6464), kind, 7), 0);
         EXPECT_THROW(ofOther->finish(), Error);
         std::string lie = message(1206);
         lie.resize(100);
