@@ -77,8 +77,11 @@ class Interrupts : public DelioSlam {
         }
     }
     static void waitFor(test::RunningTool& tool, const std::string& text) {
-        while (tool.err().find(text) == std::string::npos && !tool.hasEnded())
+        const auto latest = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+        while (tool.err().find(text) == std::string::npos && !tool.hasEnded()) {
+            ASSERT_LT(std::chrono::steady_clock::now(), latest) << tool.err();
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
     }
 
     Pipe pipe_{folder_ / "pipe"};
@@ -109,15 +112,17 @@ TEST_F(Interrupts, EndAWaitForMoreAndWhatWasDoneIsWritten) {
                                               {"-i", "-", "-o", out_, "--no-map", "--verbose",
                                                "--force", "--threads", threads}));
         pipe.write(drive.substr(0, 9 * drive.size() / 10));
-        waitFor(run, "scan 3:");
+        waitFor(run, "scan 1:");  // two more are read ahead, to put swapped ones in order
         run.send(SIGTERM);
         run.send(SIGTERM);  // as timeout(1) does
         const auto ended = run.wait();
         EXPECT_EQ(ended.exitCode, 130) << ended.err;
         EXPECT_EQ(ended.err.find("cut off"), std::string::npos) << ended.err;
         EXPECT_FALSE(summary()["complete"].as<bool>());
-        EXPECT_EQ(summary()["scans"].as<int>(), 4);
-        EXPECT_EQ(rows("trajectory_kitti.txt"), 4U);
+        const auto scans = summary()["scans"].as<std::size_t>();
+        EXPECT_GE(scans, 2U);
+        EXPECT_LE(scans, 4U);
+        EXPECT_EQ(rows("trajectory_kitti.txt"), scans);
     }
 }
 
