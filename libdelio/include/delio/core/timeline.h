@@ -11,7 +11,7 @@ enum class IntervalKind {
 
 /** The time between a scan and the one before it. */
 struct Interval {
-    IntervalKind kind = IntervalKind::kUsual;
+    IntervalKind kind = IntervalKind::kUsual;  //!< how the time compares with the usual one
     double duration_s = 0;  //!< more than 0; the usual one where the kind is kUnknown
     double elapsed_s = 0;   //!< by the stamps where the kind is kUnknown, otherwise the duration
 };

@@ -36,6 +36,7 @@ struct MapOptions : StageOptions {
      */
     MapOptions atScale(double scale) const;
 
+    /** As StageOptions has it; notes which lengths the text sets (see atScale()). */
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
     void check(const std::string& section) const override;
