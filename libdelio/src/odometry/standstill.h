@@ -1,4 +1,6 @@
 #pragma once
+#include <Eigen/Geometry>
+
 #include "delio/points/point_map.h"
 #include "delio/surfaces/normals.h"
 
