@@ -14,11 +14,6 @@ class Spool {
     struct Place {
         std::uint64_t offset = 0;
         std::size_t floats = 0;
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(offset, floats);
-        }
     };
 
     /** The file lies in `folder` (empty: the system's for temporary files). `what` is put aside,

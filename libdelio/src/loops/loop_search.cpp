@@ -93,11 +93,6 @@ void LoopSearch::add(Submap submap, const Eigen::Isometry3d& keyPose) {
     for (std::size_t from = 0; from < to; ++from) compare(from, to, {});
 }
 
-template <class Archive>
-void LoopSearch::serialize(Archive& archive) {
-    archive(submaps_, level_, candidates_, *places_);
-}
-
 void LoopSearch::save(std::ostream& out) const {
     checkpoint::save(out, {"loops", checkpoint::textOf({&options_, &closure_})}, *this);
 }

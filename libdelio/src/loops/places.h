@@ -27,15 +27,6 @@ class Places {
     const std::vector<Shift>& repetitions(std::size_t submap, double reach);
     std::shared_ptr<const Ground> ground(std::size_t submap);
 
-    /** What has to be kept to go on later, see core/checkpoint.h: where the points lie. The rest is
-     *  made of these. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        std::uint64_t end = spool_ ? spool_->kept() : 0;
-        archive(points_, end);
-        if constexpr (Archive::is_loading::value) reopen(end);
-    }
-
  private:
     std::string path() const { return folder_ + "/submaps.spool"; }
     void reopen(std::uint64_t end);

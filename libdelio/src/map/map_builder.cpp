@@ -205,18 +205,6 @@ void MapBuilder::undo() noexcept {
     canUndo_ = false;
 }
 
-template <class Archive>
-void MapBuilder::serialize(Archive& archive) {
-    std::uint64_t end = spool_ ? spool_->kept() : 0;
-    bool hasSpool = spool_ != nullptr;
-    archive(scale_, scans_, now_, hasSpool, end);
-    if constexpr (Archive::is_loading::value) options_ = given_.atScale(scale_);
-    if constexpr (Archive::is_loading::value)
-        if (hasSpool)
-            spool_ =
-                std::make_shared<io::Spool>(io::Spool::again(spoolPath(), kWhat, kOption, end));
-}
-
 void MapBuilder::save(std::ostream& out) const {
     checkpoint::save(out, {"map", checkpoint::textOf({&given_, &given_.removal})}, *this);
 }

@@ -23,13 +23,6 @@ struct StoredScan {
 
     /** Of the points that were told to stand still. */
     io::Spool::Place stillPoints() const { return {points.offset, 4 * still}; }
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(poseIndex, sensorPose, stamp, withIntensity, isKeyframe, points, still, view,
-                viewFirstRow);
-    }
 };
 
 io::Spool::Place putAside(const scan::PackedRanges& view, io::Spool& spool);

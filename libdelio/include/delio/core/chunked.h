@@ -51,15 +51,6 @@ class Chunked {
         (*this)[size_ - 1] = std::move(value);
     }
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        std::size_t size = size_;
-        archive(size);
-        resize(size);
-        for (std::size_t i = 0; i < size_; ++i) archive((*this)[i]);
-    }
-
  private:
     /** Chunk c has 2^c times as many values as the first one: where a value is follows from the
      *  highest bit of its number and the first chunk's values together. */

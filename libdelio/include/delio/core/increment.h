@@ -10,12 +10,6 @@ struct Increment {
     /** Order [x y z wx wy wz], metres and radians, of the error e in
      *  pose_true = pose * (exp(w), t): the right tangent, expressed in the later frame. */
     Matrix6 covariance = Matrix6::Identity();
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(pose, covariance);
-    }
 };
 
 /** Two increments one after the other; their errors are taken to be independent. */

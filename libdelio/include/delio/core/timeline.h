@@ -29,12 +29,6 @@ class Timeline {
     /** Sum of the durations: rises with every scan, whatever the stamps do. */
     double sinceStart_s() const { return sinceStart_s_; }
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(started_, stamp_s_, sinceStart_s_, latest_s_);
-    }
-
  private:
     double usual_s() const;
 

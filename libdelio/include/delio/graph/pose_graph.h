@@ -16,12 +16,6 @@ struct Edge {
     std::size_t from = 0;  //!< node whose frame the increment maps to
     std::size_t to = 0;    //!< node whose frame it maps from
     Increment increment;   //!< `to` to `from`, covariance in the frame of `to`
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(from, to, increment);
-    }
 };
 
 /** How a graph is made and optimised. */
@@ -92,12 +86,6 @@ class PoseGraph {
     const std::vector<Edge>& edges() const { return edges_; }
     /** Omega of edges()[i], in the order of delio::Increment. */
     const Matrix6& information(std::size_t i) const { return information_[i]; }
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(poses_, edges_, information_, edgesUpTo_);
-    }
 
  private:
     void append(const Edge& edge, const Matrix6& information);

@@ -10,12 +10,6 @@ namespace delio::io {
 struct Trajectory {
     std::vector<Eigen::Isometry3d> poses;  //!< metres
     std::vector<double> stamps_s;  //!< one per pose, or empty where the file has none (KITTI)
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(poses, stamps_s);
-    }
 };
 
 /** Reads a pose file: KITTI (12 numbers a line, row-major 3x4) or TUM (t x y z qx qy qz qw; lines

@@ -22,14 +22,6 @@ class LocalMap {
     /** Points and planes of what is near, in the map's frame. */
     const ScanToMap& scanToMap() const { return map_; }
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(isNear_, waiting_, map_);
-        if constexpr (Archive::is_loading::value)
-            for (auto& cloud : waiting_) cloud.points = stored_->points(cloud.submap);
-    }
-
  private:
     void comeNear(const Eigen::Vector3d& place);
     void take(Eigen::Index most);
@@ -38,11 +30,6 @@ class LocalMap {
         std::size_t submap = 0;
         Eigen::Matrix3Xf points;  //!< of it
         Eigen::Index taken = 0;
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(submap, taken);
-        }
     };
     std::shared_ptr<const StoredMap> stored_;
     std::vector<bool> isNear_;  //!< of each submap: it was taken in, or waits

@@ -34,12 +34,6 @@ struct MapFix {
     bool searched = false;  //!< all places were compared
     double share = 0;       //!< of what stands in the scan so much stands in the map
     std::string reason;     //!< why it was not measured
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(where, vehicle, measured, searched, share, reason);
-    }
 };
 
 /** Follows a vehicle through a stored map by the steps of its odometry, each scan registered to the
@@ -66,32 +60,15 @@ class MapTracker {
     /** That it was made with. */
     const PlaceSearchOptions& searchOptions() const { return search_.options(); }
 
-    /** What has to be kept to go on later in the same map: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(local_, now_);
-        if constexpr (Archive::is_loading::value) before_ = now_;
-    }
-
  private:
     struct Seen {
         Eigen::Isometry3d pose;  //!< by the odometry
         Eigen::Matrix3Xf points;
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(pose, points);
-        }
     };
     /** In the map, as far as it is known. */
     struct Belief {
         std::optional<Increment> vehicle;
         double unseen_m = 0;  //!< path since it was measured
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(vehicle, unseen_m);
-        }
     };
     struct State {
         Whereabouts where = Whereabouts::kUnknown;
@@ -105,12 +82,6 @@ class MapTracker {
         std::size_t scans = 0;
         Eigen::Isometry3d odometry = Eigen::Isometry3d::Identity();
         std::deque<Seen> recent;  //!< the latest last
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(where, belief, otherwise, usualShare, confirmed, missed, unsearched_m, inVain,
-                    scans, odometry, recent);
-        }
     };
     void remember(const Eigen::Matrix3Xf& points);
     std::optional<Increment> track(const Eigen::Matrix3Xf& points, const Eigen::Matrix3d& level,

@@ -60,12 +60,6 @@ struct Closure {
     double overlap = 0;   //!< of what stands in both: RegistrableSubmap::overlap()
     double share = 0;     //!< of the points in voxels with a plane those that lie on it
     std::string reason;   //!< why it is none; empty: it is one
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(level, increment, overlap, share, reason);
-    }
 };
 
 /** A submap and what others are registered to. */

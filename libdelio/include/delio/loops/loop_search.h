@@ -48,12 +48,6 @@ struct LoopCandidate {
     Closure closure;  //!< with the reason why it was not accepted
     bool accepted() const { return closure.reason.empty(); }  //!< both are one place
     double moved_m() const;  //!< found so far from where it was expected
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(from, to, fromNode, toNode, path_m, reach_m, expected, share, closure);
-    }
 };
 
 /** Looks for places that a drive came back to: of all pairs of submaps that may lie one over the
@@ -93,9 +87,6 @@ class LoopSearch {
     /** Into one of the same options and folder to which nothing was added. Error where the state is
      *  cut off, damaged or of other options, or the file of the submaps is. */
     void restore(std::istream& in);
-
-    template <class Archive>
-    void serialize(Archive& archive);  //!< for these two
 
  private:
     void compare(std::size_t from, std::size_t to, const std::vector<LoopCandidate>& known);

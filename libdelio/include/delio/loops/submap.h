@@ -31,12 +31,6 @@ struct Stretch {
     void add(const Increment& increment, double moved_m);
     /** One after the other. */
     Stretch operator+(const Stretch& other) const;
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(path_m, variance_m2, variance_rad2);
-    }
 };
 
 /** What was driven in between, whichever came first. */
@@ -52,12 +46,6 @@ struct Submap {
     Eigen::Matrix3d level =
         Eigen::Matrix3d::Identity();  //!< rotation, this frame to the vehicle's at the key node
     Eigen::Matrix3Xf points;          //!< one in `spacing`
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(first, key, last, driven, level, points);
-    }
 };
 
 /** The level frames of submaps, with these poses of the graph's nodes. */
@@ -82,12 +70,6 @@ class SubmapBuilder {
     /** The one that is being made, if any. */
     std::optional<Submap> finish();
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(parts_, ended_);
-    }
-
  private:
     struct Part {
         std::size_t node = 0;
@@ -96,11 +78,6 @@ class SubmapBuilder {
         Eigen::Vector3d up;
         Stretch driven;  //!< to here
         bool showsMore = true;
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(node, pose, points, up, driven, showsMore);
-        }
     };
     bool isComplete() const;
     /** Where the scan was taken is not known well enough from those before it: a pause. */

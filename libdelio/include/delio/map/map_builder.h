@@ -116,9 +116,6 @@ class MapBuilder {
      *  cut off, damaged or of other options, or the file of the scans is. */
     void restore(std::istream& in);
 
-    template <class Archive>
-    void serialize(Archive& archive);  //!< for these two
-
     /** The map at the given poses. Throws Error if a scan's poseIndex is outside `poses`, or if one
      *  could not be put aside. */
     BuiltMap build(const std::vector<Eigen::Isometry3d>& poses) const;
@@ -131,11 +128,6 @@ class MapBuilder {
         Eigen::Isometry3d viewPose = Eigen::Isometry3d::Identity();  //!< of the last view
         mrpt::Clock::time_point viewStamp;
         std::string fault;  //!< why a scan could not be put aside
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(scans, keyframes, views, keyPose, viewPose, viewStamp, fault);
-        }
     };
 
     bool isFarFromLastKeyframe(const Eigen::Isometry3d& pose) const;

@@ -59,12 +59,6 @@ class DynamicObjects {
     /** Forgets all earlier scans. */
     void clear() { views_.clear(); }
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(views_);  // of the latest scan nothing is asked any more
-    }
-
  private:
     /** What is kept of a scan: all in its sensor's frame. */
     struct Object {
@@ -73,11 +67,6 @@ class DynamicObjects {
         Eigen::Vector3f place = Eigen::Vector3f::Zero();  //!< the centre, in the map's frame
         std::optional<Eigen::Vector3f> velocity;          //!< m/s, in the map's frame
         bool isTold = false;                              //!< that it moves
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(points, centre, size, place, velocity, isTold);
-        }
     };
     using Objects = std::vector<Object>;
     /** A place that an object left behind. */
@@ -99,12 +88,6 @@ class DynamicObjects {
         std::vector<std::size_t> moving;  //!< those of them whose velocity is known
 
         void outline();
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(stamp_s, toMap, image, objects);
-            if constexpr (Archive::is_loading::value) outline();
-        }
     };
     bool came(const Object& object) const;
     bool isGone(const Left& left) const;

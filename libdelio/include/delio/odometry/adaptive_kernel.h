@@ -18,12 +18,6 @@ class AdaptiveKernel {
     /** Three standard deviations, within these limits; `most` while little is known. Metres. */
     double width(double least, double most) const;
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(errors_m_);
-    }
-
  private:
     std::deque<double> errors_m_;  //!< of the latest predictions
 };

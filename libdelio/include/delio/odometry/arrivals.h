@@ -29,12 +29,6 @@ class Arrivals {
     /** Sum of the intervals, seconds: rises with every scan, whatever the stamps do. */
     double sinceStart_s() const { return timeline_.sinceStart_s(); }
 
-    /** State needed to resume an interrupted run: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(timeline_, fingerprint_, copies_, untimed_, hadTimes_);
-    }
-
  private:
     bool needTimes_;
     Timeline timeline_;

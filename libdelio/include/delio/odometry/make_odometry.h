@@ -32,9 +32,6 @@ struct OdometryOptions {
  *  other. */
 std::unique_ptr<Odometry> makeOdometry(const OdometryOptions& options);
 
-/** What ScanFeatures::save() wrote. Error where that is cut off, damaged or of another version. */
-std::shared_ptr<const ScanFeatures> readFeatures(std::istream& in);
-
 /** Sections and their options, to be changed. */
 using StageList = std::vector<std::pair<std::string, StageOptions*>>;
 /** Sections and their options. */

@@ -56,17 +56,6 @@ struct PaperFeatures : public ScanFeatures {
 
     std::optional<Link> linkTo(const ScanFeatures& earlier,
                                const Eigen::Isometry3d& guess) const override;
-    void save(std::ostream& out) const override;
-
-    /** What has to be kept to go on later, beside the options: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        bool isChecked = check.has_value();
-        archive(pattern, lines, isChecked);
-        if (!isChecked) return check.reset();
-        if (!check) check.emplace(CheckPoints{{}, points::PointMap(options->pointMap)});
-        archive(*check);
-    }
 };
 
 /** Rotation from the patterns of the normals (III-D), then translation from the line clouds of the
@@ -87,25 +76,6 @@ class PaperOdometry : public Odometry {
     explicit PaperOdometry(const PaperOdometryOptions& options);
 
     Step process(const Scan& scan) override;
-    void save(std::ostream& out) const override;
-    void restore(std::istream& in) override;
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(arrivals_, prediction_, scans_, upright_, sinceReference_, sinceReference_s_,
-                unregistered_s_, lost_);
-        bool hasReference = reference_ != nullptr;
-        archive(hasReference);
-        if (!hasReference) return reference_.reset();
-        if constexpr (Archive::is_loading::value) {
-            const auto features = std::make_shared<PaperFeatures>();
-            features->options = options_;
-            archive(*features);
-            reference_ = features;
-        } else
-            archive(*reference_);
-    }
 
  private:
     Eigen::Matrix3f upright() const;

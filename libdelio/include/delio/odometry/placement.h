@@ -8,12 +8,6 @@ struct ReferenceScan {
     Eigen::Matrix3Xf points;                                 //!< sensor's frame
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
     double time_s = 0;                                       //!< stamp, seconds of the drive
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(points, pose, time_s);
-    }
 };
 
 /** What is known of a scan's place before it is registered. */

@@ -13,12 +13,6 @@ namespace delio {
 struct PlacedPoints {
     Eigen::Matrix3Xf points;                                 //!< sensor's frame
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(points, pose);
-    }
 };
 
 /** Scan against map, rotation and translation decoupled: first against the points of the scans
@@ -33,18 +27,6 @@ class PlaneOdometry : public Odometry {
     explicit PlaneOdometry(const PlaneOdometryOptions& options);
 
     Step process(const Scan& scan) override;
-    void save(std::ostream& out) const override;
-    void restore(std::istream& in) override;
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(scale_);
-        if constexpr (Archive::is_loading::value) takeScale(scale_);
-        archive(upright_, seenScale_, otherScale_, arrivals_, prediction_, map_, dynamics_, kernel_,
-                unevenness_, onward_, reference_, pose_, unregistered_s_, first_, started_, lost_,
-                doubted_, usualShare_, misses_, skewed_, awaited_);
-    }
 
  private:
     void takeScale(double scale);

@@ -25,12 +25,6 @@ struct CheckPoints {
     points::PointMap map;     //!< what others are asked in
     /** Turns the sensor's frame such that z is up. */
     Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(points, map, upright);
-    }
 };
 /** `points`: metres, sensor's frame; `upright` as in CheckPoints. */
 CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,

@@ -35,22 +35,11 @@ class LinearPrediction {
     /** Tells what the increment turned out to be, and how long (more than 0) it took. */
     void observe(const Eigen::Isometry3d& increment, double duration_s = 1);
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(latestFirst_);
-    }
-
  private:
     std::size_t frames_;
     struct Observed {
         Eigen::Isometry3d increment = Eigen::Isometry3d::Identity();
         double duration_s;
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(increment, duration_s);
-        }
     };
     std::deque<Observed> latestFirst_;
 };

@@ -57,12 +57,6 @@ class Onward {
     /** Its twist. */
     const Motion& motion() const { return motion_; }
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(end_s_, end_, motion_.velocity, motion_.turning);
-    }
-
  private:
     double end_s_ = 0;
     Eigen::Isometry3d end_ = Eigen::Isometry3d::Identity();

@@ -79,12 +79,6 @@ class ScanToMap {
         return points::shareAt(points_, points, pose, distance);
     }
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(planes_, points_, swept_m_, up_);
-    }
-
  private:
     bool believes(const planes::PlaneEstimate& found, const points::PointEstimate& placed) const;
     Eigen::Matrix3d turnCovariance(const Eigen::Matrix3Xd& points,

@@ -27,13 +27,6 @@ struct Quality {
      * three axes where the scan was predicted, or was the first. */
     Eigen::Matrix3Xd unobservedRotation;
     Eigen::Matrix3Xd unobservedTranslation;  //!< the same along which
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(matches, residual_m, rotationObservability, translationObservability,
-                unobservedRotation, unobservedTranslation);
-    }
 };
 
 /** The quality of a scan `to` of which both estimates are. */
@@ -46,12 +39,6 @@ struct UsedPoints {
     std::vector<std::uint32_t> indices;  //!< of each in the scan as it came
     /** 1 for each that belongs to a dynamic object; empty where these are not looked for. */
     std::vector<std::uint8_t> dynamic;
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(points, indices, dynamic);
-    }
 };
 
 /** One scan measured against another, beside the chain of steps. */
@@ -68,9 +55,6 @@ class ScanFeatures {
      *  one. Nothing where the two cannot be registered. */
     virtual std::optional<Link> linkTo(const ScanFeatures& earlier,
                                        const Eigen::Isometry3d& guess) const = 0;
-
-    /** All that linkTo() needs; see readFeatures(). Error where it cannot be written. */
-    virtual void save(std::ostream& out) const = 0;
 };
 
 /** A figure under its name. */
@@ -95,13 +79,6 @@ struct Step {
     std::vector<Named> times_ms;
     std::vector<Named> details;                    //!< the method's own figures, likewise
     std::shared_ptr<const ScanFeatures> features;  //!< none where the method keeps none
-
-    /** What has to be kept to go on later: see core/checkpoint.h. Without the features. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(increment, predicted, reason, searched, interrupted, standing, quality, used,
-                notFinite, deskewed, times_ms, details);
-    }
 };
 
 /** Milliseconds of one of the stages that `step` has. */

@@ -16,12 +16,6 @@ class Unevenness {
      *  little is known, it may be anything that a hand does. */
     planes::CoursePrior prior(double most) const;
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(squares_m2_, squares_rad2_);
-    }
-
  private:
     std::deque<double> squares_m2_, squares_rad2_;  //!< an axis
 };

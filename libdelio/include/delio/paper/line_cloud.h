@@ -25,12 +25,6 @@ struct LineCloud {
     Eigen::Matrix3Xf directions;  //!< unit vectors
     Eigen::VectorXf lengths;      //!< metres
     std::size_t drawn = 0;        //!< lines drawn, of which the shortest were kept
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(midpoints, directions, lengths, drawn);
-    }
 };
 
 /** In each bin of the polar grid (two neighbouring rings, one sector of azimuth) `drawn` random

@@ -29,12 +29,6 @@ struct Pattern {
     std::size_t normals = 0;       //!< that the directions stand for
     std::size_t removed = 0;       //!< normals that were outliers
     Eigen::Matrix3Xf points = {};  //!< m; where each was found; none where directions are modes
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(directions, weights, normals, removed, points);
-    }
 };
 
 /** All of the normals, weighted by their planarity. */

@@ -84,16 +84,6 @@ class PlaneMap {
     /** How many of them hold a plane. */
     std::size_t planes() const;
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(up_);
-        for (auto& level : levels_) {
-            archive(level.cells);
-            if constexpr (Archive::is_loading::value) level.forgetPlanes();
-        }
-    }
-
  private:
     /** Of the points in a voxel. */
     struct Sums {
@@ -108,11 +98,6 @@ class PlaneMap {
         void add(const Sums& other);
         void clear();
         Eigen::Matrix3d scatter() const;
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(origin, sum, squares, count);
-        }
     };
     /** What comes into the map at once. */
     struct Batch {

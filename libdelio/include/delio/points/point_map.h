@@ -71,12 +71,6 @@ class PointMap {
         }
     }
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(cells_, size_);
-    }
-
  private:
     /** Points that are compared at once, seen from their cell's origin. Places without a point lie
      *  infinitely far away. */
@@ -110,15 +104,6 @@ class PointMap {
         void set(std::uint32_t number, const Eigen::Vector3f& point);
         bool add(const Eigen::Vector3d& point, float squaredSpacing);
         void nearest(const Eigen::Vector3d& point, Search& search) const;
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMost> all(3, count);
-            for (std::uint32_t i = 0; i < count; ++i) all.col(i) = point(i);
-            archive(origin, all);
-            count = static_cast<std::uint32_t>(all.cols());
-            for (std::uint32_t i = 0; i < count; ++i) set(i, all.col(i));
-        }
     };
     PointMapOptions options_;
     scan::VoxelTable<Cell> cells_;

@@ -52,12 +52,6 @@ struct RunRecord {
     /** True poses in the frame of `final`, for pictures. */
     std::vector<Eigen::Isometry3d> truth;
 
-    /** What scans have left in it, to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(rows, warnings, stampsRise);
-    }
-
     /** The chain alone is what the odometry's poses were made of: then nothing is optimised. */
     bool optimised() const { return graph.edges().size() + 1 > graph.poses().size(); }
     std::size_t predicted() const;  //!< scans that were not registered

@@ -60,12 +60,6 @@ class RunRows {
     Iterator begin() const { return {*this, 0}; }     //!< the first row
     Iterator end() const { return {*this, size()}; }  //!< behind the last row
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(begins_, numbers_, names_, reasons_, sensorPoses_);
-    }
-
  private:
     /** Of the figures of a row, in their order. */
     struct Names {
@@ -74,10 +68,6 @@ class RunRows {
         bool operator==(const Names& other) const {
             return stages == other.stages && listeners == other.listeners &&
                    details == other.details;
-        }
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(stages, listeners, details);
         }
     };
     void put(double number) { numbers_.push_back(number); }

@@ -31,12 +31,6 @@ struct PointCloud {
     std::vector<std::uint32_t> indices;  //!< of each point in the scan
     std::size_t notFinite = 0;   //!< points dropped because a coordinate was NaN or infinite
     std::size_t outOfRange = 0;  //!< points dropped by min_range and max_range
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(points, rings, times_s, indices, notFinite, outOfRange);
-    }
 };
 
 /** Drops what is not finite or out of range, and raises every point's vertical angle by

@@ -41,14 +41,6 @@ class RangeImage {
      *  went on by more than `margin` metres; taken where one of them ended within as much. */
     Place at(const Eigen::Vector3f& point, float margin) const;
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(directions_.perRadian, ringSpacing_, directions_.rows, directions_.columns,
-                firstRow_, nearest_);
-        if constexpr (Archive::is_loading::value) summarise();
-    }
-
  private:
     /** Rows and columns of the whole sphere. */
     struct Directions {

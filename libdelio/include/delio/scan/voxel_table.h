@@ -157,17 +157,6 @@ class VoxelTable {
     /** Drops everything. */
     void clear() { *this = VoxelTable(); }
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(keys_, values_);
-        if constexpr (Archive::is_loading::value) {
-            index_.clear();
-            index_.reserve(keys_.size());
-            for (const std::uint64_t key : keys_) index_.insert(key);
-        }
-    }
-
  private:
     static constexpr std::size_t kAhead = 16;
 

@@ -25,12 +25,6 @@ class GraphBuilder : public SlamListener {
 
     const graph::PoseGraph& graph() const { return graph_; }  //!< a node a scan
 
-    /** What has to be kept to go on later, without the features: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(graph_, recent_);
-    }
-
  private:
     struct Recent {
         std::size_t node = 0;
@@ -38,10 +32,6 @@ class GraphBuilder : public SlamListener {
         Eigen::Isometry3d sensorPose = Eigen::Isometry3d::Identity();
 
         /** Without the features. */
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(node, sensorPose);
-        }
     };
     /** What it takes to forget a scan. */
     struct State {

@@ -34,23 +34,10 @@ class LoopCloser : public SlamListener {
     /** Time that the search has taken, beside the drive and after it. */
     double search_ms() const { return search_ms_; }
 
-    /** What has to be kept to go on later, beside the search: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        std::string fault = faultText();
-        archive(builder_, poses_, waiting_, search_ms_, upIsKnown_, up_, fault);
-        if constexpr (Archive::is_loading::value) takeFault(fault);
-    }
-
  private:
     struct Ended {
         loops::Submap submap;
         Eigen::Isometry3d pose;  //!< of its key node
-
-        template <class Archive>
-        void serialize(Archive& archive) {
-            archive(submap, pose);
-        }
     };
     std::string faultText() const;  //!< empty: none
     void takeFault(const std::string& text);

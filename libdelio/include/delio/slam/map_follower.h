@@ -26,12 +26,6 @@ class MapFollower : public SlamListener {
     const std::vector<MapFix>& fixes() const { return fixes_; }
     const StoredMap& map() const { return tracker_.map(); }  //!< that is followed through
 
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(tracker_, fixes_, up_);
-    }
-
  private:
     MapTracker tracker_;
     History history_;

@@ -14,12 +14,6 @@ namespace delio {
 struct ScanReport {
     Step step;                        //!< of the odometry
     std::vector<Named> listeners_ms;  //!< time of each listener, under its name
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(step, listeners_ms);
-    }
 };
 
 /** An odometry and its listeners: scans in, and each listener is told of every step in turn. Poses
@@ -53,12 +47,6 @@ class Slam {
      *  and that has seen no scan. Error where the state is cut off, damaged, of other options, of
      *  other listeners or of another version; then this is of no use. */
     void restore(std::istream& in);
-
-    /** What has to be kept to go on later: see core/checkpoint.h. */
-    template <class Archive>
-    void serialize(Archive& archive) {
-        archive(trajectory_, nodes_, sensorPose_, refused_);
-    }
 
  private:
     void requireOpen() const;
