@@ -6,12 +6,12 @@
 #include "delio/io/partial_folder.h"
 #include "delio/io/scan_reader.h"
 #include "delio/io/target_folder.h"
-#include "delio/odometry/paper_odometry.h"
+#include "odometry/paper_odometry.h"
 #include "delio/picture/figures.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
 #include "delio/slam/options.h"
-#include "delio/surfaces/surfaces.h"
+#include "paper/normals.h"
 #include "delio/version.h"
 #include "option_sections.h"
 #include "overlap.h"
@@ -82,9 +82,9 @@ std::vector<Scan> readScans(io::ScanReader& reader, const std::string& input, st
     return scans;
 }
 
-surfaces::SurfaceNormals normalsOf(const Scan& scan, const PaperOdometryOptions& options) {
-    const auto cloud = scan::preprocess(scan, options.scan);
-    return surfaces::surfacesOf(cloud.points, options.normals, options.bilateral);
+paper::SurfaceNormals normalsOf(const Scan& scan, const PaperOdometryOptions& options) {
+    const auto cloud = odometry::preprocess(scan, options.scan);
+    return paper::surfacesOf(cloud.points, options.normals, options.bilateral);
 }
 
 /** The pattern of scans that follow each other: it moves as the vehicle turns. */

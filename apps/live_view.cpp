@@ -13,7 +13,7 @@
 #include "delio/core/error.h"
 #include "delio/map/colormap.h"
 #include "delio/picture/figures.h"
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 
 namespace delio {
 using mrpt::img::TColor;
@@ -105,12 +105,12 @@ void LiveView::Window::prepare() {
 
 void LiveView::Window::showInsets(const Scan& scan, const Eigen::Isometry3d& increment,
                                   COpenGLScene& scene) {
-    const auto cloud = scan::preprocess(scan, options.scan);
-    const auto normals = surfaces::estimateNormals(cloud.points, options.normals);
+    const auto cloud = odometry::preprocess(scan, options.scan);
+    const auto normals = paper::estimateNormals(cloud.points, options.normals);
     replaceContent(
         *scene.getViewport("sphere"),
         *picture::sphereScene({paper::removeOutliers(normals, options.outliers).directions}, {}));
-    auto drawn = paper::drawLines(cloud.points, scan::neighbouringRings(cloud), options.lines);
+    auto drawn = paper::drawLines(cloud.points, odometry::neighbouringRings(cloud), options.lines);
     if (!first) {
         const auto unrotated = paper::rotated(drawn, increment.linear());
         replaceContent(*scene.getViewport("lines"),
@@ -136,7 +136,7 @@ void LiveView::Window::showMap(const Scan& scan, const Eigen::Isometry3d& pose, 
         const Eigen::Vector3d p(double{x[i]}, double{y[i]}, double{z[i]});
         if (!(p.norm() >= least && p.norm() <= most)) continue;
         const Eigen::Vector3d q = sensor * p;
-        if (!taken.insert(scan::voxelKey(q, kMapVoxel_m)).second) continue;
+        if (!taken.insert(voxelKey(q, kMapVoxel_m)).second) continue;
         const TColor c = map::colourAt(map::Colormap::Turbo,
                                        kHeights.fractionAt(q.z() - sensor.translation().z()));
         map->insertPoint({static_cast<float>(q.x()), static_cast<float>(q.y()),

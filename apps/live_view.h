@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "delio/odometry/paper_odometry.h"
+#include "odometry/paper_odometry.h"
 #include "delio/slam/listener.h"
 
 namespace delio {

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/odometry/make_odometry.h"
+#include "delio/odometry/odometry.h"
 #include "help_text.h"
 
 namespace delio::cli {

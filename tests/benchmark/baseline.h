@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "delio/odometry/prediction.h"
-#include "delio/scan/preprocess.h"
-#include "delio/scan/scan.h"
+#include "odometry/motion_model.h"
+#include "odometry/preprocess.h"
+#include "delio/odometry/scan.h"
 
 namespace delio::benchmark {
 /** An odometry that is measured beside the others. */
@@ -41,7 +41,7 @@ class ScanToScan : public Baseline {
     }
 
     void process(const Scan& scan) final {
-        Features features = extract(scan::preprocess(scan, options_));
+        Features features = extract(odometry::preprocess(scan, options_));
         if (poses_.empty()) {
             poses_.push_back(Eigen::Isometry3d::Identity());
         } else {
@@ -54,13 +54,13 @@ class ScanToScan : public Baseline {
     std::vector<Eigen::Isometry3d> poses() final { return poses_; }
 
  protected:
-    virtual Features extract(const scan::PointCloud& cloud) = 0;
+    virtual Features extract(const odometry::PointCloud& cloud) = 0;
     /** Maps the frame of `to` to that of `from`; `guess` where that fails. */
     virtual Eigen::Isometry3d align(const Features& from, const Features& to,
                                     const Eigen::Isometry3d& guess) = 0;
 
  private:
-    scan::PreprocessOptions options_;
+    PreprocessOptions options_;
     LinearPrediction prediction_;
     Features last_;
     std::vector<Eigen::Isometry3d> poses_;

@@ -1,7 +1,7 @@
 #include "baseline.h"
 #include "delio/core/geometry.h"
-#include "delio/paper/coupled_registration.h"
-#include "delio/scan/rings.h"
+#include "paper/coupled_registration.h"
+#include "odometry/rings.h"
 #include "delio/slam/graph_builder.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"
@@ -43,9 +43,9 @@ class CoupledLines : public ScanToScan<paper::LineCloud> {
         : ScanToScan(facts), draw_(options.lines), registration_(options.lineRegistration) {}
 
  protected:
-    paper::LineCloud extract(const scan::PointCloud& cloud) override {
+    paper::LineCloud extract(const odometry::PointCloud& cloud) override {
         ++draw_.seed;  // the same draw twice would pair lines with themselves
-        return paper::drawLines(cloud.points, scan::neighbouringRings(cloud), draw_);
+        return paper::drawLines(cloud.points, odometry::neighbouringRings(cloud), draw_);
     }
     Eigen::Isometry3d align(const paper::LineCloud& from, const paper::LineCloud& to,
                             const Eigen::Isometry3d& guess) override {
@@ -60,8 +60,8 @@ class CoupledLines : public ScanToScan<paper::LineCloud> {
     }
 
  private:
-    paper::LineCloudOptions draw_;
-    paper::LineRegistrationOptions registration_;
+    LineCloudOptions draw_;
+    LineRegistrationOptions registration_;
     bool first_ = true;
 };
 }  // namespace

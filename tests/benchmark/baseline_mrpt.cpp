@@ -4,7 +4,7 @@
 
 #include "baseline.h"
 #include "delio/core/geometry.h"
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 
 namespace delio::benchmark {
 using mrpt::maps::CSimplePointsMap;
@@ -24,8 +24,8 @@ class MrptIcp : public ScanToScan<CSimplePointsMap::Ptr> {
     }
 
  protected:
-    CSimplePointsMap::Ptr extract(const scan::PointCloud& cloud) override {
-        const Eigen::Matrix3Xf points = scan::voxelCentroids(cloud.points, kVoxel_m);
+    CSimplePointsMap::Ptr extract(const odometry::PointCloud& cloud) override {
+        const Eigen::Matrix3Xf points = voxelCentroids(cloud.points, kVoxel_m);
         auto map = CSimplePointsMap::Create();
         map->resize(static_cast<std::size_t>(points.cols()));
         for (Eigen::Index i = 0; i < points.cols(); ++i)

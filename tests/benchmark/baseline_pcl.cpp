@@ -9,7 +9,7 @@
 
 #include "baseline.h"
 #include "delio/core/geometry.h"
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 
 namespace delio::benchmark {
 namespace {
@@ -37,8 +37,8 @@ class Pcl : public ScanToScan<Cloud<Point>> {
     Registration registration;
 
  protected:
-    Cloud<Point> extract(const scan::PointCloud& cloud) override {
-        const Eigen::Matrix3Xf points = scan::voxelCentroids(cloud.points, kVoxel_m);
+    Cloud<Point> extract(const odometry::PointCloud& cloud) override {
+        const Eigen::Matrix3Xf points = voxelCentroids(cloud.points, kVoxel_m);
         Cloud<Point> result(new pcl::PointCloud<Point>);
         result->resize(static_cast<std::size_t>(points.cols()));
         for (Eigen::Index i = 0; i < points.cols(); ++i)
@@ -66,7 +66,7 @@ class PclPlaneIcp : public Pcl<pcl::PointNormal, PlaneIcp> {
     using Pcl::Pcl;
 
  protected:
-    Cloud<pcl::PointNormal> extract(const scan::PointCloud& cloud) override {
+    Cloud<pcl::PointNormal> extract(const odometry::PointCloud& cloud) override {
         auto points = Pcl::extract(cloud);
         pcl::NormalEstimation<pcl::PointNormal, pcl::PointNormal> normals;
         normals.setInputCloud(points);

@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <map>
 
-#include "delio/scan/rings.h"
-#include "delio/scan/voxel_grid.h"
+#include "odometry/rings.h"
+#include "core/voxel_grid.h"
 
 namespace delio::benchmark {
 namespace {
@@ -102,7 +102,7 @@ void DriveMeasures::addGround(const Eigen::Matrix3Xd& points) {
 /** Of 15 neighbours in space within 30 m, thinned to one point in 0.3 m. */
 void DriveMeasures::addPlanarity(const Eigen::Matrix3Xd& points) {
     constexpr std::size_t kNeighbours = 15;
-    const Eigen::Matrix3Xf thin = scan::voxelCentroids(points.cast<float>(), 0.3);
+    const Eigen::Matrix3Xf thin = voxelCentroids(points.cast<float>(), 0.3);
     const auto map = mapOf(thin);
     for (Eigen::Index i = 0; i < thin.cols(); i += 5) {
         if (thin.col(i).norm() > 30) continue;
@@ -124,7 +124,7 @@ void DriveMeasures::addPlanarity(const Eigen::Matrix3Xd& points) {
 
 void DriveMeasures::addRings(const Eigen::Matrix3Xd& points) {
     const Eigen::Matrix3Xf asFloat = points.cast<float>();
-    const auto numbers = scan::ringsOf(asFloat);
+    const auto numbers = odometry::ringsOf(asFloat);
     std::map<int, std::vector<Eigen::Index>> rings;
     for (std::size_t i = 0; i < numbers.size(); ++i)
         rings[numbers[i]].push_back(static_cast<Eigen::Index>(i));

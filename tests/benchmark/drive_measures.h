@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 
 namespace delio::benchmark {
 /** What can be counted in scans of a spinning LiDAR to tell real ones from made-up ones. Lengths in

@@ -25,7 +25,7 @@
 #include "delio/io/drive_meta.h"
 #include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
-#include "delio/odometry/make_odometry.h"
+#include "delio/odometry/odometry.h"
 #include "delio/slam/graph_builder.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"

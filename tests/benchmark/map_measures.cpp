@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "core/kd_tree.h"
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 
 namespace delio {
 namespace {
@@ -103,10 +103,10 @@ Distances distances(const Eigen::Matrix3Xf& queries, const Eigen::Matrix3Xf& map
 MapPoints mapPoints(const std::vector<SplitScan>& scans, const Poses& rough, double spacing) {
     std::vector<Eigen::Matrix3Xf> thinned;
     thinned.reserve(scans.size());
-    for (const auto& scan : scans) thinned.push_back(scan::voxelCentroids(scan.used, spacing));
+    for (const auto& scan : scans) thinned.push_back(voxelCentroids(scan.used, spacing));
     const MapPoints all = joined(thinned);
     const Eigen::Matrix3Xf there = placed(all, rough);
-    const auto numbers = scan::numberVoxels(there, spacing);
+    const auto numbers = numberVoxels(there, spacing);
     std::vector<Eigen::Index> kept(static_cast<std::size_t>(numbers.voxels), -1);
     for (Eigen::Index i = 0; i < there.cols(); ++i) {
         auto& best = kept[numbers.ofPoint[static_cast<std::size_t>(i)]];
@@ -120,7 +120,7 @@ MapPoints mapPoints(const std::vector<SplitScan>& scans, const Poses& rough, dou
 MapPoints heldOutPoints(const std::vector<SplitScan>& scans, double spacing) {
     std::vector<Eigen::Matrix3Xf> thinned;
     thinned.reserve(scans.size());
-    for (const auto& scan : scans) thinned.push_back(scan::voxelCentroids(scan.heldOut, spacing));
+    for (const auto& scan : scans) thinned.push_back(voxelCentroids(scan.heldOut, spacing));
     return joined(thinned);
 }
 

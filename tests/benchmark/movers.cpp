@@ -15,7 +15,7 @@
 #include "delio/core/error.h"
 #include "delio/io/drive_meta.h"
 #include "delio/io/rawlog_reader.h"
-#include "delio/odometry/make_odometry.h"
+#include "delio/odometry/odometry.h"
 #include "delio/slam/options.h"
 
 namespace {

@@ -22,8 +22,8 @@
 #include "delio/io/drive_meta.h"
 #include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
-#include "delio/odometry/make_odometry.h"
-#include "delio/scan/preprocess.h"
+#include "delio/odometry/odometry.h"
+#include "odometry/preprocess.h"
 #include "delio/slam/options.h"
 #include "map_measures.h"
 
@@ -182,8 +182,8 @@ void measure(const std::string& rawlog, Options options, const std::vector<std::
     std::vector<Scan> usedHalves;
     for (const auto& scan : scans) {
         usedHalves.push_back(half(scan, 0));
-        split.push_back({scan::preprocess(usedHalves.back(), options.scan()).points,
-                         scan::preprocess(half(scan, 1), options.scan()).points});
+        split.push_back({odometry::preprocess(usedHalves.back(), options.scan()).points,
+                         odometry::preprocess(half(scan, 1), options.scan()).points});
     }
     Entry delio;
     delio.name = "DeLiO";

@@ -14,7 +14,7 @@
 #include "delio/io/drive_meta.h"
 #include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
-#include "delio/paper/coupled_registration.h"
+#include "paper/coupled_registration.h"
 #include "delio/slam/options.h"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 #include "poses.h"
 
 namespace delio::test {

@@ -4,8 +4,8 @@
 
 #include "delio/core/geometry.h"
 #include "delio/core/increment.h"
-#include "delio/core/kabsch.h"
-#include "delio/core/motion.h"
+#include "core/principal_axes.h"
+#include "core/scan_trajectory.h"
 #include "generators.h"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "delio/odometry/make_odometry.h"
+#include "delio/odometry/odometry.h"
 #include "delio/slam/options.h"
 #include "generators.h"
 #include "poses.h"

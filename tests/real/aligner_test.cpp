@@ -11,7 +11,7 @@
 #include "delio/core/geometry.h"
 #include "delio/evaluation/rotation_angle.h"
 #include "delio/io/trajectory.h"
-#include "delio/scan/preprocess.h"
+#include "odometry/preprocess.h"
 #include "test_data.h"
 
 namespace {
@@ -25,9 +25,9 @@ CPointsMap::Ptr loadScan(const std::filesystem::path& file) {
     EXPECT_TRUE(raw->loadFromKittiVelodyneFile(file.string()));
     Scan scan;
     scan.points = raw;
-    scan::PreprocessOptions options;
+    PreprocessOptions options;
     options.vertical_correction_deg = 0.205;
-    const auto corrected = scan::preprocess(scan, options).points;
+    const auto corrected = odometry::preprocess(scan, options).points;
     auto points = mrpt::maps::CSimplePointsMap::Create();
     for (Eigen::Index i = 0; i < corrected.cols(); ++i)
         points->insertPointFast(corrected(0, i), corrected(1, i), corrected(2, i));

@@ -1,5 +1,5 @@
 // Rings of real clouds that do not name them.
-#include "delio/scan/rings.h"
+#include "odometry/rings.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <set>
 
 #include "delio/io/rawlog_reader.h"
-#include "delio/scan/preprocess.h"
+#include "odometry/preprocess.h"
 #include "test_data.h"
 
 namespace {
@@ -55,7 +55,7 @@ TEST(RingsOfRealClouds, VlpInFiringOrder) {
     DELIO_NEED_DATA(kStreet);
     for (const auto* file : {"000000.bin", "000040.bin", "000079.bin"}) {
         const auto points = cloudOf(test::dataFolder() / kStreet / "velodyne" / file);
-        const Rings rings = scan::ringsOf(points);
+        const Rings rings = odometry::ringsOf(points);
         for (std::size_t i = 0; i < rings.size(); ++i) {
             const auto p = points.col(static_cast<Eigen::Index>(i));
             ASSERT_NEAR(std::atan2(p.z(), p.head<2>().norm()) * 180 / M_PI, 15 - 2 * rings[i], 0.1)
@@ -63,7 +63,7 @@ TEST(RingsOfRealClouds, VlpInFiringOrder) {
         }
         EXPECT_EQ(std::set<std::uint16_t>(rings.begin(), rings.end()).size(), 16U);
         const auto order = shuffled(points.cols());
-        const Rings ofShuffled = scan::ringsOf(points(Eigen::all, order));
+        const Rings ofShuffled = odometry::ringsOf(points(Eigen::all, order));
         for (std::size_t i = 0; i < order.size(); ++i)
             ASSERT_EQ(ofShuffled[i], rings[static_cast<std::size_t>(order[i])]);
     }
@@ -74,7 +74,7 @@ TEST(RingsOfRealClouds, OusterOfHalfARevolution) {
     DELIO_NEED_DATA("real/os1_kaist03_21");
     const auto folder = test::dataFolder() / "real/os1_kaist03_21/velodyne";
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const Rings rings = scan::ringsOf(cloudOf(entry.path()));
+        const Rings rings = odometry::ringsOf(cloudOf(entry.path()));
         EXPECT_EQ(std::set<std::uint16_t>(rings.begin(), rings.end()).size(), 64U) << entry.path();
     }
 }
@@ -85,10 +85,10 @@ TEST(RingsOfRealClouds, HdlShuffled) {
     DELIO_NEED_DATA("kitti/drive0005_first60");
     for (const auto* file : {"000000.bin", "000030.bin", "000059.bin"}) {
         const auto points = cloudOf(test::dataFolder() / "kitti/drive0005_first60/velodyne" / file);
-        const Rings inOrder = scan::ringsOf(points);
+        const Rings inOrder = odometry::ringsOf(points);
         EXPECT_EQ(inOrder.back(), 63) << file;
         const auto order = shuffled(points.cols());
-        const Rings found = scan::ringsOf(points(Eigen::all, order));
+        const Rings found = odometry::ringsOf(points(Eigen::all, order));
         Rings truth;
         for (const auto i : order) truth.push_back(inOrder[static_cast<std::size_t>(i)]);
         const double share = purity(truth, found);
@@ -104,9 +104,9 @@ TEST(RingsOfRealClouds, AreThoseThatPacketsName) {
         io::RawlogReader reader((test::dataFolder() / "mrpt" / file).string());
         const auto scan = reader.next();
         ASSERT_TRUE(scan) << file;
-        auto cloud = scan::preprocess(*scan, {});
+        auto cloud = odometry::preprocess(*scan, {});
         ASSERT_FALSE(cloud.rings.empty());
-        EXPECT_EQ(scan::ringsOf(cloud.points), scan::neighbouringRings(cloud)) << file;
+        EXPECT_EQ(odometry::ringsOf(cloud.points), odometry::neighbouringRings(cloud)) << file;
     }
 }
 }  // namespace

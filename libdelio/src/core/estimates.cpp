@@ -1,4 +1,4 @@
-#include "delio/core/estimates.h"
+#include "core/estimates.h"
 
 namespace delio {
 Increment incrementOf(const RotationEstimate& rotation, const TranslationEstimate& translation) {

@@ -1,5 +1,6 @@
-#include "principal_axes.h"
+#include "core/principal_axes.h"
 
+#include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -98,5 +99,12 @@ PrincipalAxes principalAxes(const Eigen::Matrix3d& scatter) {
         result.axes << axis, shorter, longer;
     }
     return result;
+}
+
+Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& moment) {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d sign(1, 1, 1);
+    sign[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+    return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
 }
 }  // namespace delio

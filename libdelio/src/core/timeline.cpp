@@ -1,4 +1,4 @@
-#include "delio/core/timeline.h"
+#include "core/timeline.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "delio/core/percentile.h"
+#include "core/percentile.h"
 #include "delio/evaluation/rotation_angle.h"
 
 namespace delio::evaluation {

@@ -1,5 +1,5 @@
 #include "delio/evaluation/rotation_angle.h"
-#include "../core/portable_math.h"
+#include "core/portable_math.h"
 
 #include <Eigen/Dense>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "delio/graph/information.h"
-#include "../core/portable_math.h"
+#include "core/portable_math.h"
 
 #include <Eigen/LU>
 #include <cmath>

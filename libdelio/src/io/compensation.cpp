@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "delio/scan/rings.h"
+#include "odometry/rings.h"
 
 namespace delio::io {
 namespace {
@@ -44,7 +44,7 @@ std::vector<Beam> beamsOf(const Scan& scan) {
         Eigen::Matrix3Xf points(3, static_cast<Eigen::Index>(useful.size()));
         for (std::size_t k = 0; k < useful.size(); ++k)
             points.col(static_cast<Eigen::Index>(k)) << x[useful[k]], y[useful[k]], z[useful[k]];
-        rings = scan::ringsOf(points);
+        rings = odometry::ringsOf(points);
     } else {
         for (const std::size_t i : useful) rings.push_back(scan.rings[i]);
     }

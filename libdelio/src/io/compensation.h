@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 
 namespace delio::io {
 /** Whether the recorder took the sensor's motion out of a scan's points, as the points tell: of a

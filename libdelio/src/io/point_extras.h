@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 
 namespace delio::io {
 /** Takes rings and times of the points from the files STEM.ring (uint16) and STEM.time (float32,

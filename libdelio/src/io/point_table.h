@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 #include "point_clock.h"
 
 namespace delio::io {

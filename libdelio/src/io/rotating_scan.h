@@ -1,7 +1,7 @@
 #pragma once
 #include <mrpt/obs/CObservationRotatingScan.h>
 
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 
 namespace delio::io {
 /** Fills `points` (metres, sensor frame, row by row; a CPointsMapXYZI with intensities 0 to 1 where

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 #include "findings.h"
 
 namespace delio::io {

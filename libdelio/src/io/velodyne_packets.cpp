@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "../core/portable_math.h"
+#include "core/portable_math.h"
 #include "delio/core/error.h"
 
 namespace delio::io {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 
 namespace delio::io {
 /** Microseconds from the first laser of a firing to `laser` (counted from 0), and from one firing

@@ -5,8 +5,8 @@
 
 namespace delio {
 namespace {
-planes::PlaneMapOptions denseMap() {
-    planes::PlaneMapOptions options;
+PlaneMapOptions denseMap() {
+    PlaneMapOptions options;
     options.ground_levels = 0;  // many scans leave no gaps
     return options;
 }

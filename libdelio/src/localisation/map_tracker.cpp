@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "core/voxel_grid.h"
 #include "delio/loops/height_image.h"
-#include "delio/scan/spin_axis.h"
-#include "delio/scan/voxel_grid.h"
+#include "odometry/spin_axis.h"
 
 namespace delio {
 namespace {
@@ -17,9 +17,9 @@ constexpr double kFine_m = 0.25, kThinned_m = 0.5, kCoarse_m = 1;
 
 ScanView viewOf(const Eigen::Matrix3Xf& points) {
     ScanView view;
-    view.fine = scan::voxelCentroids(points, kFine_m);
-    view.thinned = scan::voxelCentroids(view.fine, kThinned_m).cast<double>();
-    view.coarse = scan::firstOfVoxels(view.fine, kCoarse_m).cast<double>();
+    view.fine = voxelCentroids(points, kFine_m);
+    view.thinned = voxelCentroids(view.fine, kThinned_m).cast<double>();
+    view.coarse = firstOfVoxels(view.fine, kCoarse_m).cast<double>();
     return view;
 }
 
@@ -65,7 +65,7 @@ void MapTracker::remember(const Eigen::Matrix3Xf& points) {
     Eigen::Index count = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i)
         if (points.col(i).norm() <= kRadius_m) near.col(count++) = points.col(i);
-    now_.recent.push_back({now_.odometry, scan::firstOfVoxels(near.leftCols(count), kSpacing_m)});
+    now_.recent.push_back({now_.odometry, firstOfVoxels(near.leftCols(count), kSpacing_m)});
     if (now_.recent.size() > kMost) now_.recent.pop_front();
 }
 
@@ -197,7 +197,7 @@ MapFix MapTracker::add(const Increment& increment, const Eigen::Matrix3Xf& point
     before_ = now_;
     MapFix fix;
     fix.reason = "not searched for at this scan";
-    const Eigen::Matrix3d level = scan::turnedUp(up).cast<double>();
+    const Eigen::Matrix3d level = odometry::turnedUp(up).cast<double>();
     const double moved_m = increment.pose.translation().norm();
     now_.odometry = now_.odometry * increment.pose;
     now_.unsearched_m += moved_m;

@@ -13,9 +13,9 @@
 #include <fstream>
 
 #include "bytes.h"
+#include "core/voxel_grid.h"
 #include "delio/core/error.h"
 #include "delio/io/output_file.h"
-#include "delio/scan/voxel_grid.h"
 #include "io/most_bytes.h"
 #include "io/names.h"
 #include "packed_points.h"
@@ -332,7 +332,7 @@ Eigen::Matrix3Xf StoredMap::cloud(double spacing) const {
         all.middleCols(count, part.cols()) = part;
         count += part.cols();
     }
-    return scan::firstOfVoxels(all, spacing);
+    return firstOfVoxels(all, spacing);
 }
 
 MapContent StoredMap::content() const {

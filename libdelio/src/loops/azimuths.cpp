@@ -1,5 +1,5 @@
 #include "delio/loops/azimuths.h"
-#include "../core/portable_math.h"
+#include "core/portable_math.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ Eigen::VectorXd smoothed(const Eigen::VectorXd& weights) {
 }
 }  // namespace
 
-Azimuths::Azimuths(const surfaces::SurfaceNormals& surfaces)
+Azimuths::Azimuths(const paper::SurfaceNormals& surfaces)
     : weights_(Eigen::VectorXd::Zero(kBins)) {
     constexpr float kLevel = 0.5F;  // 30 deg
     for (Eigen::Index i = 0; i < surfaces.directions.cols(); ++i) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/voxel_grid.h"
 #include "delio/loops/height_image.h"
-#include "delio/scan/voxel_grid.h"
 
 namespace delio::loops {
 namespace {
@@ -15,18 +15,18 @@ constexpr double kPointSigma_m = 0.05, kPointSigma_deg = 1;
 /** Of an axis that planes do not see: as good as nothing is known. */
 constexpr double kUnseen_m = 10;
 
-planes::PlaneMapOptions denseMap() {
-    planes::PlaneMapOptions options;
+PlaneMapOptions denseMap() {
+    PlaneMapOptions options;
     options.ground_levels = 0;  // many scans leave no gaps
     return options;
 }
 
 std::uint64_t columnOf(const Eigen::Vector3d& point) {
-    return scan::voxelKey(scan::floorOf(point.x()), scan::floorOf(point.y()), 0);
+    return voxelKey(floorOf(point.x()), floorOf(point.y()), 0);
 }
 
 Eigen::Matrix3Xd thinned(const Eigen::Matrix3Xf& points, double spacing) {
-    return scan::firstOfVoxels(points, spacing).cast<double>();
+    return firstOfVoxels(points, spacing).cast<double>();
 }
 }  // namespace
 
@@ -46,7 +46,7 @@ std::vector<OptionField> ClosureOptions::fields() const {
 
 RegistrableSubmap::RegistrableSubmap(const Eigen::Matrix3Xf& points)
     : planes_(denseMap()),
-      points_(points::PointMapOptions{}),
+      points_(PointMapOptions{}),
       coarse_(thinned(points, kCoarse_m)),
       thinned_(thinned(points, kThinned_m)),
       standing_(aboveGround(points)) {
@@ -54,7 +54,7 @@ RegistrableSubmap::RegistrableSubmap(const Eigen::Matrix3Xf& points)
     planes_.add(all);
     points_.add(all);
     for (Eigen::Index i = 0; i < standing_.cols(); ++i)
-        filled_.insert(scan::voxelKey(standing_.col(i), kThinned_m));
+        filled_.insert(voxelKey(standing_.col(i), kThinned_m));
     for (Eigen::Index i = 0; i < all.cols(); ++i) {
         const auto number = columns_.insert(columnOf(all.col(i)));
         if (number == tops_.size()) tops_.push_back(all(2, i));
@@ -62,18 +62,18 @@ RegistrableSubmap::RegistrableSubmap(const Eigen::Matrix3Xf& points)
     }
 }
 
-planes::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& other,
+odometry::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& other,
                                                     const Eigen::Isometry3d& guess) const {
-    const points::PointRegistrationOptions points;
-    const planes::PlaneRegistrationOptions planes;
+    const PointRegistrationOptions points;
+    const PlaneRegistrationOptions planes;
     const auto placed =
-        points::registerToPoints(points_, other.coarse_, guess, points.first_kernel, points);
-    if (!placed.valid) return planes::predictedEstimate(guess, planes);
+        odometry::registerToPoints(points_, other.coarse_, guess, points.first_kernel, points);
+    if (!placed.valid) return odometry::predictedEstimate(guess, planes);
     const auto prior =
-        planes::Prior::of(placed.pose, kPointSigma_m,
+        odometry::Prior::of(placed.pose, kPointSigma_m,
                           std::pow(kPointSigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity());
     auto found =
-        planes::registerToPlanes(planes_, other.thinned_, prior, points.last_kernel, planes);
+        odometry::registerToPlanes(planes_, other.thinned_, prior, points.last_kernel, planes);
     const auto& unseen = found.translation.unobservedAxes;
     found.translation.covariance += std::pow(kUnseen_m, 2) * unseen * unseen.transpose();
     return found;
@@ -82,17 +82,17 @@ planes::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& oth
 double RegistrableSubmap::support(const RegistrableSubmap& other,
                                   const Eigen::Isometry3d& pose) const {
     constexpr double kLeast = 0.3;
-    scan::VoxelIndex theirs;
+    VoxelIndex theirs;
     double visible = 0, both = 0;
     for (Eigen::Index i = 0; i < other.standing_.cols(); ++i) {
         const Eigen::Vector3d point = pose * other.standing_.col(i);
-        const auto key = scan::voxelKey(point, kThinned_m);
+        const auto key = voxelKey(point, kThinned_m);
         const std::size_t before = theirs.size();
         theirs.insert(key);
         if (theirs.size() == before) continue;
-        const bool isFilled = filled_.find(key) != scan::VoxelIndex::kNone;
+        const bool isFilled = filled_.find(key) != VoxelIndex::kNone;
         const auto column = columns_.find(columnOf(point));
-        visible += isFilled || column == scan::VoxelIndex::kNone || point.z() <= tops_[column];
+        visible += isFilled || column == VoxelIndex::kNone || point.z() <= tops_[column];
         both += isFilled;
     }
     return both / std::max({1.0, visible, kLeast * static_cast<double>(theirs.size())});
@@ -100,11 +100,11 @@ double RegistrableSubmap::support(const RegistrableSubmap& other,
 
 double RegistrableSubmap::overlap(const RegistrableSubmap& other,
                                   const Eigen::Isometry3d& pose) const {
-    scan::VoxelIndex theirs, both;
+    VoxelIndex theirs, both;
     for (Eigen::Index i = 0; i < other.standing_.cols(); ++i) {
-        const auto key = scan::voxelKey(pose * other.standing_.col(i), kThinned_m);
+        const auto key = voxelKey(pose * other.standing_.col(i), kThinned_m);
         theirs.insert(key);
-        if (filled_.find(key) != scan::VoxelIndex::kNone) both.insert(key);
+        if (filled_.find(key) != VoxelIndex::kNone) both.insert(key);
     }
     const std::size_t fewer = std::min(filled_.size(), theirs.size());
     return fewer == 0 ? 0 : static_cast<double>(both.size()) / static_cast<double>(fewer);

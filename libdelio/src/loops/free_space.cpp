@@ -2,14 +2,14 @@
 
 #include <array>
 
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 
 namespace delio::loops {
 namespace {
 constexpr double kCell_m = HeightImage::kCell_m;
 
 std::uint64_t cellAt(double x, double y) {
-    return scan::voxelKey(scan::floorOf(x / kCell_m), scan::floorOf(y / kCell_m), 0);
+    return voxelKey(floorOf(x / kCell_m), floorOf(y / kCell_m), 0);
 }
 }  // namespace
 
@@ -24,7 +24,7 @@ FreeSpace::FreeSpace(const HeightImage& image, const Eigen::Matrix3Xf& points) {
         for (const double dx : kBeside)
             for (const double dy : kBeside)
                 isBare =
-                    isBare && standing_.find(cellAt(x + dx, y + dy)) == scan::VoxelIndex::kNone;
+                    isBare && standing_.find(cellAt(x + dx, y + dy)) == VoxelIndex::kNone;
         if (isBare) bare_.insert(cellAt(x, y));
     }
 }
@@ -37,9 +37,9 @@ double FreeSpace::builtOn(const HeightImage& other, const Eigen::Isometry3d& pos
         if ((other.bands()[static_cast<std::size_t>(i)] & kUpright) != kUpright) continue;
         const Eigen::Vector3d at = pose * Eigen::Vector3d(cells(0, i), cells(1, i), 0);
         const auto cell = cellAt(at.x(), at.y());
-        const bool isBare = bare_.find(cell) != scan::VoxelIndex::kNone;
+        const bool isBare = bare_.find(cell) != VoxelIndex::kNone;
         bare += isBare;
-        seen += isBare || standing_.find(cell) != scan::VoxelIndex::kNone;
+        seen += isBare || standing_.find(cell) != VoxelIndex::kNone;
     }
     return seen > 0 ? bare / seen : 0;
 }

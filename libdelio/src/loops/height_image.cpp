@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "bands.h"
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 
 namespace delio::loops {
 namespace {
@@ -17,7 +17,7 @@ constexpr double kGround_m = 0.3;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::uint64_t keyAt(double x, double y, double size) {
-    return scan::voxelKey(scan::floorOf(x / size), scan::floorOf(y / size), 0);
+    return voxelKey(floorOf(x / size), floorOf(y / size), 0);
 }
 
 /** One bit for each of 0.3 to 1, 2, 4, 8 m and more above the ground. */
@@ -160,7 +160,7 @@ HeightImage::HeightImage(const Eigen::Matrix3Xf& points) {
         heights_.push_back(lowest(blocks[i]));
     }
     centres.clear();
-    scan::VoxelIndex cells;
+    VoxelIndex cells;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const auto p = points.col(i);
         const auto band = bandOf(static_cast<double>(p.z()) - groundAt(p.x(), p.y()));
@@ -204,7 +204,7 @@ Eigen::Matrix3Xd aboveGround(const Eigen::Matrix3Xf& points) {
 
 double HeightImage::groundAt(double x, double y) const {
     const auto number = groundIndex_.find(keyAt(x, y, kBlock_m));
-    return number == scan::VoxelIndex::kNone ? kNone : heights_[number];
+    return number == VoxelIndex::kNone ? kNone : heights_[number];
 }
 
 std::vector<Shift> shiftsOf(const HeightImage& image, const HeightImage& other, double yaw,

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "../core/checkpoint.h"
-#include "../core/portable_math.h"
+#include "core/portable_math.h"
 #include "delio/core/geometry.h"
 #include "places.h"
 

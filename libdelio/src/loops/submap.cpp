@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/voxel_grid.h"
 #include "delio/core/geometry.h"
-#include "delio/scan/spin_axis.h"
-#include "delio/scan/voxel_grid.h"
+#include "odometry/spin_axis.h"
 
 namespace delio::loops {
 namespace {
@@ -108,7 +108,7 @@ Submap SubmapBuilder::merged() const {
     submap.key = key.node;
     submap.last = parts_.back().node;
     submap.driven = key.driven;
-    submap.level = scan::turnedUp(key.up).cast<double>().transpose();
+    submap.level = odometry::turnedUp(key.up).cast<double>().transpose();
     Eigen::Index count = 0, used = 0;
     for (const auto& part : parts_) count += part.points.cols();
     Eigen::Matrix3Xf all(3, count);
@@ -119,7 +119,7 @@ Submap SubmapBuilder::merged() const {
             if (part.points.col(k).norm() <= options_.radius)
                 all.col(used++) = placed * part.points.col(k);
     }
-    submap.points = scan::firstOfVoxels(all.leftCols(used), options_.spacing);
+    submap.points = firstOfVoxels(all.leftCols(used), options_.spacing);
     return submap;
 }
 

@@ -147,7 +147,7 @@ void MapBuilder::putAside(const std::vector<float>& points, const CPointsMap* vi
                                                      : io::Spool(folder_, kWhat, kOption));
     scan.points = spool_->append(points);
     if (!view) return;
-    const auto packed = scan::RangeImage(finitePoints(*view), options_.removal.cell_deg).packed();
+    const auto packed = odometry::RangeImage(finitePoints(*view), options_.removal.cell_deg).packed();
     scan.viewFirstRow = packed.firstRow;
     scan.view = map::putAside(packed, *spool_);
 }

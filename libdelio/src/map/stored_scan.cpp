@@ -6,7 +6,7 @@ namespace delio::map {
 // The spool holds floats: two ranges in each, and their number in the first.
 static_assert(sizeof(float) == 2 * sizeof(std::uint16_t));
 
-io::Spool::Place putAside(const scan::PackedRanges& view, io::Spool& spool) {
+io::Spool::Place putAside(const odometry::PackedRanges& view, io::Spool& spool) {
     const auto count = static_cast<std::uint32_t>(view.ranges_cm.size());
     io::Spool::Floats floats(1 + (view.ranges_cm.size() + 1) / 2);
     std::memcpy(floats.data(), &count, sizeof(count));
@@ -15,11 +15,11 @@ io::Spool::Place putAside(const scan::PackedRanges& view, io::Spool& spool) {
     return spool.append(floats);
 }
 
-scan::PackedRanges readView(const StoredScan& scan, const io::Spool& spool) {
+odometry::PackedRanges readView(const StoredScan& scan, const io::Spool& spool) {
     const auto floats = spool.read(scan.view);
     std::uint32_t count = 0;
     std::memcpy(&count, floats.data(), sizeof(count));
-    scan::PackedRanges view{scan.viewFirstRow, std::vector<std::uint16_t>(count)};
+    odometry::PackedRanges view{scan.viewFirstRow, std::vector<std::uint16_t>(count)};
     if (count > 0)
         std::memcpy(view.ranges_cm.data(), &floats[1], count * sizeof(view.ranges_cm[0]));
     return view;

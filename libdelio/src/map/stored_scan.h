@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "../io/spool.h"
-#include "delio/scan/range_image.h"
+#include "odometry/range_image.h"
 
 namespace delio::map {
 /** A scan that was put aside on the disk. */
@@ -25,6 +25,6 @@ struct StoredScan {
     io::Spool::Place stillPoints() const { return {points.offset, 4 * still}; }
 };
 
-io::Spool::Place putAside(const scan::PackedRanges& view, io::Spool& spool);
-scan::PackedRanges readView(const StoredScan& scan, const io::Spool& spool);
+io::Spool::Place putAside(const odometry::PackedRanges& view, io::Spool& spool);
+odometry::PackedRanges readView(const StoredScan& scan, const io::Spool& spool);
 }  // namespace delio::map

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "../core/principal_axes.h"
-#include "delio/scan/voxel_table.h"
+#include "core/principal_axes.h"
+#include "core/voxel_table.h"
 
 namespace delio::map {
 namespace {
@@ -31,7 +31,7 @@ class FirstPoints {
             for (int y = -1; y <= 1; ++y)
                 for (int z = -1; z <= 1; ++z) {
                     const auto number = index_.find(keyOf(voxel + Voxel(x, y, z)));
-                    if (number != scan::VoxelIndex::kNone) visit(firsts_[number]);
+                    if (number != VoxelIndex::kNone) visit(firsts_[number]);
                 }
     }
 
@@ -44,7 +44,7 @@ class FirstPoints {
     }
 
     double size_;
-    scan::VoxelIndex index_;
+    VoxelIndex index_;
     std::vector<std::uint32_t> firsts_;
 };
 }  // namespace

@@ -102,7 +102,7 @@ Eigen::Vector3f VisibilityVotes::pointOf(const Voxel& voxel, const Cell& cell) c
         .cast<float>();
 }
 
-void VisibilityVotes::look(const scan::RangeImage& view, const Eigen::Isometry3d& sensorInWorld,
+void VisibilityVotes::look(const odometry::RangeImage& view, const Eigen::Isometry3d& sensorInWorld,
                            float reach_m) {
     // Farther away small things stand between two rings.
     constexpr float kGap_m = 0.7F, kNearest_m = 2;
@@ -120,8 +120,8 @@ void VisibilityVotes::look(const scan::RangeImage& view, const Eigen::Isometry3d
             const float range_m = point.norm();
             if (range_m < kNearest_m || range_m > farthest_m) return;
             const auto place = view.at(point, margin);
-            if (place == scan::Place::kFree) count(cell.free);
-            if (place == scan::Place::kTaken) count(cell.taken);
+            if (place == odometry::Place::kFree) count(cell.free);
+            if (place == odometry::Place::kTaken) count(cell.taken);
         });
     });
 }

@@ -8,23 +8,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/estimates.h"
+#include "core/voxel_grid.h"
 #include "delio/core/error.h"
-#include "delio/core/estimates.h"
 #include "delio/core/geometry.h"
 #include "delio/core/numbers.h"
 #include "delio/core/stopwatch.h"
 #include "delio/graph/pose_pdf.h"
-#include "delio/odometry/make_odometry.h"
-#include "delio/odometry/relocalisation.h"
-#include "delio/scan/voxel_grid.h"
-#include "delio/surfaces/surfaces.h"
+#include "delio/odometry/odometry.h"
+#include "odometry/initial_guess.h"
+#include "paper/normals.h"
 
 namespace delio {
 using mrpt::maps::CMetricMap;
 using mrpt::poses::CPose3DPDFGaussian;
 using mrpt::poses::CPosePDFGaussian;
-using planes::PlaneEstimate;
-using planes::PlaneMap;
+using odometry::PlaneEstimate;
+using odometry::PlaneMap;
 
 namespace {
 /** The finite points of a map; `which` names it in errors. */
@@ -65,9 +65,9 @@ class Alignment {
         : options_(options),
           from_(from),
           map_(options.planeMap),
-          points_(scan::voxelCentroids(to, options.scan_spacing).cast<double>()),
+          points_(voxelCentroids(to, options.scan_spacing).cast<double>()),
           surfaces_(surfacesOf(to)) {
-        map_.add(turn_ * scan::voxelCentroids(from, options.map_spacing).cast<double>());
+        map_.add(turn_ * voxelCentroids(from, options.map_spacing).cast<double>());
         if (map_.planes() == 0)
             throw Error("Aligner: the first map has no planes, of " + std::to_string(from.cols()) +
                         " points; it has to be a cloud of surfaces in 3D");
@@ -79,20 +79,20 @@ class Alignment {
     }
 
     PlaneEstimate fromEstimate(const Eigen::Isometry3d& guess) const {
-        return planes::registerToPlanes(map_, points_,
-                                        planes::priorOf(inMap(guess), options_.planes),
-                                        options_.first_kernel, options_.planes);
+        return odometry::registerToPlanes(map_, points_,
+                                          odometry::priorOf(inMap(guess), options_.planes),
+                                          options_.first_kernel, options_.planes);
     }
 
     PlaneEstimate searched(const Eigen::Isometry3d& guess) const {
-        return relocalise(map_, surfacesOf(from_), inMap(Eigen::Isometry3d::Identity()), points_,
-                          surfaces_, inMap(guess), options_.planes.search_radius, options_.planes,
-                          options_.pattern);
+        return odometry::relocalise(map_, surfacesOf(from_), inMap(Eigen::Isometry3d::Identity()),
+                                    points_, surfaces_, inMap(guess), options_.planes.search_radius,
+                                    options_.planes, options_.pattern);
     }
 
     double agreementAt(const PlaneEstimate& estimate) const {
-        return estimate.valid ? planes::agreement(map_, surfaces_, estimate.pose(),
-                                                  2 * options_.planes.last_kernel)
+        return estimate.valid ? odometry::agreement(map_, surfaces_, estimate.pose(),
+                                                    2 * options_.planes.last_kernel)
                               : 0;
     }
 
@@ -109,8 +109,8 @@ class Alignment {
     }
 
  private:
-    surfaces::SurfaceNormals surfacesOf(const Eigen::Matrix3Xf& points) const {
-        return surfaces::surfacesOf(points, options_.normals, options_.bilateral);
+    paper::SurfaceNormals surfacesOf(const Eigen::Matrix3Xf& points) const {
+        return paper::surfacesOf(points, options_.normals, options_.bilateral);
     }
     Eigen::Isometry3d inMap(const Eigen::Isometry3d& inFirst) const {
         return isometry(turn_ * inFirst.linear(), turn_ * inFirst.translation());
@@ -121,7 +121,7 @@ class Alignment {
     const Eigen::Matrix3d turn_ = mapTurn();
     PlaneMap map_;
     Eigen::Matrix3Xd points_;
-    surfaces::SurfaceNormals surfaces_;
+    paper::SurfaceNormals surfaces_;
 };
 
 void tell(const PlaneEstimate& estimate, double agreement, bool searched, double seconds,

@@ -1,11 +1,11 @@
-#include "delio/odometry/arrivals.h"
+#include "odometry/arrivals.h"
 
 #include <cmath>
 #include <cstring>
 
 #include "delio/core/geometry.h"
 
-namespace delio {
+namespace delio::odometry {
 namespace {
 /** Mixes the bits of `value` into `hash` (the finaliser of MurmurHash3). */
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
@@ -57,4 +57,4 @@ std::string reasonToSkip(const Arrival& arrival, const LinearPrediction& predict
         motion.translation().norm() < kSlow_m && angleOf(motion.linear()) < kSlow_rad;
     return isSlow ? "" : kCopy;
 }
-}  // namespace delio
+}  // namespace delio::odometry

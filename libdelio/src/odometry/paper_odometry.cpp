@@ -1,24 +1,74 @@
-#include "delio/odometry/paper_odometry.h"
+#include "odometry/paper_odometry.h"
+#include "odometry/reporting.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "../paper/line_matches.h"
+#include "core/scan_trajectory.h"
+#include "core/voxel_grid.h"
 #include "delio/core/geometry.h"
-#include "delio/core/motion.h"
 #include "delio/core/stopwatch.h"
-#include "delio/scan/deskew.h"
-#include "delio/scan/spin_axis.h"
+#include "odometry/deskew.h"
+#include "odometry/search_points.h"
+#include "odometry/spin_axis.h"
+#include "paper/line_registration.h"
 
-namespace delio {
+namespace delio::odometry {
+
+CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
+                          const PointCheckOptions& options, const PointMapOptions& map) {
+    CheckPoints check{{}, PointMap(map), upright};
+    const Eigen::Matrix3Xf fine = voxelCentroids(points, options.map_spacing);
+    check.map.add(fine.cast<double>());
+    check.points = firstOfVoxels(fine, options.point_spacing).cast<double>();
+    return check;
+}
+
+PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
+                            const Eigen::Isometry3d& found, const Eigen::Isometry3d& predicted,
+                            double reach, const PointCheckOptions& options,
+                            const PointRegistrationOptions& registration) {
+    const auto& points = to.points;
+    Eigen::Isometry3d rest = predicted;  // a rotation that was found may be off by much
+    rest.translation().setZero();
+    const auto moved = pointsOff(from.map, points, rest, options.rest);
+    const auto shareOf = [&](const Eigen::Isometry3d& pose) {
+        return shareAt(from.map, moved, pose, registration.last_kernel);
+    };
+    PointEstimate best;
+    double most = 0;
+    const auto compare = [&](const PointEstimate& placed) {
+        const double share = placed.valid ? shareOf(placed.pose) : 0;
+        if (share <= most) return;
+        most = share;
+        best = placed;
+    };
+    const double kernel = registration.least_kernel;
+    compare(registerToPoints(from.map, points, found, kernel, registration));
+    if (most < options.min_share || !agree(best.pose, found, options)) {
+        compare(registerToPoints(from.map, points, predicted, kernel, registration));
+        compare(searchPoints(from.map, points, rest, reach, to.upright, registration));
+    }
+    const auto least = options.min_moved * static_cast<double>(points.cols());
+    best.valid = static_cast<double>(moved.cols()) >= least && most >= options.min_share &&
+                 most > shareOf(found);
+    return best;
+}
+
+bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b,
+           const PointCheckOptions& options) {
+    return (a.translation() - b.translation()).norm() <= options.believed &&
+           angleOf(a.linear().transpose() * b.linear()) <= options.believed_deg * M_PI / 180;
+}
+
 namespace {
 constexpr double kDeg = M_PI / 180;
 
-/** Runs a stage and notes its time. */
+/** Runs a stage and adds its time. */
 template <typename Work>
 auto stage(const char* name, Step& step, const Work& work) {
-    step.times_ms.emplace_back(name, 0);
-    return timed(step.times_ms.back().second, work);
+    const StageTimer timer(step, name);
+    return work();
 }
 
 /** The registration's own times and figures. */
@@ -170,15 +220,14 @@ Eigen::Matrix3f PaperOdometry::upright() const {
 }
 
 /** Section III and IV-A: the pattern of the normals, and the lines. */
-std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const scan::PointCloud& cloud,
+std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const PointCloud& cloud,
                                                             Step& step) const {
     auto features = std::make_shared<PaperFeatures>();
     features->options = options_;
-    const auto raw = stage("normals", step, [&] {
-        return surfaces::estimateNormals(cloud.points, options_->normals);
-    });
-    const auto normals = stage(
-        "bilateral", step, [&] { return surfaces::filterBilaterally(raw, options_->bilateral); });
+    const auto raw = stage("normals", step,
+                           [&] { return paper::estimateNormals(cloud.points, options_->normals); });
+    const auto normals = stage("bilateral", step,
+                               [&] { return paper::filterBilaterally(raw, options_->bilateral); });
     features->pattern =
         stage("outliers", step, [&] { return paper::removeOutliers(normals, options_->outliers); });
     std::size_t modes = 0;  // 0 where they are not needed
@@ -237,17 +286,17 @@ Step PaperOdometry::process(const Scan& scan) {
     unregistered_s_ += interval.elapsed_s;
     const Eigen::Isometry3d predicted = prediction_.predict(interval.duration_s);
     auto cloud = stage("preprocess", step, [&] {
-        auto made = scan::preprocess(scan, options_->scan);
-        if (!upright_) upright_ = scan::uprightOf(made.points);
-        made.rings = scan::neighbouringRings(made, upright());  // before points move
+        auto made = preprocess(scan, options_->scan);
+        if (!upright_) upright_ = uprightOf(made.points);
+        made.rings = neighbouringRings(made, upright());  // before points move
         step.deskewed = !made.times_s.empty();
         if (step.deskewed)
             made.points =
-                scan::deskew(made.points, made.times_s, Motion::of(predicted, interval.duration_s));
+                deskew(made.points, made.times_s, Motion::of(predicted, interval.duration_s));
         return made;
     });
     const std::string skipped = reference_ ? reasonToSkip(arrival, prediction_) : "";
-    const auto features = extract(skipped.empty() ? cloud : scan::PointCloud{}, step);
+    const auto features = extract(skipped.empty() ? cloud : PointCloud{}, step);
     ++scans_;
     const bool usable =
         features->pattern.directions.cols() > 0 && features->lines.midpoints.cols() > 0;
@@ -285,4 +334,4 @@ Step PaperOdometry::process(const Scan& scan) {
     step.used = {std::move(cloud.points), std::move(cloud.indices), {}};
     return step;
 }
-}  // namespace delio
+}  // namespace delio::odometry

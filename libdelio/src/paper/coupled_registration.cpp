@@ -1,10 +1,10 @@
-#include "delio/paper/coupled_registration.h"
+#include "paper/coupled_registration.h"
 
 #include <Eigen/Dense>
 #include <vector>
 
 #include "delio/core/geometry.h"
-#include "line_matches.h"
+#include "paper/line_registration.h"
 
 namespace delio::paper {
 CoupledEstimate registerCoupled(const LineCloud& from, const LineCloud& to,

@@ -1,7 +1,6 @@
-#include "delio/paper/line_cloud.h"
+#include "paper/line_cloud.h"
 
 #include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -55,16 +54,6 @@ std::vector<Line> shortestOf(const Eigen::Matrix3Xf& points, const std::vector<E
     return lines;
 }
 }  // namespace
-
-std::vector<OptionField> LineCloudOptions::fields() const {
-    return {
-        {"sectors", &LineCloudOptions::sectors, "sectors of azimuth in the polar grid", 1, 3600},
-        {"drawn", &LineCloudOptions::drawn, "random lines drawn in each bin", 1, 10000},
-        {"kept", &LineCloudOptions::kept, "shortest lines kept of those", 1, 10000},
-        {"max_length", &LineCloudOptions::max_length, "m; longer lines are not kept", 0.01, 1000},
-        {"seed", &LineCloudOptions::seed,
-         "seed of the draw; scan i of a drive is drawn with seed + i", 0, 4294967295.0}};
-}
 
 LineCloud drawLines(const Eigen::Matrix3Xf& points, const std::vector<std::uint16_t>& rings,
                     const LineCloudOptions& options) {

@@ -1,14 +1,77 @@
-#include "delio/paper/line_registration.h"
+#include "paper/line_registration.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "../core/portable_math.h"
-#include "line_matches.h"
+#include "core/portable_math.h"
 
 namespace delio::paper {
+LineMatcher::LineMatcher(const LineCloud& from) : from_(from), tree_(from.midpoints) {}
+
+LineMatcher::Found LineMatcher::find(const Eigen::Vector3f& at) const {
+    Found found;
+    found.at = at;
+    std::array<float, Found::kMost> squared{};
+    found.count = tree_.nearest(at, Found::kMost, found.nearest.data(), squared.data());
+    found.others_m = found.count == Found::kMost ? std::sqrt(squared.back())
+                                                 : std::numeric_limits<float>::infinity();
+    return found;
+}
+
+Match LineMatcher::nearestOf(const Found& found, const Eigen::Vector3f& at) const {
+    Match best;
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < found.count; ++i) {
+        const std::uint32_t from = found.nearest[i];
+        const float squared =
+            (from_.midpoints.col(static_cast<Eigen::Index>(from)) - at).squaredNorm();
+        if (squared >= least) continue;
+        least = squared;
+        best.from = from;
+    }
+    best.distance = std::sqrt(least);
+    return best;
+}
+
+std::vector<Match> LineMatcher::matches(const LineCloud& to, const Eigen::Vector3d& t,
+                                        double farthest) {
+    const auto count = static_cast<std::size_t>(to.midpoints.cols());
+    std::vector<Match> matches(count);
+    if (from_.midpoints.cols() == 0) return matches;
+    found_.resize(count);
+    const Eigen::Vector3f moved = t.cast<float>();
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 128),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                              Found& found = found_[i];
+                              const Eigen::Vector3f at =
+                                  to.midpoints.col(static_cast<Eigen::Index>(i)) + moved;
+                              Match nearest = nearestOf(found, at);
+                              if (!(nearest.distance + (at - found.at).norm() < found.others_m)) {
+                                  found = find(at);
+                                  nearest = nearestOf(found, at);
+                              }
+                              if (nearest.distance <= static_cast<float>(farthest))
+                                  matches[i] = nearest;
+                          }
+                      });
+    return matches;
+}
+
+double meanDistance(const std::vector<Match>& matches) {
+    double distances = 0, count = 0;
+    for (const auto& match : matches)
+        if (match.distance >= 0) {
+            distances += static_cast<double>(match.distance);
+            count += 1;
+        }
+    return distances / std::max(count, 1.0);
+}
+
 namespace {
 /** Lines are never taken to lie nearer to each other than this: the same scan twice leaves no
  *  residual at all, but a covariance has to be one. */
@@ -157,44 +220,6 @@ LineCloud everyNth(const LineCloud& lines, Eigen::Index n) {
     return some;
 }
 }  // namespace
-
-std::vector<OptionField> LineRegistrationOptions::fields() const {
-    return {
-        {"centroids", &LineRegistrationOptions::centroids,
-         "true: each step is the difference of the closest points' centroids; false: where "
-         "those steps end"},
-        {"min_angle_deg", &LineRegistrationOptions::min_angle_deg,
-         "deg; lines at a smaller angle count as parallel", 0.01, 90},
-        {"short_length", &LineRegistrationOptions::short_length,
-         "m; pairs of lines much shorter than this (centroids = false) hardly count: noise turns "
-         "their common normal",
-         0, 10},
-        {"max_distance", &LineRegistrationOptions::max_distance,
-         "m; midpoints farther apart are never a pair", 0.01, 1000},
-        {"max_iterations", &LineRegistrationOptions::max_iterations, "pairings at most", 1, 10000},
-        {"converged", &LineRegistrationOptions::converged, "m; a smaller step ends the iteration",
-         0, 10},
-        {"min_matches", &LineRegistrationOptions::min_matches,
-         "pairs that are needed; fewer: predicted", 3, 1e6},
-        {"min_observability", &LineRegistrationOptions::min_observability,
-         "0 to 1; a direction that the lines fix less keeps the prediction", 0, 1},
-        {"independent_share", &LineRegistrationOptions::independent_share,
-         "share of the pairs that count as independent in the covariance: lines share surfaces",
-         1e-6, 1},
-        {"overlap_distance", &LineRegistrationOptions::overlap_distance,
-         "m; lines whose midpoints are nearer to each other lie on a surface that both scans see",
-         0, 100},
-        {"prior_sigma", &LineRegistrationOptions::prior_sigma,
-         "m; the motion model's error along such a direction in 0.1 s; in more time more", 1e-6,
-         100},
-        {"search_speed", &LineRegistrationOptions::search_speed,
-         "m/s; where the motion is not known, what can be driven at this speed is searched", 0,
-         1000},
-        {"search_radius", &LineRegistrationOptions::search_radius, "m; but no farther than this", 0,
-         50},
-        {"search_step", &LineRegistrationOptions::search_step, "m; distance between those starts",
-         0.1, 50}};
-}
 
 ClosestPoints closestPoints(const Eigen::Vector3d& Ps, const Eigen::Vector3d& us,
                             const Eigen::Vector3d& Pt, const Eigen::Vector3d& ut,

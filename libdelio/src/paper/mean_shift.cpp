@@ -1,14 +1,13 @@
-#include "delio/paper/mean_shift.h"
+#include "paper/mean_shift.h"
 
 #include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "../core/kd_tree.h"
-#include "../core/portable_math.h"
-#include "delio/paper/sphere.h"
-#include "delio/scan/voxel_grid.h"
+#include "core/kd_tree.h"
+#include "core/portable_math.h"
+#include "core/voxel_grid.h"
+#include "paper/sphere.h"
 
 namespace delio::paper {
 namespace {
@@ -53,9 +52,8 @@ Mode climb(const Eigen::Matrix3Xf& directions, const KdTree& tree, const Eigen::
     return mode;
 }
 
-surfaces::SurfaceNormals subset(const surfaces::SurfaceNormals& normals,
-                                const std::vector<Eigen::Index>& of) {
-    surfaces::SurfaceNormals result;
+SurfaceNormals subset(const SurfaceNormals& normals, const std::vector<Eigen::Index>& of) {
+    SurfaceNormals result;
     result.directions = normals.directions(Eigen::all, of);
     result.planarity = normals.planarity(of);
     return result;
@@ -63,35 +61,12 @@ surfaces::SurfaceNormals subset(const surfaces::SurfaceNormals& normals,
 
 /** One direction a cell: the centroid, whose weight is the mean of the weights. */
 void thin(Pattern& pattern, double cell) {
-    const auto cells = scan::numberVoxels(pattern.directions, cell);
-    const auto [weights, counts] = scan::sumsOf<1>(pattern.weights.transpose(), cells);
-    pattern.directions = scan::sumsOf<3>(pattern.directions, cells).sums.colwise().normalized();
+    const auto cells = numberVoxels(pattern.directions, cell);
+    const auto [weights, counts] = sumsOf<1>(pattern.weights.transpose(), cells);
+    pattern.directions = sumsOf<3>(pattern.directions, cells).sums.colwise().normalized();
     pattern.weights = weights.cwiseQuotient(counts).transpose();
 }
 }  // namespace
-
-std::vector<OptionField> MeanShiftOptions::fields() const {
-    return {{"min_pattern", &MeanShiftOptions::min_pattern,
-             "normals that outlier removal has to leave; fewer: modes are sought", 0, 1e6},
-            {"min_observability", &MeanShiftOptions::min_observability,
-             "0 to 1; modes are also sought where what is left fixes an axis less than this", 0, 1},
-            {"seed_spacing_deg", &MeanShiftOptions::seed_spacing_deg,
-             "deg; distance of the seeds on the sphere", 1, 90},
-            {"window_deg", &MeanShiftOptions::window_deg, "deg; apex angle of the conical window",
-             1, 180},
-            {"max_iterations", &MeanShiftOptions::max_iterations, "steps from a seed at most", 1,
-             10000},
-            {"converged_deg", &MeanShiftOptions::converged_deg,
-             "deg; a smaller step ends the iteration", 0, 10},
-            {"merge_deg", &MeanShiftOptions::merge_deg, "deg; modes nearer to each other are one",
-             0, 90},
-            {"min_support", &MeanShiftOptions::min_support,
-             "normals that a mode's window has to hold", 1, 1e6},
-            {"ball_deg", &MeanShiftOptions::ball_deg, "deg; normals this near to a mode are taken",
-             0.1, 90},
-            {"cell_deg", &MeanShiftOptions::cell_deg,
-             "deg; of which one direction a cell of the sphere is kept", 0.01, 30}};
-}
 
 std::vector<Mode> seekModes(const Eigen::Matrix3Xf& directions, const MeanShiftOptions& options) {
     const KdTree tree(directions);
@@ -118,7 +93,7 @@ bool needsModes(const Pattern& pattern, const MeanShiftOptions& options) {
            axesOf(pattern).eigenvalues()[0] < options.min_observability;
 }
 
-Pattern patternOfModes(const surfaces::SurfaceNormals& normals, const std::vector<Mode>& modes,
+Pattern patternOfModes(const SurfaceNormals& normals, const std::vector<Mode>& modes,
                        const MeanShiftOptions& options, const OutlierRemovalOptions& outliers) {
     const KdTree tree(normals.directions);
     Pattern all;

@@ -1,15 +1,14 @@
-#include "delio/paper/outlier_removal.h"
+#include "paper/outlier_removal.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
 
-#include "../core/kd_tree.h"
+#include "core/kd_tree.h"
 
 namespace delio::paper {
 namespace {
@@ -101,31 +100,7 @@ void keepOnly(const Numbers& kept, Pattern& pattern) {
 }
 }  // namespace
 
-std::vector<OptionField> OutlierRemovalOptions::fields() const {
-    return {{"rounds", &OutlierRemovalOptions::rounds,
-             "times that outliers are looked for; 0: not at all", 0, 100},
-            {"first_neighbours", &OutlierRemovalOptions::first_neighbours,
-             "neighbours on the sphere in the first round", 1, 1e4},
-            {"last_neighbours", &OutlierRemovalOptions::last_neighbours,
-             "neighbours on the sphere in the last round", 1, 1e4},
-            {"alpha", &OutlierRemovalOptions::alpha,
-             "standard deviations above the mean that still belong", 0, 100}};
-}
-
-double OutlierRemovalOptions::neighboursOf(unsigned round) const {
-    const double step = rounds > 1 ? static_cast<double>(round) / (rounds - 1) : 0;
-    return first_neighbours + step * (static_cast<double>(last_neighbours) - first_neighbours);
-}
-
-OutlierRemovalOptions OutlierRemovalOptions::firstRounds(unsigned count) const {
-    OutlierRemovalOptions first = *this;
-    first.rounds = std::min(count, rounds);
-    if (first.rounds > 0)
-        first.last_neighbours = static_cast<unsigned>(std::lround(neighboursOf(first.rounds - 1)));
-    return first;
-}
-
-Pattern patternOf(const surfaces::SurfaceNormals& normals) {
+Pattern patternOf(const SurfaceNormals& normals) {
     return {normals.directions, normals.planarity,
             static_cast<std::size_t>(normals.directions.cols()), 0, normals.points};
 }
@@ -143,8 +118,7 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Pattern& pattern) {
     return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(mean);
 }
 
-Pattern removeOutliers(const surfaces::SurfaceNormals& normals,
-                       const OutlierRemovalOptions& options) {
+Pattern removeOutliers(const SurfaceNormals& normals, const OutlierRemovalOptions& options) {
     Pattern pattern = patternOf(normals);
     if (options.rounds == 0) return pattern;
     const auto neighboursOf = [&](unsigned round) {

@@ -1,8 +1,7 @@
-#include "delio/paper/pattern_registration.h"
+#include "paper/pattern_registration.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -11,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "../core/kd_tree.h"
+#include "core/kd_tree.h"
+#include "core/principal_axes.h"
+#include "core/voxel_grid.h"
 #include "delio/core/geometry.h"
-#include "delio/core/kabsch.h"
-#include "delio/scan/voxel_grid.h"
-#include "weighted_directions.h"
+#include "paper/weighted_directions.h"
 
 namespace delio::paper {
 namespace {
@@ -142,12 +141,11 @@ Pairing pairDensities(const std::vector<WeightedDirections>& neighbours, const P
 Pattern condensed(const Pattern& pattern, double kernel_deg,
                   const PatternRegistrationOptions& options) {
     const double cell_deg = std::max(options.cell_deg, kernel_deg / 4);
-    const auto cells = scan::numberVoxels(pattern.directions, cell_deg * kDeg);
+    const auto cells = numberVoxels(pattern.directions, cell_deg * kDeg);
     Pattern result;
     result.normals = pattern.normals;
-    result.directions =
-        scan::sumsOf<3>(pattern.directions * pattern.weights.asDiagonal(), cells).sums;
-    result.weights = scan::sumsOf<1>(pattern.weights.transpose(), cells).sums.transpose();
+    result.directions = sumsOf<3>(pattern.directions * pattern.weights.asDiagonal(), cells).sums;
+    result.weights = sumsOf<1>(pattern.weights.transpose(), cells).sums.transpose();
     result.directions.colwise().normalize();
     return result;
 }
@@ -227,43 +225,6 @@ void settle(const Pattern& to, const Eigen::Matrix3d& predicted,
     estimate.rotation = predicted * rotationExp(correction);
 }
 }  // namespace
-
-std::vector<OptionField> PatternRegistrationOptions::fields() const {
-    return {
-        {"kernel_deg", &PatternRegistrationOptions::kernel_deg,
-         "deg; first width of the kernel that correlates the densities; 0: nearest neighbours", 0,
-         90},
-        {"last_kernel_deg", &PatternRegistrationOptions::last_kernel_deg,
-         "deg; width to which the kernel is halved", 0.01, 90},
-        {"cell_deg", &PatternRegistrationOptions::cell_deg,
-         "deg; normals in one cell of the sphere are merged (kernel only)", 0.01, 30},
-        {"max_iterations", &PatternRegistrationOptions::max_iterations, "pairings at most", 1,
-         10000},
-        {"converged_deg", &PatternRegistrationOptions::converged_deg,
-         "deg; a smaller step ends the iteration", 0, 10},
-        {"min_normals", &PatternRegistrationOptions::min_normals,
-         "normals that each pattern needs; fewer: predicted", 3, 1e6},
-        {"min_observability", &PatternRegistrationOptions::min_observability,
-         "0 to 1; an axis that the pattern fixes less keeps the prediction", 0, 1},
-        {"max_correction_deg", &PatternRegistrationOptions::max_correction_deg,
-         "deg; a rotation farther than this from the prediction is not believed", 0.1, 180},
-        {"independent_share", &PatternRegistrationOptions::independent_share,
-         "share of the normals that count as independent in the covariance: neighbours share "
-         "points",
-         1e-6, 1},
-        {"view_distance", &PatternRegistrationOptions::view_distance,
-         "m; this far from each other two scans see so different parts of the surfaces that the "
-         "standard deviation has doubled",
-         0.01, 1e9},
-        {"prior_sigma_deg", &PatternRegistrationOptions::prior_sigma_deg,
-         "deg; the motion model's error on such an axis", 1e-6, 180}};
-}
-
-void PatternRegistrationOptions::check(const std::string& section) const {
-    if (kernel_deg > 0)  // 0: nearest neighbours
-        requireOrder(section + ".last_kernel_deg", last_kernel_deg, section + ".kernel_deg",
-                     kernel_deg);
-}
 
 RotationEstimate registerPatterns(const Pattern& from, const Pattern& to,
                                   const Eigen::Matrix3d& predicted,

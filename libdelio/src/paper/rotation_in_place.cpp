@@ -1,18 +1,17 @@
-#include "delio/paper/rotation_in_place.h"
+#include "paper/rotation_in_place.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "../core/kd_tree.h"
-#include "../core/portable_math.h"
+#include "core/kd_tree.h"
+#include "core/portable_math.h"
+#include "core/principal_axes.h"
 #include "delio/core/geometry.h"
-#include "delio/core/kabsch.h"
-#include "weighted_directions.h"
+#include "paper/weighted_directions.h"
 
 namespace delio::paper {
 namespace {
@@ -88,30 +87,6 @@ Eigen::Matrix3d keepOpenAxes(const RotationEstimate& found, const Eigen::Matrix3
     return found.rotation * rotationExp(correction);
 }
 }  // namespace
-
-std::vector<OptionField> RotationInPlaceOptions::fields() const {
-    return {{"rounds", &RotationInPlaceOptions::rounds,
-             "times that the rotation is found again from the normals at the same places, and the "
-             "translation after it; 0: not at all",
-             0, 100},
-            {"place_sigma", &RotationInPlaceOptions::place_sigma,
-             "m; width of the kernel over the distance of two normals' places", 0.01, 100},
-            {"kernel_deg", &RotationInPlaceOptions::kernel_deg,
-             "deg; first width of the kernel over the angle of two normals", 0.01, 90},
-            {"last_kernel_deg", &RotationInPlaceOptions::last_kernel_deg,
-             "deg; width to which that kernel is halved", 0.01, 90},
-            {"min_pairs", &RotationInPlaceOptions::min_pairs,
-             "pairs that are needed; fewer: the pattern's rotation stays", 3, 1e6},
-            {"max_iterations", &RotationInPlaceOptions::max_iterations,
-             "weightings of the pairs at most", 1, 10000},
-            {"converged_deg", &RotationInPlaceOptions::converged_deg,
-             "deg; a smaller step ends the iteration", 0, 10}};
-}
-
-void RotationInPlaceOptions::check(const std::string& section) const {
-    requireOrder(section + ".last_kernel_deg", last_kernel_deg, section + ".kernel_deg",
-                 kernel_deg);
-}
 
 RotationEstimate registerInPlace(const Pattern& from, const Pattern& to,
                                  const RotationEstimate& found, const Eigen::Vector3d& translation,

@@ -1,10 +1,11 @@
-#include "delio/paper/sphere.h"
-#include "../core/portable_math.h"
+#include "paper/sphere.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "core/portable_math.h"
 
 namespace delio::paper {
 Eigen::Vector3d sphereLog(const Eigen::Vector3d& at, const Eigen::Vector3d& n) {

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../paper/line_matches.h"
 #include "delio/map/colormap.h"
 #include "legend.h"
+#include "paper/line_registration.h"
 #include "wide_line.h"
 
 namespace delio::picture {

@@ -10,9 +10,9 @@
 
 #include "band_viewports.h"
 #include "bands.h"
+#include "core/chunked.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/core/large_memory.h"
 #include "delio/picture/png.h"
 #include "eye_dome.h"
 #include "framing.h"

@@ -3,8 +3,8 @@
 #include <fstream>
 #include <ostream>
 
-#include "../core/portable_math.h"
 #include "../io/table_cells.h"
+#include "core/portable_math.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/io/output_file.h"

@@ -12,8 +12,8 @@
 #include "delio/localisation/join_maps.h"
 #include "delio/run/doubts.h"
 #include "delio/run/run_folder.h"
-#include "delio/scan/preprocess.h"
 #include "io/side_file.h"
+#include "odometry/preprocess.h"
 
 namespace delio::run {
 namespace {
@@ -107,7 +107,7 @@ RunRow Run::process(const Scan& scan, double read_ms) {
     row.report = slam_.process(scan);
     row.points = row.report.step.used.indices.size();
     if (row.points == 0 && !row.report.step.reason.empty()) {
-        const auto why = scan::whyNoneIsLeft(scan, record_.options.scan());
+        const auto why = odometry::whyNoneIsLeft(scan, record_.options.scan());
         if (!why.empty()) row.report.step.reason = why;
     }
     row.report.step.used = {};

@@ -8,9 +8,9 @@
 #include <ostream>
 #include <string_view>
 
+#include "core/percentile.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
-#include "delio/core/percentile.h"
 #include "delio/io/output_file.h"
 #include "delio/run/doubts.h"
 #include "delio/version.h"

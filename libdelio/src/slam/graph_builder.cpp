@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../core/checkpoint.h"
-#include "delio/odometry/make_odometry.h"
+#include "delio/odometry/odometry.h"
 
 namespace delio {
 GraphBuilder::State GraphBuilder::state() const {

@@ -9,7 +9,7 @@
 #include "../core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
-#include "delio/scan/spin_axis.h"
+#include "odometry/spin_axis.h"
 
 namespace delio {
 LoopCloser::LoopCloser(const loops::SubmapOptions& submaps, const loops::LoopOptions& loops,
@@ -20,7 +20,7 @@ LoopCloser::LoopCloser(const loops::SubmapOptions& submaps, const loops::LoopOpt
 void LoopCloser::add(const SlamScan& scan) {
     const auto& points = scan.step.used.points;
     if (!upIsKnown_ && points.cols() > 0) {
-        up_ = scan::upIn(scan.scan.sensorPose, points);
+        up_ = odometry::upIn(scan.scan.sensorPose, points);
         upIsKnown_ = true;
     }
     // The pose of a scan that was not registered is a guess.

@@ -1,4 +1,4 @@
-#include "delio/core/approximate_atan2.h"
+#include "core/portable_math.h"
 
 #include <gtest/gtest.h>
 

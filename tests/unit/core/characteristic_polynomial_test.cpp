@@ -1,4 +1,4 @@
-#include "core/characteristic_polynomial.h"
+#include "core/principal_axes.h"
 
 #include <gtest/gtest.h>
 

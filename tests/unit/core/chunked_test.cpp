@@ -1,4 +1,4 @@
-#include "delio/core/chunked.h"
+#include "core/chunked.h"
 
 #include <gtest/gtest.h>
 

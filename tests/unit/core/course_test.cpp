@@ -1,11 +1,10 @@
-#include "delio/core/course.h"
+#include "core/scan_trajectory.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "delio/core/error.h"
-#include "delio/core/pose_table.h"
 #include "tangents.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "delio/core/large_memory.h"
+#include "core/chunked.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "delio/core/motion.h"
+#include "core/scan_trajectory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "delio/core/percentile.h"
+#include "core/percentile.h"
 
 #include <gtest/gtest.h>
 

@@ -10,9 +10,9 @@ using namespace delio;
 constexpr double kDeg = M_PI / 180;
 
 /** Walls that look these ways (degrees), the first the broadest; and the ground. */
-surfaces::SurfaceNormals wallsAt(const std::vector<double>& azimuths_deg, double turned_deg = 0) {
+paper::SurfaceNormals wallsAt(const std::vector<double>& azimuths_deg, double turned_deg = 0) {
     const auto count = static_cast<Eigen::Index>(azimuths_deg.size());
-    surfaces::SurfaceNormals walls;
+    paper::SurfaceNormals walls;
     walls.directions.resize(3, 60 * count);
     walls.planarity.setOnes(60 * count);
     for (Eigen::Index i = 0; i < 60 * count; ++i) {
@@ -51,12 +51,12 @@ TEST(Azimuths, OfBlocksHaveSeveralTurnsTheNearerFirst) {
 }
 
 TEST(Azimuths, OfGroundAloneSayNothing) {
-    surfaces::SurfaceNormals ground;
+    paper::SurfaceNormals ground;
     ground.directions = Eigen::Vector3f::UnitZ().replicate(1, 100);
     ground.planarity.setOnes(100);
     const loops::Azimuths here(ground), walls(wallsAt({10}));
     EXPECT_TRUE(here.turnsOf(walls, 0, 1, 3).empty());
     EXPECT_TRUE(walls.turnsOf(here, 0, 1, 3).empty());
-    EXPECT_TRUE(loops::Azimuths(surfaces::SurfaceNormals{}).turnsOf(walls, 0, 1, 3).empty());
+    EXPECT_TRUE(loops::Azimuths(paper::SurfaceNormals{}).turnsOf(walls, 0, 1, 3).empty());
 }
 }  // namespace

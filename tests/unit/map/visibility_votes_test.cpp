@@ -20,7 +20,7 @@ TEST(VisibilityVotes, APointJustBelowABorderOfItsVoxelStaysThere) {
         wall.col(i) = Eigen::Vector3f(0.05F * static_cast<float>(i % 81 - 40), 20,
                                       0.05F * static_cast<float>(i / 81 - 40));
     for (int k = 0; k < 4; ++k)
-        votes.look(scan::RangeImage(wall, options.cell_deg), Eigen::Isometry3d::Identity(), 60);
+        votes.look(odometry::RangeImage(wall, options.cell_deg), Eigen::Isometry3d::Identity(), 60);
     votes.decide();
     EXPECT_TRUE(votes.isDynamic(point));
 }

@@ -1,13 +1,13 @@
-#include "delio/movers/dynamic_objects.h"
+#include "odometry/dynamic_objects.h"
 
 #include <gtest/gtest.h>
 
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 #include "ring_scan.h"
 
 namespace {
 using namespace delio;
-using movers::DynamicObjects;
+using odometry::DynamicObjects;
 using test::poseAt;
 
 /** A street of houses and parked cars along x, without an end that matters. */
@@ -40,7 +40,7 @@ class MovingObjectsInAStreet : public testing::Test {
         test::Scene scene = street();
         scene.insert(scene.end(), things.begin(), things.end());
         const auto all = ringScan(scene, pose, {48, 900, -24, 4, 0.02}, noise_).points;
-        const auto points = scan::voxelCentroids(all, 0.25);
+        const auto points = voxelCentroids(all, 0.25);
         stamp_s_ += step_s;
         const auto told = objects_.detect(objects_.see(points, all), predicted, stamp_s_);
         objects_.remember(pose);

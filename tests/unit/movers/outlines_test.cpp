@@ -1,4 +1,4 @@
-#include "delio/movers/outlines.h"
+#include "odometry/dynamic_objects.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 namespace {
 using namespace delio;
-using movers::Outlines;
+using odometry::Outlines;
 
 TEST(Outlines, ThoseAboutAPlaceAreFoundByTheirX) {
     Outlines outlines;
@@ -35,7 +35,7 @@ TEST(Outlines, AllAtOnceAreAsAlikeAsOneByOne) {
     std::vector<std::size_t> found, expected;
     outlines.findAlike({100, 900}, asked, found);
     for (std::size_t i = 100; i < 900; ++i)
-        if (movers::alike(sizes[i], asked)) expected.push_back(i);
+        if (odometry::alike(sizes[i], asked)) expected.push_back(i);
     EXPECT_EQ(found, expected);
     EXPECT_GT(found.size(), 100U);
     EXPECT_LT(found.size(), 700U);

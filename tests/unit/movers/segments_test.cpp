@@ -1,4 +1,4 @@
-#include "delio/movers/segments.h"
+#include "odometry/dynamic_objects.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 
 namespace {
 using namespace delio;
-using movers::Segment;
-using movers::SegmentOptions;
+using odometry::Segment;
+using SegmentOptions;
 
 Eigen::Matrix3Xf seen(const test::Scene& things,
                       const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {

@@ -1,4 +1,4 @@
-#include "delio/odometry/adaptive_kernel.h"
+#include "odometry/motion_model.h"
 
 #include <gtest/gtest.h>
 

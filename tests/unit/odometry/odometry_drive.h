@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/odometry/make_odometry.h"
+#include "delio/odometry/odometry.h"
 #include "delio/slam/options.h"
 #include "poses.h"
 #include "ring_scan.h"

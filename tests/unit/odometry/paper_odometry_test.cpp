@@ -1,4 +1,4 @@
-#include "delio/odometry/paper_odometry.h"
+#include "odometry/paper_odometry.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,4 +1,4 @@
-#include "delio/odometry/plane_odometry.h"
+#include "odometry/pipeline.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "delio/scan/deskew.h"
+#include "odometry/deskew.h"
 #include "delio/slam/options.h"
 #include "poses.h"
 #include "ring_scan.h"
@@ -125,9 +125,9 @@ void skew(Scan& scan, const Isometry3d& step) {
         scan.points->getPointFast(i, points(0, static_cast<Eigen::Index>(i)),
                                   points(1, static_cast<Eigen::Index>(i)),
                                   points(2, static_cast<Eigen::Index>(i)));
-    auto times_s = scan::azimuthTimes(points, 0.1);
+    auto times_s = odometry::azimuthTimes(points, 0.1);
     for (auto& time_s : times_s) time_s = -time_s;  // deskew() undoes the motion
-    const Scan skewed = test::scanOf(scan::deskew(points, times_s, Motion::of(step, 0.1)));
+    const Scan skewed = test::scanOf(odometry::deskew(points, times_s, Motion::of(step, 0.1)));
     scan.points = skewed.points;
     for (const float time_s : times_s) scan.times_s.push_back(-time_s);
 }

@@ -1,4 +1,4 @@
-#include "delio/odometry/point_check.h"
+#include "odometry/paper_odometry.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ CheckPoints at(const Eigen::Isometry3d& pose, std::uint32_t seed, const test::Sc
                          Eigen::Matrix3f::Identity(), {}, {});
 }
 
-points::PointEstimate check(const test::Scene& before, const test::Scene& now,
+odometry::PointEstimate check(const test::Scene& before, const test::Scene& now,
                             const Eigen::Isometry3d& moved, const Eigen::Isometry3d& found) {
     const PointCheckOptions options;
     return checkByPoints(at(poseAtDeg(0, 0, 0, 0), 1, before), at(moved, 2, now), found,

@@ -1,4 +1,4 @@
-#include "delio/odometry/prediction.h"
+#include "odometry/motion_model.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "delio/odometry/arrivals.h"
+#include "odometry/arrivals.h"
 #include "odometry_drive.h"
 
 // Scans that drivers and recorders repeat: a copy says nothing about the motion.

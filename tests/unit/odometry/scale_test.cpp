@@ -1,4 +1,4 @@
-#include "delio/odometry/scale.h"
+#include "odometry/preprocess.h"
 
 #include <gtest/gtest.h>
 

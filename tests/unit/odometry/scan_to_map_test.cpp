@@ -1,9 +1,9 @@
-#include "delio/odometry/scan_to_map.h"
+#include "odometry/local_map.h"
 
 #include <gtest/gtest.h>
 
-#include "delio/odometry/plane_odometry_options.h"
-#include "delio/scan/voxel_grid.h"
+#include "delio/core/odometry_options.h"
+#include "core/voxel_grid.h"
 #include "poses.h"
 #include "ring_scan.h"
 
@@ -18,19 +18,19 @@ class AScanInAYard : public testing::Test {
     AScanInAYard() {
         test::Noise noise;
         const auto fineAt = [&](const Eigen::Isometry3d& pose) -> Eigen::Matrix3Xf {
-            return scan::voxelCentroids(
+            return voxelCentroids(
                 test::ringScan(test::yard(), pose, {48, 900, -24, 8, 0.01}, noise).points,
                 options.tracker.map_spacing);
         };
         for (const double x : {0.0, 1.0}) map.add(fineAt(poseAt(x, 0, 0)), poseAt(x, 0, 0));
         view.fine = fineAt(there);
-        view.coarse = scan::firstOfVoxels(view.fine, options.tracker.point_spacing).cast<double>();
-        view.thinned = scan::voxelCentroids(view.fine, options.tracker.scan_spacing).cast<double>();
+        view.coarse = firstOfVoxels(view.fine, options.tracker.point_spacing).cast<double>();
+        view.thinned = voxelCentroids(view.fine, options.tracker.scan_spacing).cast<double>();
     }
 
     /** As points would have placed it, of which `share` fitted. */
     Eigen::Isometry3d refined(const Eigen::Isometry3d& placedAt, double share) const {
-        points::PointEstimate placed;
+        odometry::PointEstimate placed;
         placed.pose = placedAt;
         placed.share = share;
         placed.matches = 500;

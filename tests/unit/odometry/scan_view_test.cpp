@@ -1,4 +1,4 @@
-#include "delio/odometry/scan_view.h"
+#include "odometry/deskew.h"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ Motion movingAt(const Eigen::Vector3d& velocity, const Eigen::Vector3d& turning)
 }
 
 TEST(ScanView, PointsWithoutTimesStayAsTheyAre) {
-    scan::PointCloud cloud;
+    odometry::PointCloud cloud;
     cloud.points = anyPoints(50);
     const ScanView view = undistorted(cloud, movingAt({20, 1, 0}, {0, 0, 1}));
     EXPECT_EQ(view.points, cloud.points);
@@ -31,7 +31,7 @@ TEST(ScanView, PointsWithoutTimesStayAsTheyAre) {
 }
 
 TEST(ScanView, PointsWithTimesComeToWhereTheyAreAtTheStamp) {
-    scan::PointCloud cloud;
+    odometry::PointCloud cloud;
     cloud.points = anyPoints(3);
     cloud.times_s = {-0.05F, 0, 0.025F};
     // Straight on: by the way to the stamp.

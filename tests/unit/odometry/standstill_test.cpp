@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "odometry/standstill.h"
+#include "odometry/local_map.h"
 #include "odometry_drive.h"
 
 // A sensor that stands is recognised as such, and not where a moving one would see the same.
@@ -64,9 +64,9 @@ Eigen::Matrix3Xd wallsAt(const std::vector<double>& x) {
 }
 
 bool standsBetween(const std::vector<double>& walls, double moved_m, bool isVertical) {
-    points::PointMap map{points::PointMapOptions{}};
+    odometry::PointMap map{PointMapOptions{}};
     map.add(wallsAt(walls));
-    surfaces::SurfaceNormals scan;
+    paper::SurfaceNormals scan;
     scan.points = wallsAt(walls).cast<float>();
     scan.directions = Eigen::Vector3f::UnitX().replicate(1, scan.points.cols());
     return showsStandstill(map, scan, test::poseAt(moved_m, 0, 0),

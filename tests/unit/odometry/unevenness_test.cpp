@@ -1,4 +1,4 @@
-#include "delio/odometry/unevenness.h"
+#include "odometry/motion_model.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ using namespace delio;
 using test::poseAt;
 
 /** After so many increments that were off by `metres` and `radians`. */
-planes::CoursePrior after(int count, double metres, double radians, double most = 1) {
+odometry::CoursePrior after(int count, double metres, double radians, double most = 1) {
     Unevenness unevenness;
     for (int i = 0; i < count; ++i)
         unevenness.observe(poseAt(2, 0, 0, 0.1) * poseAt(0, metres, 0, 0, radians),

@@ -1,4 +1,4 @@
-#include "delio/paper/line_cloud.h"
+#include "paper/line_cloud.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 using namespace delio;
 using paper::drawLines;
 using paper::LineCloud;
-using paper::LineCloudOptions;
+using LineCloudOptions;
 
 test::RingScan scan() {
     test::Noise noise;

@@ -1,4 +1,4 @@
-#include "paper/line_matches.h"
+#include "paper/line_registration.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ using paper::LineMatcher;
 /** Midpoints of lines of a scan taken at a place in a room, in the room's axes; with other lines
  *  for each place, as odometry draws them. */
 LineCloud linesAt(double x, double y) {
-    paper::LineCloudOptions options;
+    LineCloudOptions options;
     options.seed = static_cast<std::uint32_t>(1e4 + 1e3 * (x + y));
     test::Noise noise;
     const auto pose = test::poseAt(x, y, 0, 0.4);

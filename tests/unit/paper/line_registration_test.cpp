@@ -1,18 +1,18 @@
-#include "delio/paper/line_registration.h"
+#include "paper/line_registration.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "delio/paper/coupled_registration.h"
+#include "paper/coupled_registration.h"
 #include "ring_scan.h"
 
 namespace {
 using namespace delio;
 using paper::closestPoints;
 using paper::LineCloud;
-using paper::LineRegistrationOptions;
+using LineRegistrationOptions;
 using paper::registerLines;
 using paper::searchTranslation;
 
@@ -21,7 +21,7 @@ using paper::searchTranslation;
 LineCloud linesAt(const test::Scene& scene, const Eigen::Vector3d& place, double noise_m = 0) {
     // Turned, so that neither rings nor sectors lie along the walls.
     const auto pose = test::poseAt(place.x(), place.y(), place.z(), 0.4);
-    paper::LineCloudOptions options;
+    LineCloudOptions options;
     test::Noise noise(static_cast<std::uint32_t>(1e4 + 1e3 * (place.x() + place.y())));
     options.seed = static_cast<std::uint32_t>(1e4 + 1e3 * (place.x() + place.y() + place.z()));
     const auto scan = test::ringScan(scene, pose, {40, 540, -24, 14, noise_m}, noise);

@@ -1,11 +1,11 @@
-#include "delio/paper/mean_shift.h"
+#include "paper/mean_shift.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "delio/paper/sphere.h"
+#include "paper/sphere.h"
 #include "ring_scan.h"
 
 namespace {
@@ -23,7 +23,7 @@ double degrees(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 /** `each` normals about each axis, then `scattered` anywhere. */
-surfaces::SurfaceNormals planted(const std::vector<Eigen::Vector3d>& axes,
+paper::SurfaceNormals planted(const std::vector<Eigen::Vector3d>& axes,
                                  const std::vector<Eigen::Index>& each, double spread_deg,
                                  Eigen::Index scattered) {
     test::Noise noise;
@@ -33,7 +33,7 @@ surfaces::SurfaceNormals planted(const std::vector<Eigen::Vector3d>& axes,
             all.push_back(
                 (axes[a] + spread_deg * kDeg * noise.normals()).normalized().cast<float>());
     for (Eigen::Index i = 0; i < scattered; ++i) all.push_back(noise.direction().cast<float>());
-    surfaces::SurfaceNormals normals;
+    paper::SurfaceNormals normals;
     normals.directions.resize(3, static_cast<Eigen::Index>(all.size()));
     for (std::size_t i = 0; i < all.size(); ++i)
         normals.directions.col(static_cast<Eigen::Index>(i)) = all[i];
@@ -97,7 +97,7 @@ TEST(Sphere, TheGridCoversAllOfIt) {
 TEST(MeanShift, FindsPlantedModesAmongScatteredNormals) {
     const auto axes = fourAxes();
     const auto normals = planted(axes, {2000, 300, 100, 60}, 2, 300);
-    paper::MeanShiftOptions options;
+    MeanShiftOptions options;
     options.min_support = 30;
     const auto modes = seekModes(normals.directions, options);
     ASSERT_EQ(modes.size(), 4U);
@@ -119,7 +119,7 @@ double densityAt(const Eigen::Matrix3Xf& directions, const Eigen::Vector3d& at, 
 
 TEST(MeanShift, ModesAreMaximaOfTheDensityByBruteForce) {
     const auto normals = planted(fourAxes(), {400, 200, 200, 200}, 4, 100);
-    paper::MeanShiftOptions options;
+    MeanShiftOptions options;
     options.min_support = 50;
     const auto modes = seekModes(normals.directions, options);
     ASSERT_GE(modes.size(), 4U);
@@ -152,8 +152,8 @@ TEST(MeanShift, TheAntipodeIsAnotherMode) {
 TEST(MeanShift, SmallStructuresBesideTheGroundAreKept) {
     const auto axes = fourAxes();
     const auto normals = planted(axes, {8000, 40, 40, 0}, 1.5, 20);
-    const paper::OutlierRemovalOptions outliers;
-    const paper::MeanShiftOptions options;
+    const OutlierRemovalOptions outliers;
+    const MeanShiftOptions options;
     const auto bare = paper::removeOutliers(normals, outliers);
     ASSERT_TRUE(paper::needsModes(bare, options));
     EXPECT_LT(paper::axesOf(bare).eigenvalues()[0], 0.02);
@@ -169,7 +169,7 @@ TEST(MeanShift, SmallStructuresBesideTheGroundAreKept) {
 
 TEST(MeanShift, NothingToFind) {
     EXPECT_TRUE(seekModes(Eigen::Matrix3Xf(3, 0), {}).empty());
-    surfaces::SurfaceNormals none;
+    paper::SurfaceNormals none;
     none.directions.resize(3, 0);
     none.planarity.resize(0);
     const auto pattern = paper::patternOfModes(none, {}, {}, {});

@@ -1,4 +1,4 @@
-#include "delio/paper/outlier_removal.h"
+#include "paper/outlier_removal.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 
 namespace {
 using namespace delio;
-using paper::OutlierRemovalOptions;
+using OutlierRemovalOptions;
 using paper::removeOutliers;
-using surfaces::SurfaceNormals;
+using paper::SurfaceNormals;
 
 constexpr Eigen::Index kBlob = 600, kScattered = 30;
 

@@ -1,4 +1,4 @@
-#include "delio/paper/pattern_registration.h"
+#include "paper/pattern_registration.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace {
 using namespace delio;
 using paper::Pattern;
-using paper::PatternRegistrationOptions;
+using PatternRegistrationOptions;
 using paper::registerPatterns;
 using test::degreesBetween;
 using test::rotationAbout;

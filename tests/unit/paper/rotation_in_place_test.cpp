@@ -1,11 +1,11 @@
-#include "delio/paper/rotation_in_place.h"
+#include "paper/rotation_in_place.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "delio/core/error.h"
-#include "delio/paper/pattern_registration.h"
+#include "paper/pattern_registration.h"
 #include "poses.h"
 #include "ring_scan.h"
 
@@ -84,7 +84,7 @@ TEST(RotationInPlace, WithoutPairsThePatternsRotationStays) {
 }
 
 TEST(RotationInPlace, KernelsHaveToNarrow) {
-    paper::RotationInPlaceOptions options;
+    RotationInPlaceOptions options;
     options.last_kernel_deg = 5;
     EXPECT_THROW(options.check("rotation_in_place"), Error);
 }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "delio/slam/options.h"
-#include "delio/surfaces/surfaces.h"
+#include "paper/normals.h"
 #include "ring_scan.h"
 
 namespace {
@@ -16,7 +16,7 @@ paper::Pattern patternSeenFrom(const Eigen::Isometry3d& pose, const PaperOdometr
                                test::Noise& noise) {
     const test::Sensor sensor{64, 1440, -24, 4, 0.02};
     const auto points = test::ringScan(test::yard(), pose, sensor, noise).points;
-    const auto normals = surfaces::surfacesOf(points, options.normals, options.bilateral);
+    const auto normals = paper::surfacesOf(points, options.normals, options.bilateral);
     return paper::removeOutliers(normals, options.outliers);
 }
 

@@ -1,4 +1,4 @@
-#include "delio/planes/course_registration.h"
+#include "odometry/register_trajectory.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 namespace {
 using namespace delio;
 using Eigen::Isometry3d;
-using planes::CoursePrior;
-using planes::TimedPoints;
+using odometry::CoursePrior;
+using odometry::TimedPoints;
 using test::degreesBetween;
 using test::poseAt;
 
@@ -24,9 +24,9 @@ Isometry3d swung(double time_s) {
                     Eigen::Vector3d(1.2 * time_s, 0, 0) + 0.05 * sines);
 }
 
-planes::PlaneMap mapOf(const test::Scene& scene) {
+odometry::PlaneMap mapOf(const test::Scene& scene) {
     test::Noise noise;
-    planes::PlaneMap map{planes::PlaneMapOptions{}};
+    odometry::PlaneMap map{PlaneMapOptions{}};
     for (int i = 0; i < 8; ++i) {
         const Isometry3d pose = poseAt(0.2 * i - 1, 0.1, 0, 0.3 * i, 0.02 * i, 0.01 * i);
         const Eigen::Matrix3Xd points =
@@ -83,7 +83,7 @@ TEST(CourseRegistration, FindsTheSwingWithinAScan) {
         const Course even = evenCourse(off);
         EXPECT_GT(worstOf(even).degrees, 1);
         const Off worst =
-            worstOf(planes::registerCourse(map, scan, even, kSince_s, kOfHand, 1, {}));
+            worstOf(odometry::registerCourse(map, scan, even, kSince_s, kOfHand, 1, {}));
         EXPECT_LT(worst.metres, 0.02);
         EXPECT_LT(worst.degrees, 0.12);
     }
@@ -91,7 +91,7 @@ TEST(CourseRegistration, FindsTheSwingWithinAScan) {
 
 TEST(CourseRegistration, StartsWhereItIsKnownToStart) {
     const auto found =
-        planes::registerCourse(mapOf(test::yard()), seen(test::yard(), 0),
+        odometry::registerCourse(mapOf(test::yard()), seen(test::yard(), 0),
                                evenCourse(poseAt(0, 0, 0)), kSince_s, kOfHand, 1, {});
     EXPECT_LT((found.at(-kSince_s).matrix() - swung(-kSince_s).matrix()).norm(), 1e-12);
 }
@@ -102,7 +102,7 @@ TEST(CourseRegistration, IsLedAstrayNoFartherThanIsLikely) {
     constexpr double kSigma_m = 0.01;
     const Course even = evenCourse(poseAt(0, 0, 0));
     const auto found =
-        planes::registerCourse(mapOf(test::corridor()), seen(test::corridor(), 0), even, kSince_s,
+        odometry::registerCourse(mapOf(test::corridor()), seen(test::corridor(), 0), even, kSince_s,
                                {kSigma_m, 0.02, kSigma_m, 0.1}, 1, {});
     for (const double time_s : {-0.05, 0.0, 0.05})
         EXPECT_NEAR(found.at(time_s).translation().x(), even.at(time_s).translation().x(),
@@ -112,7 +112,7 @@ TEST(CourseRegistration, IsLedAstrayNoFartherThanIsLikely) {
 
 TEST(CourseRegistration, AnEvenMotionStaysEvenWhereItIsKnownToBe) {
     const Course even = evenCourse(poseAt(0, 0, 0));
-    const auto found = planes::registerCourse(mapOf(test::yard()), seen(test::yard(), 0.01), even,
+    const auto found = odometry::registerCourse(mapOf(test::yard()), seen(test::yard(), 0.01), even,
                                               kSince_s, {1e-4, 1e-4, 1e-5, 1e-5}, 1, {});
     for (const double time_s : {-0.05, 0.0, 0.05})
         EXPECT_LT((found.at(time_s).matrix() - even.at(time_s).matrix()).norm(), 1e-2);
@@ -124,7 +124,7 @@ TEST(CourseRegistration, WithTooFewPointsTheCourseStays) {
         far{Eigen::Matrix3Xd::Constant(3, 500, 900), std::vector<double>(500, 0.01)};
     for (const auto& scan : {none, far}) {
         const auto found =
-            planes::registerCourse(mapOf(test::yard()), scan, even, kSince_s, kOfHand, 1, {});
+            odometry::registerCourse(mapOf(test::yard()), scan, even, kSince_s, kOfHand, 1, {});
         EXPECT_EQ(found.at(0.03).matrix(), even.at(0.03).matrix());
     }
 }

@@ -1,4 +1,4 @@
-#include "delio/planes/plane_map.h"
+#include "odometry/plane_map.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 
 namespace {
 using namespace delio;
-using planes::PlaneMap;
-using planes::PlaneMapOptions;
+using odometry::PlaneMap;
+using PlaneMapOptions;
 
 /** Points of the plane n.(p - q) = 0 about q, off it by `sigma`. */
 Eigen::Matrix3Xd patch(const Eigen::Vector3d& q, const Eigen::Vector3d& normal, double sigma,

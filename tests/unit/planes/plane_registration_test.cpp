@@ -1,21 +1,19 @@
-#include "delio/planes/plane_registration.h"
+#include "odometry/register_planes.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "delio/planes/plane_rotation.h"
-#include "delio/planes/plane_search.h"
-#include "delio/planes/plane_translation.h"
-#include "delio/scan/voxel_grid.h"
+#include "odometry/initial_guess.h"
+#include "core/voxel_grid.h"
 #include "ring_scan.h"
 
 namespace {
 using namespace delio;
-using planes::Correspondences;
-using planes::PlaneMap;
-using planes::PlaneRegistrationOptions;
+using odometry::Correspondences;
+using odometry::PlaneMap;
+using PlaneRegistrationOptions;
 using test::degreesBetween;
 using test::poseAt;
 using test::rotationAbout;
@@ -36,8 +34,8 @@ Correspondences matchesSeenFrom(const Eigen::Matrix3d& R, const Eigen::Vector3d&
 }
 
 /** The motion model's. */
-planes::Prior priorAt(const Eigen::Isometry3d& pose) {
-    return planes::priorOf(pose, PlaneRegistrationOptions{});
+odometry::Prior priorAt(const Eigen::Isometry3d& pose) {
+    return odometry::priorOf(pose, PlaneRegistrationOptions{});
 }
 
 // What decoupling means here: whatever the translation is, it does not move the rotation.
@@ -46,8 +44,8 @@ TEST(PlaneRotation, DoesNotDependOnTheTranslation) {
     const Eigen::Matrix3d truth = rotationAbout({1, 2, 3}, 20);
     const auto matches = matchesSeenFrom(truth, {3, -2, 1}, 0.01, noise);
     const Eigen::Matrix3d R = truth * rotationAbout({0, 1, 1}, 0.5);
-    const auto here = planes::rotationFromPlanes(matches, isometry(R, {3, -2, 1}));
-    const auto there = planes::rotationFromPlanes(matches, isometry(R, {-50, 70, 20}));
+    const auto here = odometry::rotationFromPlanes(matches, isometry(R, {3, -2, 1}));
+    const auto there = odometry::rotationFromPlanes(matches, isometry(R, {-50, 70, 20}));
     EXPECT_LT((here.step - there.step).norm(), 1e-9);
     EXPECT_GT(here.step.norm(), 0.008);
     EXPECT_TRUE(here.information.isApprox(there.information));
@@ -59,7 +57,7 @@ TEST(PlaneRotation, ConvergesToThePlantedRotationFromTenDegrees) {
     const auto matches = matchesSeenFrom(truth, {5, 6, 7}, 0, noise);
     Eigen::Matrix3d R = truth * rotationAbout({1, 1, -1}, 10);
     for (int i = 0; i < 10; ++i) {
-        const Eigen::Vector3d w = planes::rotationFromPlanes(matches, isometry(R, {0, 0, 0})).step;
+        const Eigen::Vector3d w = odometry::rotationFromPlanes(matches, isometry(R, {0, 0, 0})).step;
         if (w.norm() > 0) R = R * Eigen::AngleAxisd(w.norm(), w.normalized()).matrix();
     }
     EXPECT_LT(degreesBetween(R, truth), 1e-6);
@@ -69,15 +67,15 @@ TEST(PlaneTranslation, ItsStepAloneIsTheSame) {
     test::Noise noise;
     const auto matches = matchesSeenFrom(rotationAbout({1, 2, 3}, 20), {3, -2, 1}, 0.01, noise);
     const auto pose = poseAt(1, 2, 3, 0.1);
-    const auto all = planes::translationFromPlanes(matches, pose, priorAt(pose));
-    EXPECT_EQ(all.step, planes::stepFromPlanes(matches, pose, priorAt(pose)));
+    const auto all = odometry::translationFromPlanes(matches, pose, priorAt(pose));
+    EXPECT_EQ(all.step, odometry::stepFromPlanes(matches, pose, priorAt(pose)));
     EXPECT_GT(all.step.norm(), 0.1);
     EXPECT_TRUE(all.information.isApprox(all.information.transpose()));
 }
 
 /** Half the weighted squares of the residuals, with the best translation for each rotation. */
 double reducedCost(const Correspondences& matches, const Eigen::Matrix3d& R) {
-    const auto move = planes::translationFromPlanes(matches, isometry(R, {0, 0, 0}));
+    const auto move = odometry::translationFromPlanes(matches, isometry(R, {0, 0, 0}));
     double cost = 0;
     for (const auto& match : matches)
         cost += match.weight * std::pow(match.residual(R, move.step), 2) / 2;
@@ -88,7 +86,7 @@ TEST(PlaneRotation, InformationIsTheCurvatureOfTheCostWithoutTranslation) {
     test::Noise noise;
     const Eigen::Matrix3d truth = rotationAbout({0, 0, 1}, 40);
     const auto matches = matchesSeenFrom(truth, {1, 2, 3}, 0, noise);
-    const auto found = planes::rotationFromPlanes(matches, isometry(truth, {1, 2, 3}));
+    const auto found = odometry::rotationFromPlanes(matches, isometry(truth, {1, 2, 3}));
     constexpr double h = 1e-4;
     for (int k = 0; k < 3; ++k) {
         const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
@@ -105,7 +103,7 @@ TEST(PlaneTranslation, IsTheLeastSquaresSolution) {
     const Eigen::Matrix3d R = rotationAbout({1, 0, 2}, 15);
     const Eigen::Vector3d truth(3, -1, 0.5);
     const auto exact = matchesSeenFrom(R, truth, 0, noise);
-    EXPECT_LT((planes::translationFromPlanes(exact, isometry(R, {0, 0, 0})).step - truth).norm(),
+    EXPECT_LT((odometry::translationFromPlanes(exact, isometry(R, {0, 0, 0})).step - truth).norm(),
               1e-9);
     const auto noisy = matchesSeenFrom(R, truth, 0.05, noise);
     const auto cost = [&](const Eigen::Vector3d& t) {
@@ -113,7 +111,7 @@ TEST(PlaneTranslation, IsTheLeastSquaresSolution) {
         for (const auto& match : noisy) sum += match.weight * std::pow(match.residual(R, t), 2);
         return sum;
     };
-    const Eigen::Vector3d best = planes::translationFromPlanes(noisy, isometry(R, {0, 0, 0})).step;
+    const Eigen::Vector3d best = odometry::translationFromPlanes(noisy, isometry(R, {0, 0, 0})).step;
     for (int i = 0; i < 50; ++i) EXPECT_GT(cost(best + 1e-3 * noise.direction()), cost(best));
 }
 
@@ -125,7 +123,7 @@ TEST(PlaneTranslation, AnAxisThatNoNormalSeesIsLeftAlone) {
         match.normal.normalize();
         match.point = match.mean - Eigen::Vector3d(1, 1, 1);
     }
-    const auto found = planes::translationFromPlanes(matches, Eigen::Isometry3d::Identity());
+    const auto found = odometry::translationFromPlanes(matches, Eigen::Isometry3d::Identity());
     EXPECT_LT((found.step - Eigen::Vector3d(0, 1, 1)).norm(), 1e-9);
 }
 
@@ -134,10 +132,10 @@ TEST(PlanePrior, IsFusedByItsInformation) {
     test::Noise noise;
     const Eigen::Vector3d truth(1, 2, 3);
     const auto matches = matchesSeenFrom(Eigen::Matrix3d::Identity(), truth, 0, noise);
-    const auto alone = planes::translationFromPlanes(matches, Eigen::Isometry3d::Identity());
-    planes::Prior prior;  // at the origin
+    const auto alone = odometry::translationFromPlanes(matches, Eigen::Isometry3d::Identity());
+    odometry::Prior prior;  // at the origin
     prior.translation = alone.information.trace() / 3;
-    const auto fused = planes::translationFromPlanes(matches, Eigen::Isometry3d::Identity(), prior);
+    const auto fused = odometry::translationFromPlanes(matches, Eigen::Isometry3d::Identity(), prior);
     const Eigen::Vector3d expected =
         (alone.information + prior.translation * Eigen::Matrix3d::Identity())
             .ldlt()
@@ -151,11 +149,11 @@ TEST(PlanePrior, HoldsARotationThatNoPlaneSees) {
     test::Noise noise;
     auto matches = matchesSeenFrom(Eigen::Matrix3d::Identity(), {0, 0, 0}, 0, noise);
     for (auto& match : matches) match.normal = Eigen::Vector3d::UnitZ();  // yaw is not seen
-    planes::Prior prior;
+    odometry::Prior prior;
     prior.rotation = 1e-3 * Eigen::Matrix3d::Identity();
     const auto turned = isometry(rotationAbout({0, 0, 1}, 2), {0, 0, 0});
-    EXPECT_LT(planes::rotationFromPlanes(matches, turned).step.z(), 1e-9);
-    EXPECT_NEAR(planes::rotationFromPlanes(matches, turned, prior).step.z(), -2 * M_PI / 180, 1e-6);
+    EXPECT_LT(odometry::rotationFromPlanes(matches, turned).step.z(), 1e-9);
+    EXPECT_NEAR(odometry::rotationFromPlanes(matches, turned, prior).step.z(), -2 * M_PI / 180, 1e-6);
 }
 
 // Normals that are known badly see axes that they do not look along.
@@ -168,7 +166,7 @@ TEST(PlaneTranslation, SaysWhatUncertainNormalsPretend) {
         match.tilt = 0.01;
         weight += match.weight;
     }
-    const auto found = planes::translationFromPlanes(matches, Eigen::Isometry3d::Identity());
+    const auto found = odometry::translationFromPlanes(matches, Eigen::Isometry3d::Identity());
     EXPECT_NEAR(found.pretended(0, 0), 0.01 * weight, 1e-9);
     EXPECT_NEAR(found.pretended(2, 2), 0, 1e-9);
     EXPECT_NEAR(found.information(2, 2), weight, 1e-9);
@@ -183,8 +181,8 @@ Eigen::Matrix3Xf pointsSeenFrom(const test::Scene& scene, const Eigen::Isometry3
 
 /** The scene as one scan from the origin sees it. */
 PlaneMap mapOf(const test::Scene& scene, test::Noise& noise) {
-    PlaneMap map(planes::PlaneMapOptions{});
-    map.add(scan::voxelCentroids(pointsSeenFrom(scene, Eigen::Isometry3d::Identity(), noise), 0.25)
+    PlaneMap map(PlaneMapOptions{});
+    map.add(voxelCentroids(pointsSeenFrom(scene, Eigen::Isometry3d::Identity(), noise), 0.25)
                 .cast<double>());
     return map;
 }
@@ -193,14 +191,14 @@ TEST(Matcher, FindsTheSameAsOneThatKnowsNoEarlierPose) {
     test::Noise noise;
     const PlaneMap map = mapOf(test::yard(), noise);
     const Eigen::Matrix3Xd points =
-        scan::voxelCentroids(pointsSeenFrom(test::yard(), Eigen::Isometry3d::Identity(), noise),
+        voxelCentroids(pointsSeenFrom(test::yard(), Eigen::Isometry3d::Identity(), noise),
                              0.5)
             .cast<double>();
     constexpr double kKernel = 0.2, kPointSigma = 0.02;
-    planes::Matcher matcher(map, points, kPointSigma);
+    odometry::Matcher matcher(map, points, kPointSigma);
     for (const double x : {0.0, 0.001, 0.05, 1.0, 0.3, 0.0}) {
         const Eigen::Isometry3d pose = poseAt(x, -x / 2, 0, x / 10, 0, 0);
-        planes::Matcher anew(map, points, kPointSigma);
+        odometry::Matcher anew(map, points, kPointSigma);
         const auto found = matcher.at(pose, kKernel), wanted = anew.at(pose, kKernel);
         ASSERT_EQ(found.size(), wanted.size());
         EXPECT_GT(found.size(), 100U);
@@ -218,8 +216,8 @@ TEST(PlaneRegistration, FindsAScanInTheMap) {
     const PlaneMap map = mapOf(test::yard(), noise);
     const Eigen::Isometry3d truth = poseAt(0.8, 0.1, 0.02, 0.03, 0.004, -0.003);
     const Eigen::Matrix3Xd points =
-        scan::voxelCentroids(pointsSeenFrom(test::yard(), truth, noise), 0.5).cast<double>();
-    const auto found = planes::registerToPlanes(
+        voxelCentroids(pointsSeenFrom(test::yard(), truth, noise), 0.5).cast<double>();
+    const auto found = odometry::registerToPlanes(
         map, points, priorAt(isometry(rotationAbout({0, 0, 1}, 0.5), {0.5, 0, 0})), 1,
         PlaneRegistrationOptions{});
     ASSERT_TRUE(found.valid);
@@ -236,14 +234,14 @@ TEST(PlaneRegistration, TheSearchFindsWhatTheIterationCannot) {
     const PlaneMap map = mapOf(test::yard(), noise);
     const Eigen::Isometry3d truth = poseAt(3.2, -0.9, 0);
     const Eigen::Matrix3Xf scan = pointsSeenFrom(test::yard(), truth, noise);
-    const Eigen::Matrix3Xd points = scan::voxelCentroids(scan, 0.5).cast<double>();
-    const auto surfaces = surfaces::estimateNormals(scan, surfaces::NormalsOptions{});
-    const auto found = planes::searchInPlanes(map, points, surfaces, Eigen::Isometry3d::Identity(),
+    const Eigen::Matrix3Xd points = voxelCentroids(scan, 0.5).cast<double>();
+    const auto surfaces = paper::estimateNormals(scan, NormalsOptions{});
+    const auto found = odometry::searchInPlanes(map, points, surfaces, Eigen::Isometry3d::Identity(),
                                               4, PlaneRegistrationOptions{});
     ASSERT_TRUE(found.valid);
     EXPECT_LT((found.translation.translation - Eigen::Vector3d(3.2, -0.9, 0)).norm(), 0.02);
     const auto agreed = [&](const Eigen::Vector3d& t) {
-        return planes::agreement(map, surfaces, isometry(Eigen::Matrix3d::Identity(), t), 0.2);
+        return odometry::agreement(map, surfaces, isometry(Eigen::Matrix3d::Identity(), t), 0.2);
     };
     EXPECT_GT(agreed({3.2, -0.9, 0}), 1.5 * agreed({0, 0, 0}));
     EXPECT_LE(agreed({3.2, -0.9, 0}), 1);
@@ -253,9 +251,9 @@ TEST(PlaneRegistration, AlongACorridorThePredictionStays) {
     test::Noise noise;
     const PlaneMap map = mapOf(test::corridor(), noise);
     const Eigen::Matrix3Xd points =
-        scan::voxelCentroids(pointsSeenFrom(test::corridor(), poseAt(1, 0.2, 0.05), noise), 0.5)
+        voxelCentroids(pointsSeenFrom(test::corridor(), poseAt(1, 0.2, 0.05), noise), 0.5)
             .cast<double>();
-    const auto found = planes::registerToPlanes(map, points, priorAt(poseAt(0.6, 0, 0)), 1,
+    const auto found = odometry::registerToPlanes(map, points, priorAt(poseAt(0.6, 0, 0)), 1,
                                                 PlaneRegistrationOptions{});
     ASSERT_TRUE(found.valid);
     ASSERT_EQ(found.translation.unobservedAxes.cols(), 1);
@@ -268,12 +266,12 @@ TEST(PlaneRegistration, AlongACorridorThePredictionStays) {
 
 TEST(PlaneRegistration, WithoutPlanesThePredictionStays) {
     test::Noise noise;
-    const PlaneMap empty(planes::PlaneMapOptions{});
+    const PlaneMap empty(PlaneMapOptions{});
     const Eigen::Matrix3Xd points =
         pointsSeenFrom(test::yard(), Eigen::Isometry3d::Identity(), noise).cast<double>();
     const Eigen::Matrix3d R = rotationAbout({0, 0, 1}, 3);
     for (const auto& cloud : {points, Eigen::Matrix3Xd(3, 0)}) {
-        const auto found = planes::registerToPlanes(empty, cloud, priorAt(isometry(R, {1, 2, 3})),
+        const auto found = odometry::registerToPlanes(empty, cloud, priorAt(isometry(R, {1, 2, 3})),
                                                     1, PlaneRegistrationOptions{});
         EXPECT_FALSE(found.valid);
         EXPECT_EQ(found.rotation.rotation, R);

@@ -1,4 +1,4 @@
-#include "points/level_grid.h"
+#include "odometry/search_points.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 namespace {
 using namespace delio;
 using Eigen::Vector3d;
-using points::LevelSquare;
-using points::PointMap;
+using odometry::LevelSquare;
+using odometry::PointMap;
 
 /** A place off the origin, of a sensor that hangs askew, with places a step apart about it. */
 class LevelGrid : public ::testing::Test {
@@ -46,7 +46,7 @@ class LevelGrid : public ::testing::Test {
 TEST_F(LevelGrid, CountsAsLookingForEachPointFromEachPlaceDoes) {
     map_.add(middle_ * someCells(12, 1500));
     const Eigen::Matrix3Xd scan = someCells(10, 300);
-    const auto counts = points::countsFrom(square_, map_, scan);
+    const auto counts = odometry::countsFrom(square_, map_, scan);
     ASSERT_EQ(counts.rows(), 9);
     ASSERT_EQ(counts.cols(), 9);
     for (int x = -4; x <= 4; ++x)
@@ -61,7 +61,7 @@ TEST_F(LevelGrid, CountsAsLookingForEachPointFromEachPlaceDoes) {
 TEST_F(LevelGrid, MostAreCountedWhereTheScanWasTaken) {
     const Eigen::Matrix3Xd seen = someCells(12, 500);
     map_.add(placeAt(-3, 2) * seen);
-    const auto counts = points::countsFrom(square_, map_, seen);
+    const auto counts = odometry::countsFrom(square_, map_, seen);
     Eigen::Index x = 0, y = 0;
     EXPECT_EQ(counts.maxCoeff(&x, &y), 500U);
     EXPECT_EQ(x, 1);
@@ -72,13 +72,13 @@ TEST_F(LevelGrid, WhatIsTooFarOrTooHighIsNotCountedAndTakesNoMemory) {
     Eigen::Matrix3Xd far(3, 4);
     far << 1e6, 0, 0, 1, 0, -1e6, 0, 1, 0, 0, 1e6, 1;
     map_.add(middle_ * far);
-    const auto counts = points::countsFrom(square_, map_, far);
+    const auto counts = odometry::countsFrom(square_, map_, far);
     EXPECT_EQ(counts(4, 4), 1U);
 }
 
 TEST_F(LevelGrid, NothingIsCountedOfNothing) {
-    EXPECT_TRUE((points::countsFrom(square_, map_, someCells(5, 20)) == 0).all());
+    EXPECT_TRUE((odometry::countsFrom(square_, map_, someCells(5, 20)) == 0).all());
     map_.add(middle_ * someCells(5, 20));
-    EXPECT_TRUE((points::countsFrom(square_, map_, Eigen::Matrix3Xd(3, 0)) == 0).all());
+    EXPECT_TRUE((odometry::countsFrom(square_, map_, Eigen::Matrix3Xd(3, 0)) == 0).all());
 }
 }  // namespace

@@ -1,4 +1,4 @@
-#include "points/pairing.h"
+#include "odometry/register_points.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 
 namespace {
 using namespace delio;
-using points::Pairing;
+using odometry::Pairing;
 
 /** However it came to a pose, its pairs are the ones that are looked for from nothing. */
 TEST(Pairing, DoesNotDependOnWhatWasAskedBefore) {
     test::Noise noise;
-    points::PointMap map({});
+    odometry::PointMap map({});
     Eigen::Matrix3Xd points(3, 3000);
     for (Eigen::Index i = 0; i < points.cols(); ++i) points.col(i) = 5 * noise.normals();
     map.add(points);

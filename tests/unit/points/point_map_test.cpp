@@ -1,4 +1,4 @@
-#include "delio/points/point_map.h"
+#include "odometry/point_map.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 
 namespace {
 using namespace delio;
-using points::PointMap;
-using points::PointMapOptions;
+using odometry::PointMap;
+using PointMapOptions;
 
 Eigen::Matrix3Xd cloud(Eigen::Index count, double spread, test::Noise& noise) {
     Eigen::Matrix3Xd points(3, count);

@@ -1,16 +1,16 @@
-#include "delio/points/point_registration.h"
+#include "odometry/register_points.h"
 
 #include <gtest/gtest.h>
 
 #include "delio/core/geometry.h"
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 #include "ring_scan.h"
 
 namespace {
 using namespace delio;
-using points::PointMap;
-using points::PointMapOptions;
-using points::PointRegistrationOptions;
+using odometry::PointMap;
+using PointMapOptions;
+using PointRegistrationOptions;
 using test::degreesBetween;
 using test::poseAt;
 
@@ -18,7 +18,7 @@ using test::poseAt;
 const test::Sensor kSensor{16, 900, -15, 15, 0.02};
 
 Eigen::Matrix3Xd scanFrom(const Eigen::Isometry3d& pose, double spacing, test::Noise& noise) {
-    return scan::voxelCentroids(test::ringScan(test::yard(), pose, kSensor, noise).points, spacing)
+    return voxelCentroids(test::ringScan(test::yard(), pose, kSensor, noise).points, spacing)
         .cast<double>();
 }
 
@@ -32,7 +32,7 @@ TEST(PointRegistration, FindsAScanOfFewRings) {
     test::Noise noise;
     const PointMap map = mapOfYard(noise);
     const Eigen::Isometry3d truth = poseAt(0.8, 0.1, 0.02, 0.03);
-    const auto found = points::registerToPoints(map, scanFrom(truth, 1, noise), poseAt(0.5, 0, 0),
+    const auto found = odometry::registerToPoints(map, scanFrom(truth, 1, noise), poseAt(0.5, 0, 0),
                                                 1, PointRegistrationOptions{});
     ASSERT_TRUE(found.valid);
     EXPECT_LT((found.pose.translation() - truth.translation()).norm(), 0.1);
@@ -52,7 +52,7 @@ TEST(PointRegistration, TheSamePointsComeBackExactly) {
     const Eigen::Isometry3d truth = poseAt(0.1, -0.05, 0.02, 0.005, -0.003, 0.002);
     PointRegistrationOptions options;
     options.converged_m = 1e-9;
-    const auto found = points::registerToPoints(map, truth.inverse() * points,
+    const auto found = odometry::registerToPoints(map, truth.inverse() * points,
                                                 Eigen::Isometry3d::Identity(), 0.5, options);
     ASSERT_TRUE(found.valid);
     EXPECT_LT((found.pose.matrix() - truth.matrix()).norm(), 1e-5);  // the map keeps floats
@@ -64,11 +64,11 @@ TEST(PointRegistration, WithTooFewPairsThePredictionStays) {
     const Eigen::Isometry3d predicted = poseAt(1, 2, 3, 0.1);
     const PointMap empty(PointMapOptions{});
     const auto nothing =
-        points::registerToPoints(empty, scanFrom(predicted, 1, noise), predicted, 1, {});
+        odometry::registerToPoints(empty, scanFrom(predicted, 1, noise), predicted, 1, {});
     EXPECT_FALSE(nothing.valid);
     EXPECT_TRUE(nothing.pose.isApprox(predicted));
     const auto nobody =
-        points::registerToPoints(mapOfYard(noise), Eigen::Matrix3Xd(3, 0), predicted, 1, {});
+        odometry::registerToPoints(mapOfYard(noise), Eigen::Matrix3Xd(3, 0), predicted, 1, {});
     EXPECT_FALSE(nobody.valid);
 }
 
@@ -78,9 +78,9 @@ TEST(PointRegistration, PointsThatAreOffAreTold) {
     Eigen::Matrix3Xd points(3, 3);
     points << 0, 10, 20, 0, 0, 0, 0, 0, 0;
     map.add(points.leftCols(2));
-    const auto off = points::pointsOff(map, points, Eigen::Isometry3d::Identity(), 0.5);
+    const auto off = odometry::pointsOff(map, points, Eigen::Isometry3d::Identity(), 0.5);
     ASSERT_EQ(off.cols(), 1);
     EXPECT_EQ(off(0, 0), 20);
-    EXPECT_NEAR(points::shareAt(map, points, Eigen::Isometry3d::Identity(), 0.5), 2.0 / 3, 1e-12);
+    EXPECT_NEAR(odometry::shareAt(map, points, Eigen::Isometry3d::Identity(), 0.5), 2.0 / 3, 1e-12);
 }
 }  // namespace

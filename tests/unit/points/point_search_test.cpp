@@ -1,8 +1,8 @@
-#include "delio/points/point_search.h"
+#include "odometry/search_points.h"
 
 #include <gtest/gtest.h>
 
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 #include "ring_scan.h"
 
 namespace {
@@ -10,9 +10,9 @@ using namespace delio;
 using Eigen::Isometry3d;
 using Eigen::Matrix3f;
 using Eigen::Vector3d;
-using points::PointMap;
-using points::PointMapOptions;
-using points::PointRegistrationOptions;
+using odometry::PointMap;
+using PointMapOptions;
+using PointRegistrationOptions;
 using test::poseAt;
 
 const test::Sensor kSensor{16, 900, -15, 15, 0.02};
@@ -20,7 +20,7 @@ const PointRegistrationOptions kOptions;
 
 Eigen::Matrix3Xd seenFrom(const test::Scene& scene, const Isometry3d& pose, double spacing,
                           test::Noise& noise) {
-    return scan::voxelCentroids(test::ringScan(scene, pose, kSensor, noise).points, spacing)
+    return voxelCentroids(test::ringScan(scene, pose, kSensor, noise).points, spacing)
         .cast<double>();
 }
 
@@ -50,7 +50,7 @@ test::Scene traffic(double x) {
     return scene;
 }
 
-double offBy(const points::PointEstimate& found, const Isometry3d& truth) {
+double offBy(const odometry::PointEstimate& found, const Isometry3d& truth) {
     return (found.pose.translation() - truth.translation()).norm();
 }
 
@@ -59,10 +59,10 @@ TEST(PointSearch, RingsOnTheGroundDoNotHideAMotionOfMetres) {
     constexpr double kMistaken_m = 0.5, kFound_m = 0.25, kReach_m = 5;
     for (const auto& moved : {poseAt(4, 0, 0), poseAt(-2, 3, 0), poseAt(3, -2, 0, 0.05)}) {
         const Pair pair = pairIn(test::yard(), moved);
-        const auto nearest = points::registerToPoints(pair.map, pair.scan, Isometry3d::Identity(),
+        const auto nearest = odometry::registerToPoints(pair.map, pair.scan, Isometry3d::Identity(),
                                                       kOptions.least_kernel, kOptions);
         EXPECT_GT(offBy(nearest, moved), kMistaken_m) << "nothing to search for";
-        const auto found = points::searchPoints(pair.map, pair.scan, Isometry3d::Identity(),
+        const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(),
                                                 kReach_m, Matrix3f::Identity(), kOptions);
         EXPECT_TRUE(found.valid);
         EXPECT_LT(offBy(found, moved), kFound_m) << moved.translation().transpose();
@@ -76,13 +76,13 @@ TEST(PointSearch, ATurnOfTwentyDegreesAboutAnyAxisIsFound) {
         Isometry3d moved = poseAt(0.1, 0, 0);
         moved.linear() = rotationExp(kTurn * axis);
         const Pair pair = pairIn(test::yard(), moved);
-        const auto nearest = points::registerToPoints(pair.map, pair.scan, Isometry3d::Identity(),
+        const auto nearest = odometry::registerToPoints(pair.map, pair.scan, Isometry3d::Identity(),
                                                       kOptions.least_kernel, kOptions);
         EXPECT_GT(test::degreesBetween(nearest.pose, moved), kMistaken_deg)
             << "nothing to search for";
         for (const double enough : {0.5, 2.0}) {  // with the first that fits, and by all of them
             const auto found =
-                points::searchTurns(pair.map, pair.scan, Isometry3d::Identity(), enough, kOptions);
+                odometry::searchTurns(pair.map, pair.scan, Isometry3d::Identity(), enough, kOptions);
             EXPECT_TRUE(found.valid);
             EXPECT_LT(offBy(found, moved), kFound_m) << axis.transpose();
             EXPECT_LT(test::degreesBetween(found.pose, moved), kFound_deg) << axis.transpose();
@@ -93,7 +93,7 @@ TEST(PointSearch, ATurnOfTwentyDegreesAboutAnyAxisIsFound) {
 TEST(PointSearch, WhereNothingFitsNoTurnIsFound) {
     const Pair pair = pairIn(test::yard(), Isometry3d::Identity());
     const Eigen::Matrix3Xd far = pair.scan.colwise() + Vector3d(500, 0, 0);
-    EXPECT_FALSE(points::searchTurns(pair.map, far, Isometry3d::Identity(), 0.5, kOptions).valid);
+    EXPECT_FALSE(odometry::searchTurns(pair.map, far, Isometry3d::Identity(), 0.5, kOptions).valid);
 }
 
 // The disc of starts lies level, whatever the axes of the points.
@@ -107,7 +107,7 @@ TEST(PointSearch, TheDiscIsLevelWhereUprightSaysSo) {
     map.add(
         rolled *
         test::ringScan(test::yard(), Isometry3d::Identity(), kSensor, noise).points.cast<double>());
-    const auto found = points::searchPoints(map, rolled * pair.scan, Isometry3d::Identity(),
+    const auto found = odometry::searchPoints(map, rolled * pair.scan, Isometry3d::Identity(),
                                             kReach_m, rolled.transpose().cast<float>(), kOptions);
     EXPECT_LT((rolled.transpose() * found.pose.translation() - moved.translation()).norm(),
               kFound_m);
@@ -115,7 +115,7 @@ TEST(PointSearch, TheDiscIsLevelWhereUprightSaysSo) {
 
 TEST(PointSearch, AStandingSensorStands) {
     const Pair pair = pairIn(test::yard(), Isometry3d::Identity());
-    const auto found = points::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), 5,
+    const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), 5,
                                             Matrix3f::Identity(), kOptions);
     EXPECT_TRUE(found.valid);
     EXPECT_LT(offBy(found, Isometry3d::Identity()), 0.03);
@@ -125,7 +125,7 @@ TEST(PointSearch, AStandingSensorStands) {
 TEST(PointSearch, ASensorBetweenCarsThatDriveOnStands) {
     for (const double driven : {0.8, 1.5, 3.0}) {
         const Pair pair = pairIn(traffic(0), Isometry3d::Identity(), traffic(driven));
-        const auto found = points::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), 5,
+        const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), 5,
                                                 Matrix3f::Identity(), kOptions);
         EXPECT_TRUE(found.valid);
         EXPECT_LT(offBy(found, Isometry3d::Identity()), 0.03) << driven;
@@ -143,7 +143,7 @@ TEST(PointSearch, PointsSeeAcrossACorridorAndNotAlongIt) {
     const Isometry3d pose = poseAt(1.5, 0, 0);
     const auto scan = seenFrom(test::corridor(), pose, 0.5, noise);
     const auto sees = [&](const Vector3d& axis) {
-        return points::pointsSee(map, scan, pose, axis, kProbe_m, kOptions);
+        return odometry::pointsSee(map, scan, pose, axis, kProbe_m, kOptions);
     };
     EXPECT_FALSE(sees(Vector3d::UnitX()));
     EXPECT_TRUE(sees(Vector3d::UnitY()));

@@ -1,4 +1,4 @@
-#include "delio/scan/deskew.h"
+#include "odometry/deskew.h"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ TEST(Deskew, PointsComeToWhereTheyAreSeenFromAtTheStamp) {
             const Eigen::Vector3d there = pose * seen.col(i).cast<double>();
             expected.col(i) = there.cast<float>();
         }
-        EXPECT_LT((scan::deskew(seen, times_s, motion) - expected).cwiseAbs().maxCoeff(), 1e-4);
+        EXPECT_LT((odometry::deskew(seen, times_s, motion) - expected).cwiseAbs().maxCoeff(), 1e-4);
     }
 }
 
@@ -56,7 +56,7 @@ TEST(Deskew, AzimuthTellsTheTimeOfASweepThatTurnsClockwiseFromTheBack) {
     points << 9, 0, 0, -9, -9,      // front, left, right, back coming from either side
         0, 9, -9, 0.001F, -0.001F,  //
         1, -2, 0, 3, 3;
-    const auto times_s = scan::azimuthTimes(points, 0.1);
+    const auto times_s = odometry::azimuthTimes(points, 0.1);
     const float expected[] = {0, -0.025F, 0.025F, -0.05F, 0.05F};
     for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(times_s[i], expected[i], 1e-4) << i;
 }

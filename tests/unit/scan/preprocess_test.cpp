@@ -1,4 +1,4 @@
-#include "delio/scan/preprocess.h"
+#include "odometry/preprocess.h"
 
 #include <gtest/gtest.h>
 #include <mrpt/core/bits_math.h>
@@ -10,8 +10,8 @@
 
 namespace {
 using namespace delio;
-using scan::preprocess;
-using scan::PreprocessOptions;
+using odometry::preprocess;
+using PreprocessOptions;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -29,17 +29,17 @@ TEST(Preprocess, WhatIsNotFiniteIsDroppedAndCounted) {
     ASSERT_EQ(cloud.points.cols(), 2);
     EXPECT_EQ(cloud.points.col(0), points.col(0));  // in the sensor's order, to the bit
     EXPECT_EQ(cloud.points.col(1), points.col(6));
-    EXPECT_EQ(scan::neighbouringRings(cloud).size(), 2U);
+    EXPECT_EQ(odometry::neighbouringRings(cloud).size(), 2U);
 }
 
 TEST(Preprocess, SaysWhyNoPointIsLeft) {
     const auto why = [](float x, float y) {
         Eigen::Matrix3Xf points(3, 2);
         points << x, x, y, 2 * y, 0, 0;
-        return scan::whyNoneIsLeft(test::scanOf(points), {});
+        return odometry::whyNoneIsLeft(test::scanOf(points), {});
     };
     EXPECT_EQ(why(10, 1), "");
-    EXPECT_EQ(scan::whyNoneIsLeft(test::scanOf(Eigen::Matrix3Xf(3, 0)), {}), "no points");
+    EXPECT_EQ(odometry::whyNoneIsLeft(test::scanOf(Eigen::Matrix3Xf(3, 0)), {}), "no points");
     EXPECT_EQ(why(431200, 4599850),
               "all 2 points are farther than scan.max_range (the nearest: 4.62e+06 m): are they in "
               "metres and relative to the sensor?");
@@ -50,7 +50,7 @@ TEST(Preprocess, SaysWhyNoPointIsLeft) {
     EXPECT_NE(why(0.5F, 2000).find("farther"), std::string::npos);
     Eigen::Matrix3Xf apart(3, 2);
     apart << 1, 200, 0, 0, 0, 0;
-    EXPECT_EQ(scan::whyNoneIsLeft(test::scanOf(apart), {}),
+    EXPECT_EQ(odometry::whyNoneIsLeft(test::scanOf(apart), {}),
               "none of the 2 points lies between scan.min_range and scan.max_range and has a time");
 }
 
@@ -124,7 +124,7 @@ TEST(Preprocess, RingsThatTheSourceKnowsStayWithTheirPoints) {
     // Numbered from the top: the second of the points that are kept is the higher one.
     const auto cloud = preprocess(scan, {});
     EXPECT_EQ(cloud.rings, (std::vector<std::uint16_t>{7, 63}));
-    EXPECT_EQ(scan::neighbouringRings(cloud), (std::vector<std::uint16_t>{1, 0}));
+    EXPECT_EQ(odometry::neighbouringRings(cloud), (std::vector<std::uint16_t>{1, 0}));
 }
 
 TEST(Preprocess, RingsAreFoundWhereTheSourceDoesNotKnow) {
@@ -133,14 +133,14 @@ TEST(Preprocess, RingsAreFoundWhereTheSourceDoesNotKnow) {
     const auto cloud = preprocess(test::scanOf(made.points), {});
     ASSERT_EQ(cloud.points.cols(), made.points.cols());  // nothing is near or far in the yard
     EXPECT_TRUE(cloud.rings.empty());
-    EXPECT_EQ(scan::neighbouringRings(cloud), made.rings);
+    EXPECT_EQ(odometry::neighbouringRings(cloud), made.rings);
 }
 
 TEST(Preprocess, AnEmptyScanStaysEmpty) {
     const auto cloud = preprocess(test::scanOf({}), {});
     EXPECT_EQ(cloud.points.cols(), 0);
     EXPECT_TRUE(cloud.rings.empty());
-    EXPECT_TRUE(scan::neighbouringRings(cloud).empty());
+    EXPECT_TRUE(odometry::neighbouringRings(cloud).empty());
     const auto none = preprocess(test::scanOf(Eigen::Vector3f(kNaN, 0, 0)), {});
     EXPECT_EQ(none.points.cols(), 0);
     EXPECT_EQ(none.notFinite, 1U);

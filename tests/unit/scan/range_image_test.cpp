@@ -1,4 +1,4 @@
-#include "delio/scan/range_image.h"
+#include "odometry/range_image.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 
 namespace {
 using namespace delio;
-using scan::Place;
-using scan::RangeImage;
+using odometry::Place;
+using odometry::RangeImage;
 
 class RangeImageOfARoom : public testing::Test {
  protected:

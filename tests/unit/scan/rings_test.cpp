@@ -1,4 +1,4 @@
-#include "delio/scan/rings.h"
+#include "odometry/rings.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "ring_scan.h"
 
 namespace {
-using delio::scan::ringsOf;
+using delio::odometry::ringsOf;
 using delio::test::Noise;
 using Rings = std::vector<std::uint16_t>;
 
@@ -263,8 +263,8 @@ TEST(Rings, FewPointsAreFine) {
 TEST(Rings, AreNumberedFromTheTop) {
     Eigen::Matrix3Xf points(3, 4);
     points << 10, 10, 10, 10, 0, 0, 0, 0, -1, 2, 0, 2.1F;
-    EXPECT_EQ(delio::scan::ringsFromTop(points, {0, 1, 7, 1}),
+    EXPECT_EQ(delio::odometry::ringsFromTop(points, {0, 1, 7, 1}),
               (std::vector<std::uint16_t>{2, 0, 1, 0}));
-    EXPECT_TRUE(delio::scan::ringsFromTop({}, {}).empty());
+    EXPECT_TRUE(delio::odometry::ringsFromTop({}, {}).empty());
 }
 }  // namespace

@@ -1,8 +1,8 @@
-#include "delio/scan/sample.h"
+#include "core/voxel_grid.h"
 
 #include <gtest/gtest.h>
 
-namespace delio::scan {
+namespace delio::odometry {
 namespace {
 Eigen::Matrix3Xd counted(Eigen::Index count) {
     Eigen::Matrix3Xd points(3, count);
@@ -22,4 +22,4 @@ TEST(Sample, TakesAllWhereThereAreFew) {
     EXPECT_EQ(sample(counted(0), 4).cols(), 0);
 }
 }  // namespace
-}  // namespace delio::scan
+}  // namespace delio::odometry

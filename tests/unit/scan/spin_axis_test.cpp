@@ -1,11 +1,11 @@
-#include "delio/scan/spin_axis.h"
+#include "odometry/spin_axis.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "delio/scan/rings.h"
+#include "odometry/rings.h"
 #include "ring_scan.h"
 
 namespace {
@@ -35,7 +35,7 @@ TEST(SpinAxis, IsFoundInAnyAxesAndOrder) {
                                  turnOf({1, 2, 3}, 70), turnOf({0, 0, 1}, 40)}) {
             const Eigen::Vector3d truth = turn.cast<double>().col(2);
             for (const auto& cloud : {Eigen::Matrix3Xf(turn * points), shuffled(turn * points)}) {
-                const auto axis = scan::spinAxisOf(cloud);
+                const auto axis = odometry::spinAxisOf(cloud);
                 ASSERT_TRUE(axis);
                 EXPECT_LT(axis->cross(truth).norm(), 1e-3);  // either way along it
                 EXPECT_NEAR(axis->norm(), 1, 1e-12);
@@ -48,26 +48,26 @@ TEST(SpinAxis, IsFoundInAnyAxesAndOrder) {
 TEST(SpinAxis, TurnedScansHaveTheirRings) {
     const auto scan = scanOfRings(64);
     const Eigen::Matrix3Xf turned = turnOf({0, 1, 0}, 25) * scan.points;
-    const auto upright = scan::uprightOf(turned);
+    const auto upright = odometry::uprightOf(turned);
     ASSERT_TRUE(upright);
-    EXPECT_EQ(scan::ringsOf(*upright * turned), scan.rings);
-    EXPECT_NE(scan::ringsOf(turned), scan.rings);
+    EXPECT_EQ(odometry::ringsOf(*upright * turned), scan.rings);
+    EXPECT_NE(odometry::ringsOf(turned), scan.rings);
 }
 
 TEST(SpinAxis, AnUprightSensorIsLeftAsItIs) {
-    const auto upright = scan::uprightOf(scanOfRings(32).points);
+    const auto upright = odometry::uprightOf(scanOfRings(32).points);
     ASSERT_TRUE(upright);
     EXPECT_EQ(*upright, Eigen::Matrix3f::Identity());
 }
 
 TEST(SpinAxis, WhatDoesNotSpinHasNone) {
-    EXPECT_FALSE(scan::spinAxisOf(Eigen::Matrix3Xf(3, 0)));
-    EXPECT_FALSE(scan::spinAxisOf(scanOfRings(16).points.leftCols(50)));
+    EXPECT_FALSE(odometry::spinAxisOf(Eigen::Matrix3Xf(3, 0)));
+    EXPECT_FALSE(odometry::spinAxisOf(scanOfRings(16).points.leftCols(50)));
     test::Noise noise;
     Eigen::Matrix3Xf anywhere(3, 20000);
     for (Eigen::Index i = 0; i < anywhere.cols(); ++i)
         anywhere.col(i) = 10 * noise.direction().cast<float>();
-    EXPECT_FALSE(scan::spinAxisOf(anywhere));
-    EXPECT_FALSE(scan::uprightOf(anywhere));
+    EXPECT_FALSE(odometry::spinAxisOf(anywhere));
+    EXPECT_FALSE(odometry::uprightOf(anywhere));
 }
 }  // namespace

@@ -1,13 +1,13 @@
-#include "delio/scan/voxel_ball.h"
+#include "core/voxel_table.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 #include "ring_scan.h"
 
-namespace delio::scan {
+namespace delio::odometry {
 namespace {
 constexpr double kSize = 0.5, kRadius = 20;
 
@@ -41,4 +41,4 @@ TEST(VoxelBall, HoldsNothingWhereItIsSmallerThanAVoxel) {
     EXPECT_TRUE(VoxelBall(centre, 2, kSize).holds(voxelKey(centre, kSize)));
 }
 }  // namespace
-}  // namespace delio::scan
+}  // namespace delio::odometry

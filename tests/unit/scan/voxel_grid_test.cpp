@@ -1,4 +1,4 @@
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "ring_scan.h"
 
 namespace {
-using delio::scan::numberVoxels;
-using delio::scan::voxelCentroids;
+using delio::numberVoxels;
+using delio::voxelCentroids;
 
 Eigen::Matrix3Xf cloud(Eigen::Index count, double size) {
     delio::test::Noise noise;

@@ -1,14 +1,14 @@
-#include "delio/scan/voxel_table.h"
+#include "core/voxel_table.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "delio/scan/voxel_grid.h"
+#include "core/voxel_grid.h"
 #include "ring_scan.h"
 
-namespace delio::scan {
+namespace delio::odometry {
 namespace {
 constexpr std::int64_t kSide = 20;
 
@@ -107,4 +107,4 @@ TEST(VoxelKey, OfALargerVoxelFollows) {
     }
 }
 }  // namespace
-}  // namespace delio::scan
+}  // namespace delio::odometry

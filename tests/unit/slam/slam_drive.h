@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/odometry/make_odometry.h"
+#include "delio/odometry/odometry.h"
 #include "delio/slam/graph_builder.h"
 #include "delio/slam/map_listener.h"
 #include "delio/slam/options.h"

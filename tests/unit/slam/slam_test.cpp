@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "delio/core/error.h"
-#include "delio/scan/preprocess.h"
+#include "odometry/preprocess.h"
 #include "gauss_newton.h"
 #include "slam_drive.h"
 
@@ -254,7 +254,7 @@ TEST(Slam, ScansThatContradictThemselvesAreRefused) {
                 faultOf([&] { makeOdometry(Options::ofProfile(profile))->process(one.scan); }),
                 one.fault)
                 << profile;
-        EXPECT_EQ(faultOf([&] { scan::preprocess(one.scan, {}); }), one.fault);
+        EXPECT_EQ(faultOf([&] { odometry::preprocess(one.scan, {}); }), one.fault);
     }
     good.rings.resize(good.points->size());
     good.times_s.resize(good.points->size());

@@ -1,4 +1,4 @@
-#include "delio/surfaces/bilateral_filter.h"
+#include "paper/normals.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 
 namespace {
 using namespace delio;
-using surfaces::BilateralFilterOptions;
-using surfaces::filterBilaterally;
-using surfaces::SurfaceNormals;
+using BilateralFilterOptions;
+using paper::filterBilaterally;
+using paper::SurfaceNormals;
 
 constexpr double kDeg = M_PI / 180;
 

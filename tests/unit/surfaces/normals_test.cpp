@@ -1,4 +1,4 @@
-#include "delio/surfaces/normals.h"
+#include "paper/normals.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 namespace {
 using namespace delio;
-using surfaces::estimateNormals;
+using paper::estimateNormals;
 
 /** Points of a square of 8 m on the plane through `centre`, 0.2 m apart, off it by `noise_m`. */
 Eigen::Matrix3Xf square(const Eigen::Vector3d& centre, const Eigen::Vector3d& normal,
@@ -128,7 +128,7 @@ TEST(Normals, FourPointsAreTooFew) {
 }
 
 TEST(Normals, NeighboursBeyondTheRadiusAreNotUsed) {
-    surfaces::NormalsOptions options;
+    NormalsOptions options;
     options.max_radius = 0.55;
     // Within that radius there are the point itself and four others; without one, too few.
     // (No point on the border of two voxels.)

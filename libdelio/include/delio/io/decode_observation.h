@@ -1,7 +1,7 @@
 #pragma once
 #include <mrpt/obs/CObservation.h>
 
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 
 namespace delio::io {
 /** True for the observation classes that decodeObservation() understands: CObservationPointCloud,

@@ -10,7 +10,7 @@
 #include "delio/io/drive_meta.h"
 #include "delio/io/output_lock.h"
 #include "delio/io/partial_folder.h"
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 
 namespace delio::io {
 /** The Unix time that stands for second 0 of a drive whose own times start at 0: MRPT takes time 0

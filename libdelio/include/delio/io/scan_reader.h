@@ -7,7 +7,7 @@
 
 #include "delio/io/drive_meta.h"
 #include "delio/io/recording.h"
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 
 namespace delio::io {
 /** What lies beside a drive's scans: a text in one of KITTI's formats. */

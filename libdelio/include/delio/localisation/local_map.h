@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "delio/localisation/stored_map.h"
-#include "delio/odometry/scan_to_map.h"
+#include "odometry/local_map.h"
 
 namespace delio {
 /** What a stored map has about a place, to register scans to: submaps are taken in when they come

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "delio/surfaces/normals.h"
+#include "paper/normals.h"
 
 namespace delio::loops {
 /** Which way the walls of a levelled cloud look, whichever place it was seen from: a histogram of
@@ -14,7 +14,7 @@ class Azimuths {
     static constexpr Eigen::Index kBins = 720;  //!< of half a turn
 
     /** Of the normals of a levelled cloud. */
-    explicit Azimuths(const surfaces::SurfaceNormals& surfaces);
+    explicit Azimuths(const paper::SurfaceNormals& surfaces);
     /** Of what weights() of another one gave. */
     static Azimuths ofWeights(Eigen::VectorXd weights) {
         Azimuths azimuths;

@@ -2,13 +2,13 @@
 #include <string>
 #include <vector>
 
+#include "core/voxel_table.h"
 #include "delio/core/increment.h"
 #include "delio/loops/submap.h"
-#include "delio/planes/plane_map.h"
-#include "delio/planes/plane_registration.h"
-#include "delio/points/point_map.h"
-#include "delio/points/point_registration.h"
-#include "delio/scan/voxel_table.h"
+#include "odometry/plane_map.h"
+#include "odometry/point_map.h"
+#include "odometry/register_planes.h"
+#include "odometry/register_points.h"
 
 namespace delio::loops {
 /** When two submaps show one place. */
@@ -31,7 +31,7 @@ class RegistrableSubmap {
     explicit RegistrableSubmap(const Eigen::Matrix3Xf& points);
 
     /** `other` to this, from `guess` on, which may be off by 2 m: by points, then by planes. */
-    planes::PlaneEstimate registered(const RegistrableSubmap& other,
+    odometry::PlaneEstimate registered(const RegistrableSubmap& other,
                                      const Eigen::Isometry3d& guess) const;
 
     /** Of the one that fills fewer voxels of 0.5 m above the ground the share that both fill:
@@ -45,11 +45,11 @@ class RegistrableSubmap {
     double support(const RegistrableSubmap& other, const Eigen::Isometry3d& pose) const;
 
  private:
-    planes::PlaneMap planes_;
-    points::PointMap points_;
+    odometry::PlaneMap planes_;
+    odometry::PointMap points_;
     Eigen::Matrix3Xd coarse_, thinned_, standing_;
-    scan::VoxelIndex filled_;   //!< by what stands
-    scan::VoxelIndex columns_;  //!< of 1 m in which anything was seen
+    VoxelIndex filled_;   //!< by what stands
+    VoxelIndex columns_;  //!< of 1 m in which anything was seen
     std::vector<double> tops_;  //!< of each of them
 };
 

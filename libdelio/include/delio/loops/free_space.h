@@ -16,6 +16,6 @@ class FreeSpace {
     double builtOn(const HeightImage& other, const Eigen::Isometry3d& pose) const;
 
  private:
-    scan::VoxelIndex bare_, standing_;  //!< cells: ground with nothing on it or beside it; others
+    VoxelIndex bare_, standing_;  //!< cells: ground with nothing on it or beside it; others
 };
 }  // namespace delio::loops

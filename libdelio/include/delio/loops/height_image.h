@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "delio/scan/voxel_table.h"
+#include "core/voxel_table.h"
 
 namespace delio::loops {
 /** A levelled cloud seen from above: of each cell, at which heights above the ground beside there
@@ -35,7 +35,7 @@ class HeightImage {
     Eigen::Matrix2Xd grounds_;
     std::vector<std::uint8_t> bands_;
     std::vector<double> heights_;
-    scan::VoxelIndex groundIndex_;
+    VoxelIndex groundIndex_;
 };
 
 /** Of a levelled cloud the points of what stands on the ground. */

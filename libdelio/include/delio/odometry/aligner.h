@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "delio/core/stage_options.h"
-#include "delio/paper/pattern_registration.h"
-#include "delio/planes/plane_map.h"
-#include "delio/planes/plane_registration.h"
-#include "delio/surfaces/bilateral_filter.h"
-#include "delio/surfaces/normals.h"
+#include "odometry/plane_map.h"
+#include "odometry/register_planes.h"
+#include "paper/normals.h"
+#include "paper/pattern_registration.h"
 
 namespace delio {
 /** Loaded from `section`, and the stages from `section.plane_map`, `section.plane_registration`,
@@ -26,11 +25,11 @@ struct AlignerOptions : public StageOptions {
     double scan_spacing = 0.5;
     double min_agreement = 0.25;
     double first_kernel = 1;
-    planes::PlaneMapOptions planeMap;            //!< [plane_map]
-    planes::PlaneRegistrationOptions planes;     //!< [plane_registration]
-    surfaces::NormalsOptions normals;            //!< [normals]
-    surfaces::BilateralFilterOptions bilateral;  //!< [bilateral_filter]
-    paper::PatternRegistrationOptions pattern;   //!< [pattern_registration]
+    PlaneMapOptions planeMap;            //!< [plane_map]
+    PlaneRegistrationOptions planes;     //!< [plane_registration]
+    NormalsOptions normals;              //!< [normals]
+    BilateralFilterOptions bilateral;    //!< [bilateral_filter]
+    PatternRegistrationOptions pattern;  //!< [pattern_registration]
 
     AlignerOptions() {
         planes.search_radius = 10;
@@ -79,7 +78,7 @@ class Aligner : public mrpt::slam::CMetricMapsAlignmentAlgorithm {
      *  where a direction is not seen at all. */
     struct TReturnInfo : public mrpt::slam::CICP::TReturnInfo {
         /** How well the second map's surfaces meet those of the first, 0 to 1, see
-         *  planes::agreement(). */
+         *  odometry::agreement(). */
         double agreement = 0;
         std::size_t matches = 0;  //!< points on planes
         double residual_m = 0;    //!< root mean square of their distances

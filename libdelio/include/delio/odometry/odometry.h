@@ -1,6 +1,10 @@
 #pragma once
+
+#include <memory>
+#include "delio/odometry/scan.h"
+
+#include "delio/core/odometry_options.h"
 #include "delio/odometry/step.h"
-#include "delio/scan/scan.h"
 
 namespace delio {
 /** LiDAR odometry, one scan after the other, rotation and translation decoupled. See
@@ -13,4 +17,8 @@ class Odometry {
      *  surfaces) gives the prediction, and says so. */
     virtual Step process(const Scan& scan) = 0;
 };
+
+/** The odometry that the options choose. Throws Error where two of its options contradict each
+ *  other. */
+std::unique_ptr<Odometry> makeOdometry(const OdometryOptions& options);
 }  // namespace delio

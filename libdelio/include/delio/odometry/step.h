@@ -2,15 +2,12 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "delio/core/estimates.h"
 #include "delio/core/increment.h"
 
 namespace delio {
@@ -28,9 +25,6 @@ struct Quality {
     Eigen::Matrix3Xd unobservedRotation;
     Eigen::Matrix3Xd unobservedTranslation;  //!< the same along which
 };
-
-/** The quality of a scan `to` of which both estimates are. */
-Quality qualityOf(const RotationEstimate& rotation, const TranslationEstimate& translation);
 
 /** The points of a scan that were used, as the sensor would have seen them all at once at the
  *  stamp: metres, its frame, vertical angles corrected. */
@@ -80,7 +74,4 @@ struct Step {
     std::vector<Named> details;                    //!< the method's own figures, likewise
     std::shared_ptr<const ScanFeatures> features;  //!< none where the method keeps none
 };
-
-/** Milliseconds of one of the stages that `step` has. */
-double& timeOf(Step& step, std::string_view stage);
 }  // namespace delio

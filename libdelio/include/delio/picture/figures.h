@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "delio/paper/line_cloud.h"
 #include "delio/picture/view.h"
+#include "paper/line_cloud.h"
 
 namespace delio::picture {
 /** Patterns of normals (unit vectors), each on a unit sphere of its own, side by side from left to

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/core/chunked.h"
+#include "core/chunked.h"
 #include "delio/slam/slam.h"
 
 namespace delio::run {

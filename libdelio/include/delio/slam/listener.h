@@ -2,8 +2,8 @@
 #include <cstddef>
 #include <iosfwd>
 
+#include "delio/odometry/scan.h"
 #include "delio/odometry/step.h"
-#include "delio/scan/scan.h"
 
 namespace delio {
 /** How many poses an object keeps that follows a drive: those of all scans, or only what the next

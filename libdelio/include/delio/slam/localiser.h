@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "delio/odometry/make_odometry.h"
+#include "delio/odometry/odometry.h"
 #include "delio/slam/map_follower.h"
 #include "delio/slam/slam.h"
 

@@ -10,7 +10,7 @@
 #include "delio/localisation/map_tracker.h"
 #include "delio/loops/loop_search.h"
 #include "delio/map/map_builder.h"
-#include "delio/odometry/make_odometry.h"
+#include "delio/odometry/odometry.h"
 
 namespace delio {
 /** The options of every stage, as one .ini file has them: a section a stage. The defaults are those

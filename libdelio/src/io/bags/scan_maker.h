@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../packets/packet_decoder.h"
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 #include "message_source.h"
 
 namespace delio::io {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/scan/scan.h"
+#include "delio/odometry/scan.h"
 
 namespace delio::io {
 /** Makes scans, a turn of the sensor each, of the UDP payloads that a LiDAR sends. */

@@ -1,0 +1,373 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "delio/core/stage_options.h"
+
+namespace delio {
+/** What is done to a scan before anything looks at it. */
+struct PreprocessOptions : public StageOptions {
+    double min_range = 2.5;
+    double max_range = 100;
+    double vertical_correction_deg = 0;
+    bool deskew = true;
+    double sweep_s = 0;
+
+    void check(const std::string& section) const override;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** What motion is predicted from. */
+struct PredictionOptions : public StageOptions {
+    unsigned frames = 3;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** What PlaneOdometry itself decides by. */
+struct PlaneTrackerOptions : public StageOptions {
+    double map_spacing = 0.25;
+    double scan_spacing = 0.5;
+    double point_spacing = 1.0;
+    double first_speed = 40;
+    double acceleration = 15;
+    double doubt_spacing = 10;
+    double scale = 0;
+    double lost_share = 0.5;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** How points and planes are weighed against each other. */
+struct ScanToMapOptions : public StageOptions {
+    double point_sigma = 0.05;
+    double point_sigma_deg = 1.0;
+    double believed = 0.1;
+    double believed_deg = 3.0;
+    double probe = 0.5;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Which points are kept. */
+struct PointMapOptions : public StageOptions {
+    double voxel_size = 1.0;
+    double spacing = 0.2;
+    double radius = 120;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** How a scan is registered to points. */
+struct PointRegistrationOptions : public StageOptions {
+    double first_kernel = 2.0;
+    double least_kernel = 0.3;
+    double last_kernel = 0.2;
+    unsigned max_iterations = 100;
+    double converged_m = 5e-3;
+    unsigned min_matches = 50;
+    double min_share = 0.1;
+
+    void check(const std::string& section) const override;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Which voxels hold a plane. */
+struct PlaneMapOptions : public StageOptions {
+    double voxel_size = 0.5;
+    unsigned levels = 2;
+    unsigned ground_levels = 3;
+    unsigned min_points = 8;
+    double max_thickness = 0.1;
+    double max_flatness = 0.05;
+    double min_breadth = 0.25;
+    unsigned max_points = 300;
+    double radius = 120;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** How a scan is registered to planes. */
+struct PlaneRegistrationOptions : public StageOptions {
+    double last_kernel = 0.1;
+    double point_sigma = 0.01;
+    unsigned max_iterations = 60;
+    double converged_rad = 2e-5;
+    double converged_m = 5e-4;
+    unsigned min_matches = 100;
+    double independent_share = 0.16;
+    double prior_sigma = 0.5;
+    double prior_sigma_deg = 1.0;
+    double search_speed = 40;
+    double search_radius = 30;
+    double search_step = 1;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Which segments are dynamic. */
+struct DynamicObjectsOptions : public StageOptions {
+    bool enabled = true;
+    double cell_deg = 0.5;
+    double margin = 0.4;
+    double interval_s = 0.1;
+    double memory_s = 0.8;
+    double min_share = 0.5;
+    double min_known = 0.3;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Which points are one segment. */
+struct SegmentOptions : public StageOptions {
+    double cell = 0.4;
+    double radius = 60;
+    double above_ground = 0.3;
+    double height = 2.8;
+    double max_length = 12;
+    unsigned min_points = 5;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Section III-A of the paper leaves the neighbourhood open. Taken from the raw scan, the nearest
+ *  neighbours of a near point lie within its range noise, and those of a far one on one ring; the
+ *  cloud is therefore thinned to one point a voxel first, and neighbourhoods that are a line (one
+ *  ring) or no plane at all are dropped. */
+struct NormalsOptions : public StageOptions {
+    double voxel_size = 0.4;
+    unsigned neighbours = 10;
+    double max_radius = 1.5;
+    double min_breadth = 0.1;
+    double max_thickness = 0.15;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Section III-A: "bilateral filtering on the surface normals is applied". The paper gives no
+ *  numbers. */
+struct BilateralFilterOptions : public StageOptions {
+    unsigned neighbours = 6;
+    double distance_sigma = 0.5;
+    double angle_sigma_deg = 10;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Section III-B: removal of scattered normals, "iteratively, considering various numbers of
+ *  neighbours, to retain a small but stable set". The paper gives no numbers. */
+struct OutlierRemovalOptions : public StageOptions {
+    unsigned rounds = 3;
+    unsigned first_neighbours = 40;
+    unsigned last_neighbours = 10;
+    double alpha = 2.0;
+
+    /** Neighbours on the sphere that round `round` (from 0) looks at. */
+    double neighboursOf(unsigned round) const;
+    /** The same removal, ended after `count` rounds. */
+    OutlierRemovalOptions firstRounds(unsigned count) const;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Section III-C: where too little of the pattern is left, the modes of the normals' density are
+ *  sought, so that small structures are kept beside the ground. The paper gives no numbers. */
+struct MeanShiftOptions : public StageOptions {
+    unsigned min_pattern = 500;
+    double min_observability = 0.01;
+    double seed_spacing_deg = 10;
+    double window_deg = 20;
+    unsigned max_iterations = 50;
+    double converged_deg = 0.01;
+    double merge_deg = 5;
+    unsigned min_support = 10;
+    double ball_deg = 6;
+    double cell_deg = 1;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Section III-D. With `kernel_deg` = 0 each normal is paired with its nearest neighbour on the
+ *  sphere, as the paper says; inside a dense blob every normal then finds a partner beside itself,
+ *  which pulls towards the start. With a kernel, the densities of the two patterns are correlated
+ *  instead: each normal is paired with all normals of the other pattern, weighted by a Gaussian of
+ *  the angle between them that narrows from `kernel_deg` to `last_kernel_deg`. */
+struct PatternRegistrationOptions : public StageOptions {
+    double kernel_deg = 8;
+    double last_kernel_deg = 0.7;
+    double cell_deg = 0.5;
+    unsigned max_iterations = 60;
+    double converged_deg = 0.001;
+    unsigned min_normals = 50;
+    double min_observability = 0.01;
+    double max_correction_deg = 30;
+    double independent_share = 0.05;
+    double view_distance = 2;
+    double prior_sigma_deg = 1.0;
+
+    void check(const std::string& section) const override;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Section III-D pairs normals by their direction alone. What a scan sees of the ground moves along
+ *  with the vehicle, and with few rings so do the bushes' normals: their pattern stands still while
+ *  the vehicle turns. Once a translation is known too, each normal is paired with those of the
+ *  other scan that were found at its place; they are of one surface. */
+struct RotationInPlaceOptions : public StageOptions {
+    unsigned rounds = 1;
+    double place_sigma = 0.5;
+    double kernel_deg = 3;
+    double last_kernel_deg = 0.7;
+    unsigned min_pairs = 500;
+    unsigned max_iterations = 30;
+    double converged_deg = 0.001;
+
+    void check(const std::string& section) const override;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Section IV-A with the values of Velas et al. (Collar Line Segments). */
+struct LineCloudOptions : public StageOptions {
+    unsigned sectors = 36;
+    unsigned drawn = 20;
+    unsigned kept = 5;
+    double max_length = 5;
+    unsigned seed = 1;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** Section IV-B. Two skew lines see only the part of the translation along their common normal;
+ *  with `centroids` = true each step is the difference of the centroids of the closest points, as
+ *  the paper writes it, which shrinks the step along directions that few pairs see and so takes
+ *  many iterations. Otherwise each step goes straight to where those steps end for the pairs at
+ *  hand: the least squares solution over the pairs' common normals; and pairs of nearly parallel
+ *  lines are left out. Those have no common normal, so that they would hold the estimate within
+ *  their surface too; the rings on the ground look the same wherever the sensor stands, and with
+ *  them slow drives stood still. Pairs count by how far the noise of their ends leaves them a
+ * common normal (`short_length`). */
+struct LineRegistrationOptions : public StageOptions {
+    bool centroids = false;
+    double min_angle_deg = 15;
+    double short_length = 0.06;
+    double max_distance = 5;
+    unsigned max_iterations = 40;
+    double converged = 0.001;
+    unsigned min_matches = 100;
+    double min_observability = 0.03;
+    double independent_share = 0.25;
+    double overlap_distance = 0.5;
+    double prior_sigma = 0.5;
+    double search_speed = 30;
+    double search_radius = 8;
+    double search_step = 1;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** When points overrule the lines. */
+struct PointCheckOptions : public StageOptions {
+    bool enabled = true;
+    double believed = 0.1;
+    double believed_deg = 0.5;
+    double map_spacing = 0.1;
+    double point_spacing = 1.0;
+    double rest = 0.3;
+    double min_moved = 0.3;
+    double min_share = 0.15;
+    double reach = 4;
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** The options of each stage of PlaneOdometry. */
+struct PlaneOdometryOptions {
+    PreprocessOptions scan;                 //!< [scan]
+    PredictionOptions prediction;           //!< [prediction]
+    PlaneTrackerOptions tracker;            //!< [plane_tracker]
+    ScanToMapOptions scanToMap;             //!< [scan_to_map]
+    PointMapOptions pointMap;               //!< [point_map]
+    PointRegistrationOptions points;        //!< [point_registration]
+    PlaneMapOptions map;                    //!< [plane_map]
+    PlaneRegistrationOptions registration;  //!< [plane_registration]
+    DynamicObjectsOptions dynamics;         //!< [moving_objects]
+    SegmentOptions segments;                //!< [segments]
+    /** [normals]: of the surfaces by which a scan is relocalised. */
+    NormalsOptions normals;
+    BilateralFilterOptions bilateral;    //!< [bilateral_filter], likewise
+    PatternRegistrationOptions pattern;  //!< [pattern_registration], likewise
+};
+
+/** The options of each stage of PaperOdometry. */
+struct PaperOdometryOptions {
+    PreprocessOptions scan;                    //!< [scan]
+    NormalsOptions normals;                    //!< [normals]
+    BilateralFilterOptions bilateral;          //!< [bilateral_filter]
+    OutlierRemovalOptions outliers;            //!< [outlier_removal]
+    MeanShiftOptions meanShift;                //!< [mean_shift]
+    PatternRegistrationOptions pattern;        //!< [pattern_registration]
+    RotationInPlaceOptions inPlace;            //!< [rotation_in_place]
+    LineCloudOptions lines;                    //!< [line_cloud]
+    LineRegistrationOptions lineRegistration;  //!< [line_registration]
+    PredictionOptions prediction;              //!< [prediction]
+    PointCheckOptions check;                   //!< [point_check]
+    PointMapOptions pointMap;                  //!< [point_map]
+    PointRegistrationOptions points;           //!< [point_registration]
+};
+
+/** Which odometry it is. */
+struct MethodOptions : public StageOptions {
+    std::string method = "planes";
+
+ protected:
+    std::vector<OptionField> fields() const override;
+};
+
+/** The choice of an odometry, and the options of each. Those of the other one have no effect. */
+struct OdometryOptions {
+    MethodOptions method;         //!< [odometry]: which of the two
+    PlaneOdometryOptions planes;  //!< of the profile `accurate`
+    PaperOdometryOptions paper;   //!< of the paper's profiles
+
+    bool isPaper() const { return method.method == "paper"; }  //!< the paper's odometry is chosen
+    /** [scan], of the chosen one. */
+    const PreprocessOptions& scan() const { return isPaper() ? paper.scan : planes.scan; }
+};
+
+/** Sections and their options, to be changed. */
+using StageList = std::vector<std::pair<std::string, StageOptions*>>;
+/** Sections and their options. */
+using ConstStageList = std::vector<std::pair<std::string, const StageOptions*>>;
+
+/** The stages of a method with the names of their sections, in the order in which a scan goes
+ *  through them. */
+StageList stagesOf(PlaneOdometryOptions& options);
+/** The same of the paper's method. */
+StageList stagesOf(PaperOdometryOptions& options);
+/** Those of the chosen one, the choice first. */
+ConstStageList stagesOf(const OdometryOptions& options);
+}  // namespace delio

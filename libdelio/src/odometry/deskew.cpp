@@ -1,0 +1,53 @@
+#include "odometry/deskew.h"
+
+#include <tbb/parallel_for.h>
+#include <algorithm>
+#include <cmath>
+
+#include "core/scan_trajectory.h"
+#include "core/voxel_grid.h"
+
+namespace delio::odometry {
+std::vector<float> azimuthTimes(const Eigen::Matrix3Xf& points, double sweep_s) {
+    std::vector<float> times_s(static_cast<std::size_t>(points.cols()));
+    const auto perRadian = static_cast<float>(-sweep_s / (2 * M_PI));
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        times_s[static_cast<std::size_t>(i)] = perRadian * std::atan2(points(1, i), points(0, i));
+    return times_s;
+}
+
+Eigen::Matrix3Xf deskew(const Eigen::Matrix3Xf& points, const std::vector<float>& times_s,
+                        const Course& course) {
+    Eigen::Matrix3Xf result(3, points.cols());
+    if (points.cols() == 0) return result;
+    const auto [least, most] = std::minmax_element(times_s.begin(), times_s.end());
+    const PoseTable poses(course, double{*least}, double{*most});
+    tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
+        const double time_s = double{times_s[static_cast<std::size_t>(i)]};
+        result.col(i) = poses.at(time_s).cast<float>() * points.col(i);
+    });
+    return result;
+}
+
+ScanView undistorted(const PointCloud& cloud, const Course& course) {
+    ScanView view;
+    view.points =
+        cloud.times_s.empty() ? cloud.points : deskew(cloud.points, cloud.times_s, course);
+    view.dynamic.resize(static_cast<std::size_t>(view.points.cols()));
+    return view;
+}
+
+Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std::uint8_t>& marks) {
+    Eigen::Matrix3Xf result(3, points.cols());
+    Eigen::Index kept = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        if (!marks[static_cast<std::size_t>(i)]) result.col(kept++) = points.col(i);
+    result.conservativeResize(3, kept);
+    return result;
+}
+
+void thin(ScanView& view, double map_spacing, double scan_spacing) {
+    view.fine = voxelCentroids(unmarked(view.points, view.dynamic), map_spacing);
+    view.thinned = voxelCentroids(view.fine, scan_spacing).cast<double>();
+}
+}  // namespace delio::odometry

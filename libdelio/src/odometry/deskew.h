@@ -1,0 +1,41 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/scan_trajectory.h"
+#include "odometry/preprocess.h"
+
+namespace delio::odometry {
+/** When each point of a turning LiDAR was measured, told by its azimuth: seconds from the moment at
+ *  which the sensor looked ahead (x), where the stamp of KITTI's raw scans is. A sweep of `sweep_s`
+ *  begins at the back and runs clockwise seen from above, as Velodyne's do. */
+std::vector<float> azimuthTimes(const Eigen::Matrix3Xf& points, double sweep_s);
+
+/** The points (metres, sensor's frame at each point's own time) as the sensor would have seen them
+ *  all at once at its stamp. `times_s`: of each point, seconds from the stamp; of the course, too,
+ *  which maps the sensor's frame to what it is at the stamp. */
+Eigen::Matrix3Xf deskew(const Eigen::Matrix3Xf& points, const std::vector<float>& times_s,
+                        const Course& course);
+
+/** A scan as it is registered against a map: undistorted, in the sensor's frame at the stamp,
+ *  dynamic objects left out of the thinned points. Metres. */
+struct ScanView {
+    Eigen::Matrix3Xf points;            //!< all
+    std::vector<std::uint8_t> dynamic;  //!< 1 for each of them that belongs to a dynamic object
+    Eigen::Matrix3Xf fine;              //!< thinned for the map
+    Eigen::Matrix3Xd thinned;           //!< thinned for registration by planes
+    Eigen::Matrix3Xd coarse;            //!< thinned for registration by points, all of the scan
+};
+
+/** Undistorted by `course` (see deskew()) where the points have times; not thinned yet,
+ *  nothing dynamic. */
+ScanView undistorted(const PointCloud& cloud, const Course& course);
+
+/** The columns of `points` that are not marked. */
+Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std::uint8_t>& marks);
+
+/** Thins the static points: centroids of voxels of `map_spacing` for the map, and of these in turn
+ *  by `scan_spacing` for registration. */
+void thin(ScanView& view, double map_spacing, double scan_spacing);
+}  // namespace delio::odometry

@@ -1,0 +1,106 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+#include "delio/core/odometry_options.h"
+
+#include "odometry/deskew.h"
+#include "odometry/plane_map.h"
+#include "odometry/point_map.h"
+#include "odometry/register_planes.h"
+#include "odometry/register_points.h"
+#include "paper/normals.h"
+
+namespace delio::odometry {
+/** A scan in a map that is kept twice: as planes, which are precise, and as points, which cannot be
+ *  fooled by what looks like a plane. Points place the scan first; both are fused by their
+ *  information, where planes do not lead too far away. Poses map the sensor's frame to the map's.
+ */
+class LocalMap {
+ public:
+    /** An empty map, z up. */
+    LocalMap(const ScanToMapOptions& options, const PlaneMapOptions& planeMap,
+             const PlaneRegistrationOptions& planes, const PointMapOptions& pointMap,
+             const PointRegistrationOptions& points)
+        : options_(options),
+          planeOptions_(planes),
+          pointOptions_(points),
+          planes_(planeMap),
+          points_(pointMap) {}
+
+    /** Takes `points` (metres, sensor's frame) in, where `pose` puts them. */
+    void add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
+    /** `points`: in the map's frame; they turned out to move, and what is there goes. */
+    void erase(const Eigen::Matrix3Xf& points);
+    /** `up`: the unit vector that does, in the map's frame. */
+    void clear(const Eigen::Vector3d& up);
+    /** What it has as planes. */
+    const PlaneMap& planes() const { return planes_; }
+    /** False where there are too few points to register anything against. */
+    bool isUsable() const { return points_.size() >= pointOptions_.min_matches; }
+
+    /** By points, from the prediction on; `kernel` (metres): how far that may be off. */
+    PointEstimate place(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+                        double kernel) const;
+
+    /** By points, where `predicted` is a guess that may be off by `reach` metres in the plane that
+     *  is level where `upright` turns the sensor's frame such that z is up. */
+    PointEstimate placeAnywhere(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+                                double reach, const Eigen::Matrix3f& upright) const;
+
+    /** By points, where the rotation of `predicted` may be off by up to 30 deg about any axis,
+     * until a share of `enough` fits. */
+    PointEstimate placeTurned(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
+                              double enough) const;
+
+    /** By planes, from where the points were placed; from where planes lead once more, if more
+     *  points fit there. An axis that the planes see no better than the
+     *  points stays where these put it, if they see it, else where the prediction does. Where
+     *  points alone say that the scan stands where the map's `latest` does, the axis is unobserved,
+     *  too, unless surfaces that face it confirm that: a sensor's own rings lie on each other
+     *  anywhere. (None: the map is another drive's.) */
+    PlaneEstimate refine(const ScanView& view, const PointEstimate& placed,
+                         const Eigen::Isometry3d& predicted,
+                         const std::optional<Eigen::Isometry3d>& latest) const;
+
+    /** Share of the points that lie within `distance` (metres) of one of the map's, 0 to 1. */
+    double shareAt(const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
+                   double distance) const {
+        return odometry::shareAt(points_, points, pose, distance);
+    }
+
+ private:
+    bool believes(const PlaneEstimate& found, const PointEstimate& placed) const;
+    Eigen::Matrix3d turnCovariance(const Eigen::Matrix3Xd& points,
+                                   const PointEstimate& placed) const;
+    PlaneEstimate byPoints(const PointEstimate& placed,
+                           const Eigen::Matrix3d& turnCovariance) const;
+    void settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
+                          const std::optional<Eigen::Isometry3d>& latest,
+                          PlaneEstimate& found) const;
+
+    ScanToMapOptions options_;
+    PlaneRegistrationOptions planeOptions_;
+    PointRegistrationOptions pointOptions_;
+    PlaneMap planes_;
+    PointMap points_;
+    Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();      //!< unit vector, map's frame
+    Eigen::Vector3d swept_m_ = Eigen::Vector3d::Zero();  //!< where what is far was dropped last
+};
+
+/** A direction of the map's frame along which a scan may stand still. */
+struct StandstillTest {
+    Eigen::Vector3d axis;     //!< unit vector
+    bool isVertical = false;  //!< nothing that the sensor sees moves along it together with it
+    double probe = 0;         //!< metres: so far along the axis the scan must no longer fit
+    double reach = 0;         //!< metres: surfaces and points of the map may be so far apart
+};
+
+/** True where the scan shows that the sensor did not move along the axis, away from `pose` (sensor
+ *  to map), where the map was seen before. Rings on the ground and on smooth walls lie on earlier
+ *  ones wherever the sensor is. So only surfaces that face the axis count. They have to lie on the
+ *  map's points here, but not `probe` to either side; and to more than one side of the sensor,
+ *  unlike a vehicle that drives ahead. `scan`: static surfaces, sensor's frame. */
+bool showsStandstill(const PointMap& map, const paper::SurfaceNormals& scan,
+                     const Eigen::Isometry3d& pose, const StandstillTest& test);
+}  // namespace delio::odometry

@@ -1,0 +1,61 @@
+#include "delio/odometry/odometry.h"
+
+#include <algorithm>
+#include <string>
+
+#include "delio/core/error.h"
+#include "delio/odometry/scan.h"
+#include "delio/odometry/step.h"
+#include "odometry/paper_odometry.h"
+#include "odometry/pipeline.h"
+#include "odometry/reporting.h"
+
+namespace delio {
+namespace {
+void requireOneForEach(const char* field, std::size_t values, const Scan& scan) {
+    const std::size_t points = scan.points->size();
+    if (values != 0 && values != points)
+        throw Error("scan " + std::to_string(scan.index) + ": " + field + " has " +
+                    std::to_string(values) + " values for " + std::to_string(points) +
+                    " points: give one for each point, or none");
+}
+}  // namespace
+
+void requireConsistent(const Scan& scan) {
+    const std::string name = "scan " + std::to_string(scan.index);
+    if (!scan.points) throw Error(name + ": points is null: give a points map, which may be empty");
+    requireOneForEach("rings", scan.rings.size(), scan);
+    requireOneForEach("times_s", scan.times_s.size(), scan);
+    if (!scan.sensorPose.matrix().allFinite()) throw Error(name + ": sensorPose is not finite");
+}
+
+namespace odometry {
+Quality qualityOf(const RotationEstimate& rotation, const TranslationEstimate& translation) {
+    Quality quality;
+    quality.matches = translation.matches;
+    quality.residual_m = translation.residual_m;
+    quality.rotationObservability = rotation.observability;
+    quality.translationObservability = translation.observability;
+    quality.unobservedRotation = rotation.unobservedAxes;
+    quality.unobservedTranslation = rotation.rotation.transpose() * translation.unobservedAxes;
+    return quality;
+}
+
+StageTimer::~StageTimer() {
+    const double ms = watch_.lap_ms();
+    auto& times = step_.times_ms;
+    const auto time = std::find_if(times.begin(), times.end(),
+                                   [&](const Named& each) { return each.first == stage_; });
+    if (time == times.end())
+        times.emplace_back(stage_, ms);
+    else
+        time->second += ms;
+}
+}  // namespace odometry
+
+std::unique_ptr<Odometry> makeOdometry(const OdometryOptions& options) {
+    for (const auto& [section, stage] : stagesOf(options)) stage->check(section);
+    if (options.isPaper()) return std::make_unique<odometry::PaperOdometry>(options.paper);
+    return std::make_unique<odometry::PlaneOdometry>(options.planes);
+}
+}  // namespace delio

@@ -1,0 +1,108 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include "delio/core/odometry_options.h"
+
+#include "delio/odometry/odometry.h"
+#include "odometry/arrivals.h"
+#include "odometry/motion_model.h"
+#include "odometry/point_map.h"
+#include "odometry/preprocess.h"
+#include "odometry/register_points.h"
+#include "paper/line_cloud.h"
+#include "paper/line_registration.h"
+#include "paper/mean_shift.h"
+#include "paper/normals.h"
+#include "paper/outlier_removal.h"
+#include "paper/pattern_registration.h"
+#include "paper/rotation_in_place.h"
+
+namespace delio::odometry {
+/** A scan as others are checked against it, and it against others; sensor's frame. */
+struct CheckPoints {
+    Eigen::Matrix3Xd points;  //!< metres, thinned: these are asked
+    PointMap map;             //!< what others are asked in
+    /** Turns the sensor's frame such that z is up. */
+    Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();
+};
+/** `points`: metres, sensor's frame; `upright` as in CheckPoints. */
+CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
+                          const PointCheckOptions& options, const PointMapOptions& map);
+
+/** What points say of where scan `to` stands in scan `from`, beside what was `predicted` and
+ * `found` (both map frame `to` to frame `from`) with other features. A standstill explains the
+ * rings on the ground, wherever the sensor went, and so would confirm itself; therefore only those
+ * points are asked that a standstill does not explain. Not valid where these cannot tell: too few
+ * of them, or too few that lie on points of `from` in the best place. `reach`: metres that may have
+ * been driven. */
+PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
+                            const Eigen::Isometry3d& found, const Eigen::Isometry3d& predicted,
+                            double reach, const PointCheckOptions& options,
+                            const PointRegistrationOptions& registration);
+
+/** True if it is the same place within what is `believed`. */
+bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b,
+           const PointCheckOptions& options);
+
+/** Scan `to` against scan `from`. */
+struct PaperRegistration {
+    Increment increment;              //!< maps the sensor's frame at `to` to that at `from`
+    RotationEstimate rotation;        //!< by the patterns
+    TranslationEstimate translation;  //!< by the lines
+    /** Why rotation, translation or both are the prediction; empty where both were registered. */
+    std::string predictedReason;
+    bool denied = false;        //!< points stand elsewhere: registered again from there
+    double rotation_ms = 0;     //!< time of the rotation
+    double translation_ms = 0;  //!< time of the translation
+    double check_ms = 0;        //!< time of the check by points
+};
+
+/** Pattern of the normals and line cloud of a scan, in the sensor's frame. */
+struct PaperFeatures : public ScanFeatures {
+    paper::Pattern pattern;                               //!< of its normals
+    paper::LineCloud lines;                               //!< between its rings
+    std::optional<CheckPoints> check;                     //!< where it is enabled
+    std::shared_ptr<const PaperOdometryOptions> options;  //!< that they were made with
+
+    std::optional<Link> linkTo(const ScanFeatures& earlier,
+                               const Eigen::Isometry3d& guess) const override;
+};
+
+/** Rotation from the patterns of the normals (III-D), then translation from the line clouds of the
+ *  unrotated scan (IV-B). `guess` maps frame `to` to frame `from`. With `search_m` > 0,
+ *  translations up to so many metres off the guess are tried. Where points say that the scan stands
+ *  elsewhere it is registered again from there; an axis along or about which that still leads away
+ *  stays where the points put it, and is named as unobserved. */
+PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeatures& to,
+                                   const Eigen::Isometry3d& guess, double search_m,
+                                   const PaperOdometryOptions& options);
+
+/** DeLiO as in the paper: rotation from the pattern of surface normals, the scan unrotated, then
+ *  translation from line clouds, both from the linear prediction on, against the last usable
+ *  scan. */
+class PaperOdometry : public Odometry {
+ public:
+    /** Before the first scan. */
+    explicit PaperOdometry(const PaperOdometryOptions& options);
+
+    Step process(const Scan& scan) override;
+
+ private:
+    Eigen::Matrix3f upright() const;
+    std::shared_ptr<const PaperFeatures> extract(const PointCloud& cloud, Step& step) const;
+    void takeIncrement(const PaperRegistration& registration, double duration_s, Step& step);
+
+    std::shared_ptr<const PaperOdometryOptions> options_;
+    Arrivals arrivals_;
+    LinearPrediction prediction_;
+    unsigned scans_ = 0;                              //!< processed
+    std::shared_ptr<const PaperFeatures> reference_;  //!< the last usable scan
+    /** Turns the sensor's frame such that it spins about z; of the first scan that shows how. */
+    std::optional<Eigen::Matrix3f> upright_;
+    /** Maps the latest frame to that of reference_. */
+    Eigen::Isometry3d sinceReference_ = Eigen::Isometry3d::Identity();
+    double sinceReference_s_ = 0;
+    double unregistered_s_ = 0;  //!< since the latest scan that was registered
+    bool lost_ = true;           //!< where the next scan will be is not known to better than metres
+};
+}  // namespace delio::odometry

@@ -1,0 +1,373 @@
+#include "odometry/pipeline.h"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "odometry/preprocess.h"
+#include "odometry/reporting.h"
+#include "odometry/spin_axis.h"
+
+namespace delio::odometry {
+namespace {
+Eigen::Isometry3d inverseOf(const Eigen::Matrix3f& rotation) {
+    return Eigen::Isometry3d(rotation.transpose().cast<double>());
+}
+
+/** Every step has the same stages, whether the scan went through them or not. */
+std::vector<Named> noTimes() {
+    return {{"preprocess", 0}, {"undistort", 0}, {"thinning", 0},  {"points", 0},
+            {"dynamic", 0},    {"planes", 0},    {"map_update", 0}};
+}
+
+/** True for a scan that was registered along and about every axis and moved slower than the noise
+ *  of a registration over one turn. */
+bool isStanding(const Step& step, double duration_s) {
+    constexpr double kSlow_mps = 0.1, kSlow_radps = 2 * M_PI / 180;
+    const Quality& quality = step.quality;
+    if (step.predicted || quality.unobservedTranslation.cols() > 0 ||
+        quality.unobservedRotation.cols() > 0)
+        return false;
+    const Eigen::Isometry3d& moved = step.increment.pose;
+    return moved.translation().norm() < kSlow_mps * duration_s &&
+           angleOf(moved.linear()) < kSlow_radps * duration_s;
+}
+
+/** The figures of both registrations. */
+std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate& placed) {
+    const bool byPlanes = estimate.valid && estimate.rotation.observability[2] > 0;
+    const auto& rotation = estimate.rotation;
+    return {{"inlier_ratio", placed.share},
+            {"kernel_m", placed.kernel_m},
+            {"iterations", static_cast<double>(placed.iterations)},
+            {"converged", static_cast<double>(placed.converged)},
+            {"plane_inlier_ratio", byPlanes ? estimate.share : 0},
+            {"plane_iterations", byPlanes ? static_cast<double>(rotation.iterations) : 0},
+            {"plane_converged", byPlanes ? static_cast<double>(rotation.converged) : 0}};
+}
+}  // namespace
+
+PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
+    : given_(options),
+      options_(options),
+      arrivals_(needsTimes(options.scan)),
+      map_(options.scanToMap, options.map, options.registration, options.pointMap, options.points),
+      dynamics_(options.dynamics, options.segments),
+      prediction_(options.prediction) {}
+
+Step PlaneOdometry::process(const Scan& scan) {
+    requireConsistent(scan);
+    Step step;
+    step.times_ms = noTimes();
+    const Arrival arrival = arrivals_.take(scan);
+    const Interval& interval = arrival.interval;
+    unregistered_s_ += interval.elapsed_s;
+    seenScale_ = given_.tracker.scale > 0 ? given_.tracker.scale : scaleOf(scan);
+    const bool isEmpty = std::holds_alternative<Empty>(state_);
+    if (isEmpty) takeScale(seenScale_);
+    PointCloud cloud;
+    {
+        const StageTimer timer(step, "preprocess");
+        cloud = preprocess(scan, options_.scan);
+        if (isEmpty) upright_ = uprightOf(scan.sensorPose, cloud.points);
+    }
+    step.notFinite = cloud.notFinite;
+    step.deskewed = !cloud.times_s.empty();
+    step.interrupted = !isEmpty && interval.kind == IntervalKind::kUnknown;
+    if (step.interrupted) {  // the motion meanwhile is not known
+        prediction_.forget();
+        state_ = lostFrom(std::move(state_), missesOf(state_));
+    }
+    if (!isEmpty) step.reason = reasonToSkip(arrival, prediction_);
+
+    if (isEmpty)
+        begin(cloud, step);
+    else if (!step.reason.empty())
+        skip(cloud, interval, step);
+    else
+        track(cloud, interval, step);
+
+    step.standing = isStanding(step, interval.duration_s);
+    if (!step.predicted) unregistered_s_ = 0;
+    if (!isLost(state_) && isOtherScale()) {
+        takeScale(seenScale_);
+        beginMap(cloud, !std::holds_alternative<Degenerate>(state_));
+    }
+    step.details.emplace_back("scale", scale_);
+    step.used.indices = std::move(cloud.indices);
+    return step;
+}
+
+/** The method: a scan against the map of earlier scans. */
+void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Step& step) {
+    // After scans that were not registered, the motion since the last registered one counts.
+    const double since_s = arrivals_.sinceStart_s() - reference_.time_s;
+
+    const Onward onward = predictMotion(interval.duration_s);
+    const Eigen::Isometry3d predicted = pose_ * onward.at(interval.duration_s);
+
+    ScanView view;
+    {
+        const StageTimer timer(step, "undistort");
+        view = undistorted(cloud, onward.motion());
+    }
+    VoxelNumbers voxels;
+    {
+        const StageTimer timer(step, "thinning");
+        voxels = thin(view);
+    }
+    std::optional<DynamicObjects::Sight> sight;
+    const Placement placement = registerByPoints(
+        view, expectation(predicted, since_s, interval.kind != IntervalKind::kUnknown), sight,
+        step);
+    const PointEstimate& placed = placement.estimate;
+    step.searched = placement.searched;
+
+    const bool hasSight = sight && placed.valid;
+    if (hasSight) {
+        const StageTimer timer(step, "dynamic");
+        removeDynamicObjects(voxels, std::move(*sight), placed.pose, view);
+    }
+    const auto estimate = registerByPlanes(cloud, placed, predicted, since_s, view, step);
+
+    const Eigen::Isometry3d before = pose_;
+    pose_ = estimate.valid ? estimate.pose() : predicted;
+    {
+        const StageTimer timer(step, "map_update");
+        if (estimate.valid)
+            update(estimate, placed, predicted, since_s, hasSight, view, step);
+        else
+            miss(cloud);
+    }
+    if (!estimate.valid)
+        step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";
+    step.details = detailsOf(estimate, placed);
+    report(estimate, before, view, step);
+}
+
+/** From the latest scan on. The motion at the end of that scan is asked for once. */
+Onward PlaneOdometry::predictMotion(double duration_s) {
+    Onward onward(prediction_.predict(duration_s), duration_s);
+    const bool isKnown = !isLost(state_) && !std::holds_alternative<Degenerate>(state_);
+    if (onward_ && isKnown) onward = *onward_;
+    onward_.reset();
+    return onward;
+}
+
+/** Thins the scan, while the one before it enters the map; says which points became which. */
+VoxelNumbers PlaneOdometry::thin(ScanView& view) {
+    const auto& spacings = options_.tracker;
+    VoxelNumbers voxels;
+    tbb::parallel_invoke([&] { insertWaiting(); },
+                         [&] {
+                             voxels = numberVoxels(view.points, spacings.map_spacing);
+                             view.fine = centroidsOf(view.points, voxels);
+                             view.coarse =
+                                 firstOfVoxels(view.fine, spacings.point_spacing).cast<double>();
+                         });
+    return voxels;
+}
+
+/** Meanwhile segments and free space of the scan are found, where these are needed (`sight`). */
+Placement PlaneOdometry::registerByPoints(const ScanView& view, const Expectation& expected,
+                                          std::optional<DynamicObjects::Sight>& sight,
+                                          Step& step) const {
+    const StageTimer timer(step, "points");
+    Placement placement;
+    tbb::parallel_invoke([&] { placement = placeScan(map_, view, expected, options_); },
+                         [&] {
+                             if (options_.dynamics.enabled && !isLost(state_))
+                                 sight = dynamics_.see(view.fine, view.points, upright_);
+                         });
+    return placement;
+}
+
+/** From the thinned scan, whose pose is known by points. */
+void PlaneOdometry::removeDynamicObjects(const VoxelNumbers& voxels, DynamicObjects::Sight sight,
+                                         const Eigen::Isometry3d& pose, ScanView& view) {
+    const auto dynamic =
+        dynamics_.detect(std::move(sight), pose * inverseOf(upright_), arrivals_.sinceStart_s());
+    map_.erase(dynamics_.unmasked());
+    for (std::size_t i = 0; i < view.dynamic.size(); ++i)
+        view.dynamic[i] = dynamic[voxels.ofPoint[i]];
+    view.fine = unmarked(view.fine, dynamic);
+}
+
+PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const PointEstimate& placed,
+                                              const Eigen::Isometry3d& predicted, double since_s,
+                                              ScanView& view, Step& step) {
+    const StageTimer timer(step, "planes");
+    if (!placed.valid) return predictedEstimate(predicted);
+    view.thinned = voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
+    auto found = map_.refine(view, placed, predicted, reference_.pose);
+    if (step.deskewed) deskewAgain(cloud, since_s, placed.share, view, found);
+    return found;
+}
+
+/** After a scan that was registered, at pose_. */
+void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& placed,
+                           const Eigen::Isometry3d& predicted, double since_s, bool hasSight,
+                           ScanView& view, const Step& step) {
+    const bool isDegenerate = estimate.translation.unobservedAxes.cols() > 0;
+    if (step.interrupted)
+        state_ = Lost{};  // the speed is not known
+    else if (isDegenerate)
+        state_ = Degenerate{};
+    else
+        state_ = Tracking{};
+    // A degenerate scan may be at a wrong pose, and the next ones would confirm it: few of them
+    // enter the map.
+    const double moved_m = (pose_.translation() - reference_.pose.translation()).norm();
+    if (isDegenerate && moved_m <= options_.tracker.doubt_spacing) return;
+    if (!step.interrupted) learn(placed, predicted, since_s);
+    if (hasSight) dynamics_.remember(pose_ * inverseOf(upright_));
+    insertLater(view);
+}
+
+/** After a scan that was not found in the map. */
+void PlaneOdometry::miss(const PointCloud& cloud) {
+    constexpr unsigned kPatience = 3;
+    const unsigned misses = missesOf(state_) + (cloud.points.cols() > 0 ? 1 : 0);
+    state_ = lostFrom(std::move(state_), misses);
+    if (misses < kPatience) return;
+    takeScale(seenScale_);  // the map may have begun with the vehicle's own body
+    beginMap(cloud, false);
+}
+
+/** Learns the motion, how well it is predicted, and the usual inlier ratio. */
+void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
+                          double since_s) {
+    if (prediction_.hasMotion()) {
+        // A scan that fits badly where it was not expected may be at a wrong pose.
+        constexpr double kForget = 0.1, kAsUsual = 0.75;
+        const bool isDoubtful = placed.share < kAsUsual * usualInlierRatio_ &&
+                                stepBetween(predicted, placed.pose).norm() > kernel_m();
+        if (!isDoubtful)
+            usualInlierRatio_ = usualInlierRatio_ == 0
+                                    ? placed.share
+                                    : (1 - kForget) * usualInlierRatio_ + kForget * placed.share;
+        kernel_.observe(pose_, predicted);
+        unevenness_.observe(reference_.pose.inverse() * pose_, prediction_.predict(since_s));
+    }
+    prediction_.observe(reference_.pose.inverse() * pose_, since_s);
+}
+
+/** What is known of the next scan's pose, `since_s` after the latest registered scan. */
+Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, double since_s,
+                                       bool believed) const {
+    const auto& tracker = options_.tracker;
+    const auto& registration = options_.registration;
+    // A longer way has to be found by surfaces.
+    constexpr double kLongest_s = 0.5;
+    const double driven_m = tracker.first_speed * std::min(since_s, kLongest_s),
+                 gained_m = tracker.acceleration / 2 * since_s * since_s;
+    Expectation expected{predicted, reference_, upright_};
+    expected.motionIsKnown = prediction_.hasMotion();
+    expected.isGuess =
+        isLost(state_) || std::holds_alternative<Degenerate>(state_) || !expected.motionIsKnown;
+    expected.start_m = expected.motionIsKnown ? std::min(gained_m, driven_m) : driven_m;
+    expected.reach_m =
+        believed ? std::min(registration.search_speed * since_s, registration.search_radius)
+                 : registration.search_radius;
+    expected.kernel_m = kernel_m();
+    expected.isShaken = kernel_.isKnown() && expected.kernel_m >= options_.points.first_kernel;
+    expected.usualShare = usualInlierRatio_;
+    return expected;
+}
+
+/** A map cannot begin before the first usable scan. */
+void PlaneOdometry::begin(const PointCloud& cloud, Step& step) {
+    const bool isFirst = !std::get<Empty>(state_).hasSeenScans;
+    ScanView view;
+    {
+        const StageTimer timer(step, "map_update");
+        view = beginMap(cloud, false);
+    }
+    // The motion since scans that could not be used is not known.
+    if (!isFirst) step.reason = "no usable scan before it";
+    if (std::holds_alternative<Empty>(state_))
+        step.reason = cloud.points.cols() == 0 ? "no points" : "too few points";
+    step.details = detailsOf({}, {});
+    report(predictedEstimate(pose_), pose_, view, step);
+}
+
+/** A scan that says nothing about the motion: its pose is the prediction, and tracking goes on from
+ *  the scan before. */
+void PlaneOdometry::skip(const PointCloud& cloud, const Interval& interval, Step& step) {
+    const Onward onward = predictMotion(interval.duration_s);
+    const Eigen::Isometry3d before = pose_;
+    pose_ = pose_ * onward.at(interval.duration_s);
+    ScanView view = undistorted(cloud, onward.motion());
+    step.details = detailsOf({}, {});
+    report(predictedEstimate(pose_), before, view, step);
+}
+
+/** Of a scan at pose_; `before`: the pose of the scan before it. */
+void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3d& before,
+                           ScanView& view, Step& step) const {
+    const auto dynamic = std::count(view.dynamic.begin(), view.dynamic.end(), std::uint8_t{1});
+    step.increment = incrementOf(estimate.rotation, estimate.translation);
+    step.increment.pose = normalised(before.inverse() * pose_);
+    step.quality = qualityOf(estimate.rotation, estimate.translation);
+    step.predicted = !step.reason.empty();
+    const auto points = std::max<double>(1, static_cast<double>(view.dynamic.size()));
+    step.details.emplace_back("dynamic", static_cast<double>(dynamic));
+    step.details.emplace_back("dynamic_share", static_cast<double>(dynamic) / points);
+    step.used.points = std::move(view.points);
+    step.used.dynamic = std::move(view.dynamic);
+}
+
+/** A new map of this scan, at pose_. */
+ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
+    // The second scan has this one alone to be registered against: it enters as dense as it came.
+    constexpr double kDense = 0.2;
+    ScanView view = undistorted(cloud, Motion{});
+    odometry::thin(view, kDense * options_.tracker.map_spacing, options_.tracker.scan_spacing);
+    map_.clear(upAt(pose_));
+    waiting_.reset();
+    dynamics_.clear();
+    usualInlierRatio_ = 0;
+    map_.add(view.fine, pose_);
+    reference_ = {view.points, pose_, arrivals_.sinceStart_s()};
+    if (!map_.isUsable()) {
+        state_ = Empty{true};
+        return view;
+    }
+    FirstScan first;
+    if (!cloud.times_s.empty()) first.skewed = cloud;
+    first.motionIsKnown = motionIsKnown;
+    state_ = std::move(first);
+    return view;
+}
+
+/** At pose_, while the next scan is thinned. */
+void PlaneOdometry::insertLater(ScanView& view) {
+    reference_ = {view.points, pose_, arrivals_.sinceStart_s()};
+    waiting_ = PlacedPoints{std::move(view.fine), pose_};
+}
+
+void PlaneOdometry::insertWaiting() {
+    if (waiting_) map_.add(waiting_->points, waiting_->pose);
+    waiting_.reset();
+}
+
+void PlaneOdometry::takeScale(double scale) {
+    scale_ = scale;
+    otherScale_ = 0;
+    options_ = atScale(given_, scale);
+    map_ = LocalMap(options_.scanToMap, options_.map, options_.registration, options_.pointMap,
+                    options_.points);
+    waiting_.reset();
+}
+
+/** True where scans in a row show a place of another size than the map was made for: out of a house
+ *  into the street. */
+bool PlaneOdometry::isOtherScale() {
+    constexpr double kOther = 2;
+    constexpr unsigned kPatience = 10;
+    const double ratio = seenScale_ / scale_;
+    otherScale_ = ratio >= kOther || ratio <= 1 / kOther ? otherScale_ + 1 : 0;
+    return otherScale_ >= kPatience;
+}
+}  // namespace delio::odometry

@@ -1,0 +1,110 @@
+#pragma once
+#include <optional>
+
+#include "core/voxel_grid.h"
+#include "delio/core/odometry_options.h"
+#include "delio/odometry/odometry.h"
+#include "odometry/arrivals.h"
+#include "odometry/dynamic_objects.h"
+#include "odometry/initial_guess.h"
+#include "odometry/motion_model.h"
+#include "odometry/register_trajectory.h"
+#include "odometry/tracking_state.h"
+
+namespace delio::odometry {
+/** Points that wait to enter the map. */
+struct PlacedPoints {
+    Eigen::Matrix3Xf points;                                 //!< sensor's frame
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
+};
+
+/** Scan-to-map odometry, rotation and translation decoupled. A scan is preprocessed, predicted,
+ *  de-skewed, registered to the points of earlier scans, freed of dynamic objects, and registered
+ *  to the planes of earlier scans (LocalMap). Scans whose points have times are de-skewed twice: by
+ *  the predicted motion, and by the motion that was found. Where three scans in a row that are not
+ *  empty are not found in the map, a new map begins at the prediction. */
+class PlaneOdometry : public Odometry {
+ public:
+    /** Before the first scan. */
+    explicit PlaneOdometry(const PlaneOdometryOptions& options);
+
+    Step process(const Scan& scan) override;
+
+ private:
+    void begin(const PointCloud& cloud, Step& step);
+    void track(const PointCloud& cloud, const Interval& interval, Step& step);
+    void skip(const PointCloud& cloud, const Interval& interval, Step& step);
+
+    // The stages of track(), in their order.
+    Onward predictMotion(double duration_s);
+    VoxelNumbers thin(ScanView& view);
+    Placement registerByPoints(const ScanView& view, const Expectation& expected,
+                               std::optional<DynamicObjects::Sight>& sight, Step& step) const;
+    void removeDynamicObjects(const VoxelNumbers& voxels, DynamicObjects::Sight sight,
+                              const Eigen::Isometry3d& pose, ScanView& view);
+    PlaneEstimate registerByPlanes(const PointCloud& cloud, const PointEstimate& placed,
+                                   const Eigen::Isometry3d& predicted, double since_s,
+                                   ScanView& view, Step& step);
+    void update(const PlaneEstimate& estimate, const PointEstimate& placed,
+                const Eigen::Isometry3d& predicted, double since_s, bool hasSight, ScanView& view,
+                const Step& step);
+    void miss(const PointCloud& cloud);
+    void report(const PlaneEstimate& estimate, const Eigen::Isometry3d& before, ScanView& view,
+                Step& step) const;
+
+    Expectation expectation(const Eigen::Isometry3d& predicted, double since_s,
+                            bool believed) const;
+    void learn(const PointEstimate& placed, const Eigen::Isometry3d& predicted, double since_s);
+
+    // De-skewing by the motion that was found (pipeline_deskew.cpp).
+    void deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio, ScanView& view,
+                     PlaneEstimate& estimate);
+    Course trajectoryOf(const KnownMotion& known, const PointCloud& cloud,
+                        const ScanView& view) const;
+    std::optional<ScanOnCourse> deskewPair(const PointCloud& first, KnownMotion known,
+                                           const PointCloud& cloud, const ScanView& view);
+    void deskewFirst(const PointCloud& first, const Course& course);
+
+    // The map.
+    ScanView beginMap(const PointCloud& cloud, bool motionIsKnown);
+    void insertLater(ScanView& view);
+    void insertWaiting();
+    void takeScale(double scale);
+    bool isOtherScale();
+    /** The vertical in the map's frame, of a sensor at `pose`. */
+    Eigen::Vector3d upAt(const Eigen::Isometry3d& pose) const {
+        return pose.linear() * upright_.row(2).transpose().cast<double>();
+    }
+    double kernel_m() const {
+        return kernel_.width(options_.points.least_kernel, options_.points.first_kernel);
+    }
+    PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose) const {
+        return odometry::predictedEstimate(pose, options_.registration,
+                                           errorGrowth(unregistered_s_));
+    }
+
+    const PlaneOdometryOptions given_;
+    PlaneOdometryOptions options_;                           //!< at the scale of the place
+    Eigen::Matrix3f upright_ = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
+    double scale_ = 1;
+    double seenScale_ = 1;     //!< that the latest scan shows
+    unsigned otherScale_ = 0;  //!< scans in a row that show a place of another size
+
+    TrackingState state_;
+    Arrivals arrivals_;
+    LocalMap map_;
+    DynamicObjects dynamics_;
+    ReferenceScan reference_;
+    Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
+    double unregistered_s_ = 0;  //!< since the latest scan that was registered
+    /** The latest scan, until it enters the map: the next scan is thinned meanwhile. */
+    std::optional<PlacedPoints> waiting_;
+
+    // The motion model, learnt while tracking.
+    LinearPrediction prediction_;
+    AdaptiveKernel kernel_;
+    Unevenness unevenness_;
+    std::optional<Onward> onward_;  //!< where the points have times
+    double usualInlierRatio_ = 0;   //!< 0: not known
+};
+}  // namespace delio::odometry

@@ -1,0 +1,130 @@
+#include "odometry/preprocess.h"
+
+#include <mrpt/core/format.h>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/portable_math.h"
+#include "odometry/deskew.h"
+#include "odometry/rings.h"
+
+namespace delio::odometry {
+PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
+    requireConsistent(scan);
+    const auto& x = scan.points->getPointsBufferRef_x();
+    const auto& y = scan.points->getPointsBufferRef_y();
+    const auto& z = scan.points->getPointsBufferRef_z();
+    const double angle = options.vertical_correction_deg * M_PI / 180;
+    const auto c = static_cast<float>(portable::cos(angle)),
+               s = static_cast<float>(portable::sin(angle));
+    const auto near = static_cast<float>(options.min_range * options.min_range);
+    const auto far = static_cast<float>(options.max_range * options.max_range);
+
+    // All at once first, in a plain loop: vector instructions.
+    const auto all = static_cast<Eigen::Index>(x.size());
+    Eigen::ArrayXf squaredRanges(all), factors(all), heights(all);
+    for (Eigen::Index i = 0; i < all; ++i) {
+        const float px = x.data()[i], py = y.data()[i], pz = z.data()[i];
+        squaredRanges[i] = px * px + (py * py + pz * pz);
+        const float flat = std::sqrt(px * px + py * py);
+        const float flatNow = c * flat - s * pz;
+        factors[i] = flat > 0 ? flatNow / flat : 1.0F;
+        heights[i] = s * flat + c * pz;
+    }
+    const bool timed = options.deskew && !scan.times_s.empty(), numbered = !scan.rings.empty();
+    PointCloud cloud;
+    cloud.points.resize(3, all);
+    cloud.indices.resize(x.size());
+    Eigen::Index kept = 0;
+    for (Eigen::Index i = 0; i < all; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const bool isTimed = !timed || std::isfinite(scan.times_s[k]);
+        if (!(squaredRanges[i] >= near && squaredRanges[i] <= far) || !isTimed) {
+            const bool finite = std::isfinite(x[k]) && std::isfinite(y[k]) && std::isfinite(z[k]);
+            ++(finite && isTimed ? cloud.outOfRange : cloud.notFinite);
+            continue;
+        }
+        float* const point = cloud.points.data() + 3 * kept;
+        point[0] = x[k] * factors[i];
+        point[1] = y[k] * factors[i];
+        point[2] = heights[i];
+        if (numbered) cloud.rings.push_back(scan.rings[k]);
+        if (timed) cloud.times_s.push_back(scan.times_s[k]);
+        cloud.indices[static_cast<std::size_t>(kept)] = static_cast<std::uint32_t>(k);
+        ++kept;
+    }
+    cloud.indices.resize(static_cast<std::size_t>(kept));
+    cloud.points.conservativeResize(3, kept);
+    if (options.deskew && scan.times_s.empty() && options.sweep_s > 0)
+        cloud.times_s = azimuthTimes(cloud.points, options.sweep_s);
+    return cloud;
+}
+
+std::string whyNoneIsLeft(const Scan& scan, const PreprocessOptions& options) {
+    const std::size_t count = scan.points->size();
+    if (count == 0) return "no points";
+    if (!preprocess(scan, options).indices.empty()) return "";
+    double nearest = INFINITY, farthest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double range = Eigen::Vector3d(scan.points->getPointsBufferRef_x()[i],
+                                             scan.points->getPointsBufferRef_y()[i],
+                                             scan.points->getPointsBufferRef_z()[i])
+                                 .norm();
+        if (!(std::isfinite(range) && range > 0)) continue;
+        nearest = std::min(nearest, range);
+        farthest = std::max(farthest, range);
+    }
+    const std::string all = "all " + std::to_string(count) + " points are ";
+    if (farthest == 0) return all + "NaN or at the sensor";
+    if (nearest > options.max_range)
+        return all + mrpt::format(
+                         "farther than scan.max_range (the nearest: %.3g m): are they in "
+                         "metres and relative to the sensor?",
+                         nearest);
+    if (farthest < options.min_range)
+        return all + mrpt::format(
+                         "nearer than scan.min_range (the farthest: %.3g m): are they in "
+                         "metres?",
+                         farthest);
+    return "none of the " + std::to_string(count) +
+           " points lies between scan.min_range and scan.max_range and has a time";
+}
+
+std::vector<std::uint16_t> neighbouringRings(const PointCloud& cloud,
+                                             const Eigen::Matrix3f& upright) {
+    const Eigen::Matrix3Xf points = upright * cloud.points;
+    return cloud.rings.empty() ? ringsOf(points) : ringsFromTop(points, cloud.rings);
+}
+
+double scaleOf(const Scan& scan) {
+    constexpr double kShare = 0.9, kStreet_m = 16, kLeast = 0.25;
+    constexpr std::size_t kEnough = 10000;
+    std::vector<float> ranges;
+    const auto& x = scan.points->getPointsBufferRef_x();
+    const auto& y = scan.points->getPointsBufferRef_y();
+    const auto& z = scan.points->getPointsBufferRef_z();
+    for (std::size_t i = 0; i < x.size(); i += 1 + x.size() / kEnough) {
+        const float range = Eigen::Vector3f(x[i], y[i], z[i]).norm();
+        if (std::isfinite(range) && range > 0) ranges.push_back(range);
+    }
+    if (ranges.empty()) return 1;
+    const auto most = ranges.begin() +
+                      static_cast<std::ptrdiff_t>(kShare * static_cast<double>(ranges.size() - 1));
+    std::nth_element(ranges.begin(), most, ranges.end());
+    return std::clamp(static_cast<double>(*most) / kStreet_m, kLeast, 1.0);
+}
+
+PlaneOdometryOptions atScale(PlaneOdometryOptions options, double scale) {
+    for (double* length :
+         {&options.scan.min_range, &options.tracker.map_spacing, &options.tracker.scan_spacing,
+          &options.tracker.point_spacing, &options.tracker.first_speed,
+          &options.tracker.doubt_spacing, &options.scanToMap.probe, &options.pointMap.voxel_size,
+          &options.pointMap.spacing, &options.points.first_kernel, &options.points.least_kernel,
+          &options.points.last_kernel, &options.points.converged_m, &options.map.voxel_size,
+          &options.map.max_thickness, &options.registration.last_kernel,
+          &options.registration.search_step})
+        *length *= scale;
+    return options;
+}
+}  // namespace delio::odometry

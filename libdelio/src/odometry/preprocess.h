@@ -1,0 +1,43 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "delio/core/odometry_options.h"
+#include "delio/odometry/scan.h"
+
+namespace delio::odometry {
+/** A scan as the stages want it. */
+struct PointCloud {
+    Eigen::Matrix3Xf points;             //!< metres, in the sensor's frame, in the sensor's order
+    std::vector<std::uint16_t> rings;    //!< of each point, as its source numbers them, or empty
+    std::vector<float> times_s;          //!< of each point from the stamp; empty: all at the stamp
+    std::vector<std::uint32_t> indices;  //!< of each point in the scan
+    std::size_t notFinite = 0;   //!< points dropped because a coordinate was NaN or infinite
+    std::size_t outOfRange = 0;  //!< points dropped by min_range and max_range
+};
+
+/** Drops what is not finite or out of range, and raises every point's vertical angle by
+ *  `vertical_correction_deg` (range kept): KITTI's HDL-64E needs 0.205 deg (IMLS-SLAM, KISS-ICP).
+ */
+PointCloud preprocess(const Scan& scan, const PreprocessOptions& options);
+
+/** Why preprocess() leaves no point of a scan, in words; empty where it leaves some. */
+std::string whyNoneIsLeft(const Scan& scan, const PreprocessOptions& options);
+
+/** Ring of each point, from 0, neighbours with consecutive numbers: the source's, sorted from the
+ *  top, or where it does not say, told by ringsOf(). `upright` turns the cloud's frame such that
+ * the sensor spins about z. */
+std::vector<std::uint16_t> neighbouringRings(
+    const PointCloud& cloud, const Eigen::Matrix3f& upright = Eigen::Matrix3f::Identity());
+
+/** The size of the place that a scan shows, 1 for streets and less for rooms: nine points in ten
+ *  are within 16 m times this. Not below 0.25. */
+double scaleOf(const Scan& scan);
+
+/** The options with all lengths that depend on the place, which are given for streets, times
+ *  `scale`. */
+PlaneOdometryOptions atScale(PlaneOdometryOptions options, double scale);
+}  // namespace delio::odometry

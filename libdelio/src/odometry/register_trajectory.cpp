@@ -1,0 +1,175 @@
+#include "odometry/register_trajectory.h"
+
+#include <tbb/parallel_for.h>
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/scan_trajectory.h"
+#include "core/voxel_grid.h"
+#include "odometry/register_planes.h"
+
+namespace delio::odometry {
+namespace {
+/** The polynomial's coefficients, a rotation vector and a translation each: the pose at the stamp,
+ *  and what acceleration and jerk add to the way there and beyond. */
+constexpr Eigen::Index kDegree = 3;
+using Coefficients = Eigen::Matrix<double, 6 * kDegree, 1>;
+using Equations = NormalEquations<6 * kDegree>;
+
+/** What each coefficient counts at `time_s` from the stamp: nothing where the pose is known; the
+ *  latter two nothing at the stamp either. */
+Eigen::Matrix<double, kDegree, 1> sharesAt(double time_s, double since_s) {
+    const double way = 1 + time_s / since_s;
+    return {way, way * (way - 1), way * (way - 1) * (way + 1)};
+}
+
+/** 1 over the variance of each. */
+Coefficients informationOf(const CoursePrior& prior) {
+    // Speeds that differ by a T from one interval to the next, on average, lead a T^2 astray;
+    // within an interval the way is off by a T^2 / 2 (t/T) (t/T - 1), and by a jerk of a / T as the
+    // third.
+    constexpr double kAcceleration = 1.0 / 2, kJerk = 1.0 / 6;
+    const Eigen::Vector3d one = Eigen::Vector3d::Ones(),
+                          turn = one / std::pow(prior.unevenRotation, 2),
+                          move = one / std::pow(prior.unevenTranslation, 2);
+    Coefficients information;
+    information << one / std::pow(prior.rotation, 2), one / std::pow(prior.translation, 2),
+        turn / std::pow(kAcceleration, 2), move / std::pow(kAcceleration, 2),
+        turn / std::pow(kJerk, 2), move / std::pow(kJerk, 2);
+    return information;
+}
+
+/** Of points that are in the map's frame already. */
+Equations equationsOf(const Correspondences& matches, const TimedPoints& scan,
+                      const PoseTable& poses, double since_s) {
+    return sumOver<Equations>(matches, [&](const Correspondence& match, Equations& sum) {
+        const double time_s = scan.times_s[match.index],
+                     residual = match.normal.dot(match.point - match.mean);
+        const Eigen::Vector3d point = scan.points.col(static_cast<Eigen::Index>(match.index));
+        Vector6 both;
+        both << point.cross(poses.at(time_s).linear().transpose() * match.normal), match.normal;
+        const auto shares = sharesAt(time_s, since_s);
+        Coefficients all;
+        for (Eigen::Index k = 0; k < kDegree; ++k) all.segment<6>(6 * k) = shares[k] * both;
+        sum.add(all, residual, match.weight);
+    });
+}
+
+/** In the map's frame. */
+void place(const TimedPoints& scan, const PoseTable& poses, Eigen::Matrix3Xd& placed) {
+    tbb::parallel_for(std::size_t{0}, scan.times_s.size(), [&](std::size_t i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        placed.col(k) = poses.at(scan.times_s[i]) * scan.points.col(k);
+    });
+}
+
+Course bent(const Course& course, const Coefficients& step, double since_s) {
+    auto poses = course.poses();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const auto shares = sharesAt(course.times_s()[i], since_s);
+        Vector6 move = Vector6::Zero();
+        for (Eigen::Index k = 0; k < kDegree; ++k) move += shares[k] * step.segment<6>(6 * k);
+        const Eigen::Matrix3d R = poses[i].linear() * rotationExp(move.head<3>());
+        poses[i] = isometry(normalised(R), poses[i].translation() + move.tail<3>());
+    }
+    return {course.times_s(), poses};
+}
+}  // namespace
+
+Course registerCourse(const PlaneMap& map, const TimedPoints& scan, const Course& course,
+                      double since_s, const CoursePrior& prior, double kernel,
+                      const PlaneRegistrationOptions& options) {
+    constexpr unsigned kIterations = 6;  // with one kernel
+    constexpr double kConverged = 1e-4, kRough = 1e-3, kLeastFactor = 0.01;
+    if (scan.times_s.empty()) return course;
+    const auto [least, most] = std::minmax_element(scan.times_s.begin(), scan.times_s.end());
+    const Coefficients known = informationOf(prior);
+    Eigen::Matrix3Xd placed(3, scan.points.cols());
+    Matcher matcher(map, placed, options.point_sigma);
+    Course now = course;
+    Coefficients sinceStart = Coefficients::Zero();
+    for (double width = std::max(kernel, options.last_kernel);;
+         width = std::max(width / 2, options.last_kernel)) {
+        for (unsigned i = 0; i < kIterations; ++i) {
+            const PoseTable poses(now, *least, *most);
+            place(scan, poses, placed);
+            const auto matches = matcher.at(Eigen::Isometry3d::Identity(), width);
+            if (matches.size() < options.min_matches) return course;
+            Equations equations = equationsOf(matches, scan, poses, since_s);
+            // As in registerToPlanes(): points of one surface err together.
+            const double factor =
+                std::max(equations.cost / static_cast<double>(matches.size()), kLeastFactor) /
+                options.independent_share;
+            equations.information.diagonal() += factor * known;
+            equations.gradient += factor * known.cwiseProduct(sinceStart);
+            const Coefficients step = -equations.information.ldlt().solve(equations.gradient);
+            now = bent(now, step, since_s);
+            sinceStart += step;
+            if (step.norm() < (width > options.last_kernel ? kRough : kConverged)) break;
+        }
+        if (width <= options.last_kernel) return now;
+    }
+}
+
+namespace {
+/** Static points, the first one in each voxel of `spacing`. */
+TimedPoints pickedOf(const PointCloud& cloud, const ScanView& view, double spacing) {
+    const auto voxels = numberVoxels(view.points, spacing);
+    TimedPoints picked{Eigen::Matrix3Xd(3, voxels.voxels), {}};
+    std::uint32_t met = 0;
+    for (std::size_t i = 0; i < voxels.ofPoint.size(); ++i) {
+        if (voxels.ofPoint[i] != met) continue;
+        ++met;
+        if (view.dynamic[i]) continue;
+        picked.points.col(static_cast<Eigen::Index>(picked.times_s.size())) =
+            cloud.points.col(static_cast<Eigen::Index>(i)).cast<double>();
+        picked.times_s.push_back(double{cloud.times_s[i]});
+    }
+    picked.points.conservativeResize(3, static_cast<Eigen::Index>(picked.times_s.size()));
+    return picked;
+}
+}  // namespace
+
+Course evenCourse(const KnownMotion& known, const PointCloud& cloud) {
+    constexpr unsigned kParts = 8;
+    const auto [least, most] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
+    const double start_s = -known.since_s, first_s = std::max(start_s, double{*least}),
+                 last_s = std::max(0.0, double{*most});
+    // Before the scan one part: of a bend only its mean can be extrapolated, to a scan before.
+    std::vector<double> times_s;
+    if (first_s > start_s) times_s.push_back(start_s);
+    for (unsigned k = 0; k <= (last_s > first_s ? kParts : 0); ++k)
+        times_s.push_back(first_s + k * (last_s - first_s) / kParts);
+    return Course::even(times_s, known.reference,
+                        Motion::of(known.reference.inverse() * known.pose, known.since_s));
+}
+
+Course findCourse(const PlaneMap& map, const KnownMotion& known, const PointCloud& cloud,
+                  const ScanView& view, const Unevenness& unevenness, double kernel,
+                  const PlaneOdometryOptions& options) {
+    const double most_m = options.tracker.acceleration * known.since_s * known.since_s;
+    return registerCourse(map, pickedOf(cloud, view, options.tracker.scan_spacing),
+                          evenCourse(known, cloud), known.since_s, unevenness.prior(most_m), kernel,
+                          options.registration);
+}
+
+std::optional<ScanOnCourse> registerOn(const Course& course, const KnownMotion& known,
+                                       const LocalMap& map, const PointCloud& cloud,
+                                       const ScanView& view, const PlaneOdometryOptions& options) {
+    ScanView again = undistorted(cloud, course.seenFrom(0));
+    again.dynamic = view.dynamic;
+    thin(again, options.tracker.map_spacing, options.tracker.scan_spacing);
+    again.coarse = firstOfVoxels(again.fine, options.tracker.point_spacing).cast<double>();
+    const auto placed = map.place(again.coarse, course.at(0), options.points.least_kernel);
+    if (!placed.valid) return {};
+    auto estimate = map.refine(again, placed, known.pose, known.reference);
+    return ScanOnCourse{std::move(again), std::move(estimate), course, placed.share};
+}
+
+Onward::Onward(const Course& course, double over_s)
+    : end_s_(course.times_s().back()),
+      end_(course.poses().back()),
+      motion_(Motion::of(course.at(end_s_ - over_s).inverse() * end_, over_s)) {}
+}  // namespace delio::odometry

@@ -1,0 +1,84 @@
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include "core/scan_trajectory.h"
+#include "delio/core/odometry_options.h"
+#include "odometry/deskew.h"
+#include "odometry/local_map.h"
+#include "odometry/motion_model.h"
+#include "odometry/plane_map.h"
+#include "odometry/register_planes.h"
+
+namespace delio::odometry {
+/** Points as a moving sensor saw them, one after the other. */
+struct TimedPoints {
+    Eigen::Matrix3Xd points;      //!< metres, sensor's frame at each point's own time
+    std::vector<double> times_s;  //!< of each point, from the scan's stamp
+};
+
+/** The motion (sensor to map) during a scan, from the planes that its points lie on, each at its
+ *  own time: continuous-time registration. `course` is where it begins: `since_s` before the stamp
+ *  the pose is known and stays; from there on it is bent by a polynomial of third degree, from
+ *  correspondences that are made anew while the kernel narrows from `kernel` (metres) to
+ *  last_kernel. Planes and prior are fused by their information. With too few points on planes it
+ *  stays as it is. */
+Course registerCourse(const PlaneMap& map, const TimedPoints& scan, const Course& course,
+                      double since_s, const CoursePrior& prior, double kernel,
+                      const PlaneRegistrationOptions& options);
+
+/** What is known of the motion during a scan whose points have times. */
+struct KnownMotion {
+    Eigen::Isometry3d reference;  //!< `since_s` before the stamp, sensor to map
+    double since_s = 0;           //!< more than 0
+    Eigen::Isometry3d pose;       //!< at the stamp, likewise
+};
+
+/** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to
+ *  map, times from the stamp. */
+Course evenCourse(const KnownMotion& known, const PointCloud& cloud);
+
+/** The same, bent as far as it is known to be uneven, such that static points, which `view` is told
+ *  of, lie on the planes of `map`. `kernel` (metres): how far they may be off. */
+Course findCourse(const PlaneMap& map, const KnownMotion& known, const PointCloud& cloud,
+                  const ScanView& view, const Unevenness& unevenness, double kernel,
+                  const PlaneOdometryOptions& options);
+
+/** A scan as it was seen on a course, and where it is then. */
+struct ScanOnCourse {
+    ScanView view;           //!< thinned, too
+    PlaneEstimate estimate;  //!< of its pose at the stamp
+    Course course;           //!< sensor to map, times from the stamp
+    double share = 0;        //!< of its points on those of the map
+};
+
+/** Undistorts `cloud`, what is dynamic in `view` left out, and registers it as a whole. None where
+ *  it is not found in the map. */
+std::optional<ScanOnCourse> registerOn(const Course& course, const KnownMotion& known,
+                                       const LocalMap& map, const PointCloud& cloud,
+                                       const ScanView& view, const PlaneOdometryOptions& options);
+
+/** How the sensor moved when a scan ended, and moves on. */
+class Onward {
+ public:
+    Onward() = default;
+    /** At constant twist, by `increment` in `duration_s` (more than 0) from the stamp on. */
+    Onward(const Eigen::Isometry3d& increment, double duration_s)
+        : end_s_(duration_s), end_(increment), motion_(Motion::of(increment, duration_s)) {}
+    /** `course`: during the scan, times and frame those of its stamp. The motion is that of its
+     * last `over_s`. */
+    Onward(const Course& course, double over_s);
+
+    /** The sensor at `time_s` from the stamp: maps its frame then to the one at the stamp. */
+    Eigen::Isometry3d at(double time_s) const { return end_ * motion_.after(time_s - end_s_); }
+    /** Its twist. */
+    const Motion& motion() const { return motion_; }
+
+ private:
+    double end_s_ = 0;
+    Eigen::Isometry3d end_ = Eigen::Isometry3d::Identity();
+    Motion motion_;
+};
+}  // namespace delio::odometry

@@ -1,0 +1,48 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include "delio/core/odometry_options.h"
+
+#include "odometry/point_map.h"
+#include "odometry/register_points.h"
+
+namespace delio::odometry {
+/** Registration where `guess` may be off by `reach` metres. The rings that a sensor draws on the
+ *  ground look the same wherever it stands and would confirm any guess; so starts all over a disc
+ *  are compared by those points alone that the guess does not explain. The disc is level where
+ *  `upright` turns the points' frame such that z is up. */
+PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
+                           const Eigen::Isometry3d& guess, double reach,
+                           const Eigen::Matrix3f& upright, const PointRegistrationOptions& options);
+
+/** Registration where the rotation of `guess` may be off by up to 30 deg about any axis: by the
+ * hand that carries the sensor, or a bump. Where a share of `enough` fits, no more is tried. */
+PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
+                          const Eigen::Isometry3d& guess, double enough,
+                          const PointRegistrationOptions& options);
+
+/** True where the points see that direction (a unit vector of the map's frame): the scan comes back
+ *  to `pose` from `probe` metres along it to either side. (Rings of a sensor in a tunnel lie on
+ *  those of the scan before wherever it stands: there it stays where it was put.) */
+bool pointsSee(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
+               const Eigen::Vector3d& axis, double probe, const PointRegistrationOptions& options);
+
+/** Places in a level square: `steps` to either side of its middle, `step` metres apart. */
+struct LevelSquare {
+    const Eigen::Isometry3d& middle;  //!< sensor to map
+    const Eigen::Matrix3f& upright;   //!< turns the sensor's z up
+    double step = 1;
+    int steps = 0;
+
+    int side() const { return 2 * steps + 1; }  //!< places in a row
+};
+
+/** Counts of points; a row and a column of places are an x and a y, which rise. */
+using LevelCounts = Eigen::Array<std::uint64_t, Eigen::Dynamic, Eigen::Dynamic>;
+
+/** From each place, how many points of the scan (metres, sensor's frame) come to lie within about
+ *  half a step of one of the map's: by correlation over a grid (Olson, Real-time correlative scan
+ *  matching, ICRA 2009). Of points far above or below the sensor none is counted. */
+LevelCounts countsFrom(const LevelSquare& square, const PointMap& map,
+                       const Eigen::Matrix3Xd& points);
+}  // namespace delio::odometry
