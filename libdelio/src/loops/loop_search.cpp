@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../core/checkpoint.h"
 #include "../core/portable_math.h"
 #include "delio/core/geometry.h"
 #include "places.h"
@@ -77,10 +76,8 @@ double LoopCandidate::moved_m() const {
 }
 
 LoopSearch::LoopSearch(const LoopOptions& options, const ClosureOptions& closure,
-                       std::string folder, bool isKept)
-    : options_(options),
-      closure_(closure),
-      places_(std::make_unique<Places>(std::move(folder), isKept)) {}
+                       std::string folder)
+    : options_(options), closure_(closure), places_(std::make_unique<Places>(std::move(folder))) {}
 
 LoopSearch::~LoopSearch() = default;
 
@@ -91,14 +88,6 @@ void LoopSearch::add(Submap submap, const Eigen::Isometry3d& keyPose) {
     submaps_.push_back(std::move(submap));
     const std::size_t to = submaps_.size() - 1;
     for (std::size_t from = 0; from < to; ++from) compare(from, to, {});
-}
-
-void LoopSearch::save(std::ostream& out) const {
-    checkpoint::save(out, {"loops", checkpoint::textOf({&options_, &closure_})}, *this);
-}
-
-void LoopSearch::restore(std::istream& in) {
-    checkpoint::restore(in, {"loops", checkpoint::textOf({&options_, &closure_})}, *this);
 }
 
 const Sketch& LoopSearch::sketch(std::size_t submap) const { return places_->sketch(submap); }

@@ -3,24 +3,8 @@
 #include <algorithm>
 
 namespace delio::loops {
-namespace {
-constexpr const char *kWhat = "submaps", *kOption = "--no-loops";
-}  // namespace
-
-/** After points_ were read: all else of the submaps again. */
-void Places::reopen(std::uint64_t end) {
-    spool_.reset();
-    sketches_.clear();
-    repetitions_.clear();
-    if (points_.empty()) return;
-    spool_ = io::Spool::again(path(), kWhat, kOption, end);
-    for (std::size_t i = 0; i < points_.size(); ++i) sketches_.emplace_back(points(i));
-}
-
 void Places::add(const Eigen::Matrix3Xf& points) {
-    if (!spool_)
-        spool_ =
-            isKept_ ? io::Spool::named(path(), kWhat, kOption) : io::Spool(folder_, kWhat, kOption);
+    if (!spool_) spool_.emplace(folder_, "submaps", "--no-loops");
     points_.push_back(spool_->append(points.data(), static_cast<std::size_t>(points.size())));
     sketches_.emplace_back(points);
 }

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,8 +13,8 @@ namespace delio::loops {
  *  those that were needed last what others are verified against. */
 class Places {
  public:
-    /** `isKept`: the points' file has a name, and stays. */
-    Places(std::string folder, bool isKept) : folder_(std::move(folder)), isKept_(isKept) {}
+    /** `folder`: of the file of points, see Spool. */
+    explicit Places(std::string folder) : folder_(std::move(folder)) {}
 
     /** The next submap's points. Error where there is no room for them. */
     void add(const Eigen::Matrix3Xf& points);
@@ -28,11 +27,7 @@ class Places {
     std::shared_ptr<const Ground> ground(std::size_t submap);
 
  private:
-    std::string path() const { return folder_ + "/submaps.spool"; }
-    void reopen(std::uint64_t end);
-
     std::string folder_;
-    bool isKept_;
     std::optional<io::Spool> spool_;  //!< made with the first submap
     std::vector<io::Spool::Place> points_;
     std::vector<Sketch> sketches_;

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "../core/checkpoint.h"
 #include "build_map.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
@@ -108,13 +107,11 @@ void MapOptions::check(const std::string& section) const {
     requireOrder(section + ".min_range", minRange_m, section + ".max_range", maxRange_m);
 }
 
-MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel, std::string folder,
-                       bool isKept)
+MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel, std::string folder)
     : given_(options),
       options_(options),
       sensorLabel_(std::move(sensorLabel)),
-      folder_(std::move(folder)),
-      isKept_(isKept) {}
+      folder_(std::move(folder)) {}
 
 MapBuilder::~MapBuilder() = default;
 MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
@@ -142,9 +139,7 @@ bool MapBuilder::isFarFromLastView(const Isometry3d& pose, mrpt::Clock::time_poi
 
 void MapBuilder::putAside(const std::vector<float>& points, const CPointsMap* view,
                           StoredScan& scan) {
-    if (!spool_)
-        spool_ = std::make_shared<io::Spool>(isKept_ ? io::Spool::named(spoolPath(), kWhat, kOption)
-                                                     : io::Spool(folder_, kWhat, kOption));
+    if (!spool_) spool_ = std::make_shared<io::Spool>(folder_, kWhat, kOption);
     scan.points = spool_->append(points);
     if (!view) return;
     const auto packed = scan::RangeImage(finitePoints(*view), options_.removal.cell_deg).packed();
@@ -172,7 +167,7 @@ bool MapBuilder::add(std::size_t poseIndex, const Isometry3d& approximatePose,
         putAside(points.floats, isView ? &sensorPoints : nullptr, scan);
     } catch (const Error& e) {
         now_.fault = e.what();
-        giveUp();
+        spool_.reset();  // what was put aside leaves its room to the other results
         return false;
     }
     scans_.push_back(scan);
@@ -189,28 +184,12 @@ bool MapBuilder::add(std::size_t poseIndex, const Isometry3d& approximatePose,
     return scan.isKeyframe;
 }
 
-/** There will be no map: what was put aside for it leaves its room to the other results. */
-void MapBuilder::giveUp() {
-    spool_.reset();
-    std::error_code ignored;
-    if (isKept_) std::filesystem::resize_file(spoolPath(), 0, ignored);
-}
-
 void MapBuilder::undo() noexcept {
     if (!canUndo_) return;
     // What was put aside stays on the disk: a simplemap that was given out may still need it.
     if (!spool_ && before_.scans > 0) before_.fault = now_.fault;  // what was given up is gone
     now_ = std::move(before_);
     scans_.erase(scans_.begin() + static_cast<std::ptrdiff_t>(now_.scans), scans_.end());
-    canUndo_ = false;
-}
-
-void MapBuilder::save(std::ostream& out) const {
-    checkpoint::save(out, {"map", checkpoint::textOf({&given_, &given_.removal})}, *this);
-}
-
-void MapBuilder::restore(std::istream& in) {
-    checkpoint::restore(in, {"map", checkpoint::textOf({&given_, &given_.removal})}, *this);
     canUndo_ = false;
 }
 

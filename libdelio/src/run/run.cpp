@@ -3,9 +3,7 @@
 #include <mrpt/core/format.h>
 
 #include <limits>
-#include <sstream>
 
-#include "core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/io/drive_meta.h"
@@ -14,6 +12,7 @@
 #include "delio/run/run_folder.h"
 #include "delio/scan/preprocess.h"
 #include "io/side_file.h"
+#include "row_files.h"
 
 namespace delio::run {
 namespace {
@@ -34,6 +33,11 @@ Run::Run(const Options& options, const RunSettings& settings)
     record_.drive = settings.drive;
     record_.options = options;
     attach(graph_);
+    std::string temporary;
+    if (!settings.folder.empty()) {
+        temporary = RunFolder(settings.folder).path(RunFolder::kIncomplete);
+        rows_ = std::make_unique<RowFiles>(temporary);
+    }
     if (!settings.storedMap.empty()) {
         record_.storedMap =
             settings.storedMapName.empty() ? settings.storedMap : settings.storedMapName;
@@ -45,14 +49,16 @@ Run::Run(const Options& options, const RunSettings& settings)
     }
     if (searchesLoops() || settings.map) {
         loops_ = std::make_shared<LoopCloser>(options.submaps, loopOptions(), options.closures,
-                                              settings.folder, settings.mayGoOn);
+                                              temporary);
         attach(loops_);
     }
     if (!settings.map) return;
     map_ = std::make_shared<MapListener>(
-        map::MapBuilder(options.map, settings.sensorLabel, settings.folder, settings.mayGoOn));
+        map::MapBuilder(options.map, settings.sensorLabel, temporary));
     attach(map_);
 }
+
+Run::~Run() = default;
 
 bool Run::searchesLoops() const { return settings_.loops && settings_.graph; }
 
@@ -121,29 +127,12 @@ RunRow Run::process(const Scan& scan, double read_ms) {
                          scan.index));
     }
     rows.push_back(row);
+    try {
+        if (rows_) rows_->add(row, slam_.trajectory().poses.back());
+    } catch (const std::exception& e) {
+        warn("the rows so far are not kept while the drive goes on: " + plainMessage(e));
+    }
     return row;
-}
-
-/** What decides which results there are, for a state's label. */
-std::string Run::asked() const {
-    std::ostringstream text;
-    record_.options.write(text);
-    text << settings_.sensorLabel << '\n'
-         << settings_.graph << settings_.map << settings_.loops << settings_.keepDynamic
-         << settings_.extend << '\n'
-         << settings_.storedMap << '\n';
-    if (settings_.initialPose) text << settings_.initialPose->matrix();
-    return text.str();
-}
-
-void Run::save(std::ostream& out) const {
-    checkpoint::save(out, {"run", asked()}, record_);
-    slam_.save(out);
-}
-
-void Run::restore(std::istream& in) {
-    checkpoint::restore(in, {"run", asked()}, record_);
-    slam_.restore(in);
 }
 
 /** Where there are none, the graph stays as it was. */

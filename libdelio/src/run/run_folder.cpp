@@ -13,7 +13,6 @@
 #include "delio/map/page.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
-#include "delio/run/keeper.h"
 #include "scan_row.h"
 
 namespace delio::run {
@@ -137,9 +136,10 @@ std::string RunFolder::write(RunRecord record, const RunMaps& maps,
     std::error_code fault;
     fs::create_directories(folder_, fault);
     if (fault) throw Error("cannot make the folder '" + folder_ + "': " + fault.message());
-    // Where a run may be gone on with, what a kill leaves goes with the rest of it.
-    const std::string kept = path(Keeper::kFolder);
-    io::PartialFolder partial(folder_, folder_, fs::is_directory(kept, fault) ? kept : "");
+    // What a kill leaves lies with the rest of the run that was killed, if there is a place.
+    const std::string incomplete = path(kIncomplete);
+    io::PartialFolder partial(folder_, folder_,
+                              fs::is_directory(incomplete, fault) ? incomplete : "");
     try {
         const RunFolder results(partial.path().string());
         results.writeTables(record);

@@ -6,9 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "../core/checkpoint.h"
-#include "delio/odometry/make_odometry.h"
-
 namespace delio {
 GraphBuilder::State GraphBuilder::state() const {
     const auto& poses = graph_.poses();
@@ -35,24 +32,6 @@ void GraphBuilder::add(const SlamScan& scan) {
         throw;
     }
     before_ = std::move(before);
-}
-
-void GraphBuilder::save(std::ostream& out) const {
-    checkpoint::save(out, {"graph", checkpoint::textOf({&options_})}, *this);
-    std::vector<std::uint8_t> has;  // features, of each recent scan
-    for (const auto& recent : recent_) has.push_back(recent.features != nullptr);
-    checkpoint::save(out, {"graph's features", ""}, has);
-    for (const auto& recent : recent_)
-        if (recent.features) recent.features->save(out);
-}
-
-void GraphBuilder::restore(std::istream& in) {
-    checkpoint::restore(in, {"graph", checkpoint::textOf({&options_})}, *this);
-    std::vector<std::uint8_t> has;
-    checkpoint::restore(in, {"graph's features", ""}, has);
-    for (std::size_t i = 0; i < has.size() && i < recent_.size(); ++i)
-        if (has[i]) recent_[i].features = readFeatures(in);
-    before_ = state();
 }
 
 void GraphBuilder::append(const SlamScan& scan) {

@@ -1,6 +1,5 @@
 #include "delio/slam/localiser.h"
 
-#include "../core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/graph/pose_pdf.h"
 #include "delio/io/decode_observation.h"
@@ -33,15 +32,5 @@ std::optional<mrpt::poses::CPose3DPDFGaussian> Localiser::process(
     const auto found = process(scan);
     if (found.fix.where == Whereabouts::kUnknown) return {};
     return graph::posePdfOf(found.fix.vehicle);
-}
-
-void Localiser::save(std::ostream& out) const {
-    checkpoint::save(out, {"localiser", ""}, observations_);
-    slam_.save(out);
-}
-
-void Localiser::restore(std::istream& in) {
-    checkpoint::restore(in, {"localiser", ""}, observations_);
-    slam_.restore(in);
 }
 }  // namespace delio

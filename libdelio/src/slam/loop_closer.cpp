@@ -6,16 +6,14 @@
 #include <chrono>
 #include <utility>
 
-#include "../core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/scan/spin_axis.h"
 
 namespace delio {
 LoopCloser::LoopCloser(const loops::SubmapOptions& submaps, const loops::LoopOptions& loops,
-                       const loops::ClosureOptions& closures, const std::string& folder,
-                       bool isKept)
-    : builder_(submaps), search_(loops, closures, folder, isKept) {}
+                       const loops::ClosureOptions& closures, const std::string& folder)
+    : builder_(submaps), search_(loops, closures, folder) {}
 
 void LoopCloser::add(const SlamScan& scan) {
     const auto& points = scan.step.used.points;
@@ -41,31 +39,6 @@ void LoopCloser::add(const SlamScan& scan) {
 void LoopCloser::undo() noexcept {
     builder_.undo();
     poses_.pop_back();
-}
-
-std::string LoopCloser::faultText() const {
-    if (!fault_) return {};
-    try {
-        std::rethrow_exception(fault_);
-    } catch (const std::exception& e) {
-        return plainMessage(e);
-    }
-}
-
-void LoopCloser::takeFault(const std::string& text) {
-    fault_ = text.empty() ? nullptr : std::make_exception_ptr(Error(text));
-}
-
-/** What the thread is busy with is waited for. */
-void LoopCloser::save(std::ostream& out) const {
-    if (busy_.valid()) busy_.wait();
-    checkpoint::save(out, {"submaps", checkpoint::textOf({&builder_.options()})}, *this);
-    search_.save(out);
-}
-
-void LoopCloser::restore(std::istream& in) {
-    checkpoint::restore(in, {"submaps", checkpoint::textOf({&builder_.options()})}, *this);
-    search_.restore(in);
 }
 
 void LoopCloser::end(std::optional<loops::Submap> submap) {

@@ -32,13 +32,6 @@ void MapListener::add(const SlamScan& scan) {
                  scan.scan.sensorPose, scan.scan.time, scan.step.used.dynamic);
 }
 
-void MapListener::save(std::ostream& out) const { builder_.save(out); }
-
-void MapListener::restore(std::istream& in) {
-    builder_.restore(in);
-    added_ = false;  // there is nothing to take back
-}
-
 void MapListener::undo() noexcept {
     if (added_) builder_.undo();
 }

@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "../core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 
@@ -36,25 +35,6 @@ void Slam::tell(const SlamScan& scan, ScanReport& report) {
         while (told > 0) listeners_[--told]->undo();
         throw;
     }
-}
-
-std::string Slam::listenerNames() const {
-    std::string names;
-    for (const auto& listener : listeners_) names += std::string(listener->name()) + "\n";
-    return names;
-}
-
-void Slam::save(std::ostream& out) const {
-    requireOpen();
-    checkpoint::save(out, {"drive", listenerNames()}, *this);
-    odometry_->save(out);
-    for (const auto& listener : listeners_) listener->save(out);
-}
-
-void Slam::restore(std::istream& in) {
-    checkpoint::restore(in, {"drive", listenerNames()}, *this);
-    odometry_->restore(in);
-    for (const auto& listener : listeners_) listener->restore(in);
 }
 
 ScanReport Slam::process(const Scan& scan) {

@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <sstream>
-
-#include "core/checkpoint.h"
+#include <vector>
 
 namespace {
 using namespace delio;
@@ -58,29 +56,18 @@ void expectSame(const run::RunRow& row, const run::RunRow& expected) {
     EXPECT_EQ(step.details, other.details);
 }
 
-TEST(RunRows, ComeBackAsTheyWerePutInAndAfterTheyWereKept) {
+TEST(RunRows, ComeBackAsTheyWerePutIn) {
     run::RunRow second;
     second.scan = std::size_t{1} << 40;
     second.report.step.details = {{"another", -0.0}, {"name", 1e-300}};
     const std::vector<run::RunRow> put{someRow(), second, someRow()};
-    run::RunRows rows, again;
+    run::RunRows rows;
     for (const auto& row : put) rows.push_back(row);
-    std::ostringstream bytes;
-    checkpoint::save(bytes, {"rows", ""}, rows);
-    std::istringstream in(bytes.str());
-    checkpoint::restore(in, {"rows", ""}, again);
-    for (const auto* all : {&rows, &again}) {
-        ASSERT_EQ(all->size(), 3U);
-        for (std::size_t i = 0; i < 3; ++i) expectSame((*all)[i], put[i]);
-        std::size_t i = 0;
-        for (const auto& row : *all) EXPECT_EQ(row.scan, put[i++].scan);
-        EXPECT_EQ(i, 3U);
-    }
-    // What is the same is not kept again.
-    std::ostringstream five;
-    for (int i = 0; i < 2; ++i) rows.push_back(someRow());
-    checkpoint::save(five, {"rows", ""}, rows);
-    EXPECT_LT(five.str().size() - bytes.str().size(), 2 * 500U);
+    ASSERT_EQ(rows.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) expectSame(rows[i], put[i]);
+    std::size_t i = 0;
+    for (const auto& row : rows) EXPECT_EQ(row.scan, put[i++].scan);
+    EXPECT_EQ(i, 3U);
 }
 
 TEST(RunRows, OfASensorThatTurnsOnItsVehicle) {

@@ -1,12 +1,15 @@
 #include "delio/run/run.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 
 #include "delio/core/error.h"
+#include "delio/run/run_folder.h"
 #include "poses.h"
 #include "ring_scan.h"
+#include "test_data.h"
 #include "toy_run.h"
 
 namespace {
@@ -49,6 +52,26 @@ TEST_F(ToyRun, NotesEachScan) {
     EXPECT_FALSE(record.optimised());
     EXPECT_FALSE(record.metrics);  // no truth
     EXPECT_GT(map::cloudOf(run.maps().points->build(record.final.poses).points).size(), 1000U);
+}
+
+TEST_F(ToyRun, AFullDiskDoesNotEndTheDrive) {
+    const test::TemporaryFolder folder;
+    run::RunSettings settings;
+    settings.map = false;
+    settings.folder = folder.path().string();
+    const auto rows = folder / run::RunFolder::kIncomplete;
+    {
+        run::Run run(Options(), settings);
+        std::filesystem::create_symlink("/dev/full", rows / run::RunFolder::kScans);
+        process(run);
+        run.finish(true);
+        ASSERT_EQ(run.record().warnings.size(), 1U);
+        EXPECT_NE(run.record().warnings[0].find(run::RunFolder::kScans), std::string::npos);
+        EXPECT_EQ(run.record().fault, "");
+        EXPECT_EQ(run.record().rows.size(), kScans);
+        EXPECT_TRUE(std::filesystem::is_empty(rows));
+    }
+    EXPECT_FALSE(std::filesystem::exists(rows));
 }
 
 TEST_F(ToyRun, ContradictingOptionsAreRefused) {

@@ -1,5 +1,4 @@
 #pragma once
-#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -57,10 +56,8 @@ struct LoopCandidate {
 class LoopSearch {
  public:
     /** `folder`: where submaps are put aside, in a file without a name; empty: the system's for
-     *  temporary files. With `isKept` in `folder`/submaps.spool, which stays: what save() wrote
-     *  refers to it. */
-    LoopSearch(const LoopOptions& options, const ClosureOptions& closure, std::string folder = "",
-               bool isKept = false);
+     *  temporary files. */
+    LoopSearch(const LoopOptions& options, const ClosureOptions& closure, std::string folder = "");
     ~LoopSearch();
 
     /** The drive's next submap, compared with all before it; pose: of its key node's vehicle.
@@ -80,13 +77,6 @@ class LoopSearch {
     /** Of a submap; from the disk. */
     Eigen::Matrix3Xf points(std::size_t submap) const;
     const LoopOptions& options() const { return options_; }  //!< that it was made with
-
-    /** What was added and found. Error where the submaps are in a file without a name, or it cannot
-     *  be written. */
-    void save(std::ostream& out) const;
-    /** Into one of the same options and folder to which nothing was added. Error where the state is
-     *  cut off, damaged or of other options, or the file of the submaps is. */
-    void restore(std::istream& in);
 
  private:
     void compare(std::size_t from, std::size_t to, const std::vector<LoopCandidate>& known);

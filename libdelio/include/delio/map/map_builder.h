@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
-#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -71,10 +70,9 @@ class MapBuilder {
  public:
     /** @param sensorLabel becomes the label of the simplemap's observations
      *  @param folder where scans are put aside, in a file without a name; empty: the system's
-     *  folder for temporary files
-     *  @param isKept in `folder`/map.spool instead, which stays: what save() wrote refers to it */
+     *  folder for temporary files */
     explicit MapBuilder(const MapOptions& options, std::string sensorLabel = "lidar",
-                        std::string folder = "", bool isKept = false);
+                        std::string folder = "");
     ~MapBuilder();
     /** Moves; what is left of the other is of no use. */
     MapBuilder(MapBuilder&&) noexcept;
@@ -110,12 +108,6 @@ class MapBuilder {
 
     std::size_t keyframes() const { return now_.keyframes; }  //!< among the scans that were added
 
-    /** What was added. Error where scans are in a file without a name, or it cannot be written. */
-    void save(std::ostream& out) const;
-    /** Into one of the same options and folder to which nothing was added. Error where the state is
-     *  cut off, damaged or of other options, or the file of the scans is. */
-    void restore(std::istream& in);
-
     /** The map at the given poses. Throws Error if a scan's poseIndex is outside `poses`, or if one
      *  could not be put aside. */
     BuiltMap build(const std::vector<Eigen::Isometry3d>& poses) const;
@@ -132,8 +124,6 @@ class MapBuilder {
 
     bool isFarFromLastKeyframe(const Eigen::Isometry3d& pose) const;
     bool isFarFromLastView(const Eigen::Isometry3d& pose, mrpt::Clock::time_point stamp) const;
-    void giveUp();
-    std::string spoolPath() const { return folder_ + "/map.spool"; }
     void putAside(const std::vector<float>& points, const mrpt::maps::CPointsMap* view,
                   StoredScan& scan);
 
@@ -144,6 +134,5 @@ class MapBuilder {
     std::shared_ptr<io::Spool> spool_;  //!< made with the first scan
     State now_, before_;                //!< before the last add()
     bool canUndo_ = false;
-    bool isKept_;
 };
 }  // namespace delio::map

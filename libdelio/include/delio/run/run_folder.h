@@ -57,6 +57,9 @@ class RunFolder {
     /** Of several drives: which is in which map. A run of one drive has none. */
     static constexpr const char* kDrives = "drives.csv";
 
+    /** Folder of a run in progress: its rows so far, see RunSettings::folder. */
+    static constexpr const char* kIncomplete = "incomplete";
+
     /** It need not be there yet. */
     explicit RunFolder(std::string folder) : folder_(std::move(folder)) {}
 

@@ -17,8 +17,6 @@ class GraphBuilder : public SlamListener {
     const char* name() const override { return "graph"; }
     void add(const SlamScan& scan) override;
     void undo() noexcept override { takeBack(before_); }
-    void save(std::ostream& out) const override;
-    void restore(std::istream& in) override;
 
     /** Optimises the whole graph; while driving, its last nodes were. */
     graph::OptimisationResult optimise() { return graph_.optimise(options_); }
@@ -30,8 +28,6 @@ class GraphBuilder : public SlamListener {
         std::size_t node = 0;
         std::shared_ptr<const ScanFeatures> features;
         Eigen::Isometry3d sensorPose = Eigen::Isometry3d::Identity();
-
-        /** Without the features. */
     };
     /** What it takes to forget a scan. */
     struct State {

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstddef>
-#include <iosfwd>
 
 #include "delio/odometry/step.h"
 #include "delio/scan/scan.h"
@@ -39,11 +38,5 @@ class SlamListener {
 
     /** Takes back the scan that was added last: another listener failed on it. */
     virtual void undo() noexcept = 0;
-
-    /** All that the scans have left with it; nothing where that is nothing. Error where it cannot
-     *  be written. See Odometry::save(). */
-    virtual void save(std::ostream& /*out*/) const {}
-    /** Into one that was made alike and was told of no scan. Error as there. */
-    virtual void restore(std::istream& /*in*/) {}
 };
 }  // namespace delio

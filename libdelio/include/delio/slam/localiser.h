@@ -2,7 +2,6 @@
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
-#include <iosfwd>
 #include <memory>
 #include <optional>
 
@@ -38,11 +37,6 @@ class Localiser {
      *  Throws Error for an observation that is no LiDAR scan. */
     std::optional<mrpt::poses::CPose3DPDFGaussian> process(
         const mrpt::obs::CObservation& observation);
-
-    /** See Slam::save(). */
-    void save(std::ostream& out) const;
-    /** See Slam::restore(); the map has to be the same one. */
-    void restore(std::istream& in);
 
  private:
     std::shared_ptr<MapFollower> follower_;

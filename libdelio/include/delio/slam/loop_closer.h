@@ -13,16 +13,13 @@ namespace delio {
  *  and finds the same whenever it gets the time. */
 class LoopCloser : public SlamListener {
  public:
-    /** `folder`, `isKept`: where submaps are put aside, see LoopSearch. */
+    /** `folder`: where submaps are put aside, see LoopSearch. */
     LoopCloser(const loops::SubmapOptions& submaps, const loops::LoopOptions& loops,
-               const loops::ClosureOptions& closures, const std::string& folder = "",
-               bool isKept = false);
+               const loops::ClosureOptions& closures, const std::string& folder = "");
 
     const char* name() const override { return "submaps"; }
     void add(const SlamScan& scan) override;
     void undo() noexcept override;
-    void save(std::ostream& out) const override;
-    void restore(std::istream& in) override;
 
     /** `graph`: of the same drive, a node each scan. Once, after the last scan. Error where submaps
      *  could not be put aside. */
@@ -39,8 +36,6 @@ class LoopCloser : public SlamListener {
         loops::Submap submap;
         Eigen::Isometry3d pose;  //!< of its key node
     };
-    std::string faultText() const;  //!< empty: none
-    void takeFault(const std::string& text);
     void end(std::optional<loops::Submap> submap);
     void searchNext() noexcept;
     void searchTaken() noexcept;

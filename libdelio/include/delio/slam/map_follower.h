@@ -19,8 +19,6 @@ class MapFollower : public SlamListener {
     const char* name() const override { return "localisation"; }
     void add(const SlamScan& scan) override;
     void undo() noexcept override;
-    void save(std::ostream& out) const override;
-    void restore(std::istream& in) override;
 
     /** One for each scan; with History::Last those of the last one or two scans. */
     const std::vector<MapFix>& fixes() const { return fixes_; }

@@ -14,8 +14,6 @@ class MapListener : public SlamListener {
     const char* name() const override { return "map"; }
     void add(const SlamScan& scan) override;
     void undo() noexcept override;
-    void save(std::ostream& out) const override;
-    void restore(std::istream& in) override;
 
     const map::MapBuilder& builder() const { return builder_; }  //!< with what was added so far
 

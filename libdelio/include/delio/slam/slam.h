@@ -1,5 +1,4 @@
 #pragma once
-#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,24 +32,15 @@ class Slam {
      *  Error.) */
     ScanReport process(const Scan& scan);
 
-    /** No more scans come: what the odometry has kept to register them goes, and with it what
-     *  process() and save() need; they are an Error from then on. */
+    /** No more scans come: what the odometry has kept to register them goes. process()
+     *  is an Error from then on. */
     void close() { odometry_.reset(); }
 
     /** Of the odometry alone: the poses of all scans, or the last one (see History). */
     const io::Trajectory& trajectory() const { return trajectory_; }
 
-    /** The drive as far as it has come, with odometry and listeners: written between two scans, it
-     *  is gone on with from there. Error where something of it cannot be written. */
-    void save(std::ostream& out) const;
-    /** Into one with an odometry and listeners that were made alike, attached in the same order,
-     *  and that has seen no scan. Error where the state is cut off, damaged, of other options, of
-     *  other listeners or of another version; then this is of no use. */
-    void restore(std::istream& in);
-
  private:
     void requireOpen() const;
-    std::string listenerNames() const;
     void tell(const SlamScan& scan, ScanReport& report);
 
     std::unique_ptr<Odometry> odometry_;

@@ -1,5 +1,5 @@
-// Whatever ends delio-slam: what was there before, or all that is new, or a folder `incomplete`
-// that --resume goes on with, to the same bytes.
+// Whatever ends delio-slam: OUTDIR holds the old results, or all of the new ones, or a folder
+// `incomplete` with the rows so far.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
@@ -25,7 +25,7 @@ using test::Words;
 using test::operator+;
 namespace fs = std::filesystem;
 
-class Resume : public test::DelioSlam {
+class Ended : public test::DelioSlam {
  protected:
     void SetUp() override {
         const auto made =
@@ -40,7 +40,7 @@ class Resume : public test::DelioSlam {
     test::CommandResult slamInto(const Words& more) const {
         return runTool("delio-slam", Words{"-i", drive_, "-o", out_} + more);
     }
-    /** A signal after so many seconds, or an end of its own. */
+    /** Sends a signal after so many seconds, unless the run has ended. */
     void ended(int signal, double after_s, const Words& more) const {
         test::RunningTool run("delio-slam", Words{"-i", drive_, "-o", out_} + more);
         std::this_thread::sleep_for(std::chrono::duration<double>(after_s));
@@ -67,7 +67,7 @@ int kills() {
     return asked ? std::atoi(asked) : 8;
 }
 
-TEST_F(Resume, EndedAtAnyMoment) {
+TEST_F(Ended, AtAnyMoment) {
     const fs::path old = folder_ / "old";
     writeDrive();
     ASSERT_EQ(runTool("delio-slam", {"-i", rawlog_, "-o", old}).exitCode, 0);
@@ -79,83 +79,74 @@ TEST_F(Resume, EndedAtAnyMoment) {
         fs::copy(old, out_);
         const int signal = i % 4 == 3 ? (i % 8 == 3 ? SIGTERM : SIGINT) : SIGKILL;
         ended(signal, moment(random), {"--force"});
-        // Once more while it is being gone on with.
-        if (i % 2 == 1 && fs::exists(out_ / "incomplete" / "state"))
-            ended(SIGKILL, moment(random), {"--resume"});
         if (!fs::exists(out_ / "summary.yaml"))
             EXPECT_TRUE(fs::exists(out_ / "incomplete"));
         else if (readText(out_ / "summary.yaml") == readText(old / "summary.yaml"))
             expectAllOf(old);
         else if (summary()["complete"].as<bool>())
             test::expectSameResults(whole_, out_);
-        else
-            EXPECT_TRUE(fs::exists(out_ / "incomplete" / "state"));
-        if (!fs::exists(out_ / "incomplete")) continue;
-        const bool hasState = fs::exists(out_ / "incomplete" / "state");
-        const auto again = slamInto({hasState ? "--resume" : "--force"});
-        ASSERT_EQ(again.exitCode, 0) << again.err;
-        test::expectSameResults(whole_, out_);
-        expectNothingLeft();
     }
-}
-
-TEST_F(Resume, InterruptedAndGoneOnWith) {
-    const Words words = {"-i", drive_, "-o", out_};
-    const auto stopped = runTool("delio-slam", words, "scans 8");
-    ASSERT_EQ(stopped.exitCode, 130) << stopped.err;
-    EXPECT_NE(stopped.err.find("--resume goes on"), std::string::npos) << stopped.err;
-    EXPECT_FALSE(summary()["complete"].as<bool>());
-    EXPECT_EQ(rows("incomplete/scans.csv"), rows("scans.csv"));
-    EXPECT_EQ(rows("incomplete/trajectory_odometry_kitti.txt"), rows("trajectory_kitti.txt"));
-    expectFailure(slamInto({}), 1, {"--resume", "--force"});
-    expectFailure(slamInto({"--resume", "--set", "map.voxel_size=0.3"}), 1,
-                  {"cannot be gone on with", "--force"});
-    expectFailure(slamInto({"--resume", "--start", "1"}), 1, {"cannot be gone on with"});
-    expectFailure(slamInto({"--resume", "--force"}), 2, {"--resume"});
-    const auto again = slamInto({"--resume"});
+    const auto again = slamInto({"--force"});
     ASSERT_EQ(again.exitCode, 0) << again.err;
-    EXPECT_NE(again.err.find("going on after"), std::string::npos) << again.err;
     test::expectSameResults(whole_, out_);
-    EXPECT_TRUE(summary()["complete"].as<bool>());
     expectNothingLeft();
 }
 
-TEST_F(Resume, BeginsWhereThereIsNothingToGoOnWith) {
-    ASSERT_EQ(slamInto({"--resume", "--count", "3", "--no-map"}).exitCode, 0);
-    EXPECT_EQ(rows("trajectory_kitti.txt"), 3U);
-    expectFailure(slamInto({"--resume"}), 1, {"exists", "--force"});
+// The input pauses for more than a second, so that rows are flushed twice before the kill.
+TEST_F(Ended, AKilledRunLeavesItsRows) {
+    writeDrive(8, true);
+    ASSERT_EQ(slam().exitCode, 0);
+    const run::RunFolder undisturbed(out_.string());
+    const auto trajectory = undisturbed.odometry();
+    const auto stamps_s = undisturbed.scans().stamps_s;
+    const fs::path killed = folder_ / "killed";
+    const auto most = std::to_string(fs::file_size(rawlog_) * 3 / 4);
+    const std::string in = "'" + rawlog_.string() + "'";
+    test::RunningTool run("bash",
+                          {"-c", "exec '" + test::toolPath("delio-slam") + "' --no-map -i - -o '" +
+                                     killed.string() + "' < <(head -c " + most + " " + in +
+                                     "; sleep 1.5; tail -c +" + most + " " + in + "; sleep 20)"});
+    const run::RunFolder left((killed / run::RunFolder::kIncomplete).string());
+    while (!run.hasEnded() &&
+           (!left.has(run::RunFolder::kOdometry) || left.odometry().poses.size() < 3))
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    run.send(SIGKILL);
+    ASSERT_EQ(run.wait().exitCode, 128 + SIGKILL);
+    const auto poses = left.odometry().poses;
+    ASSERT_GE(poses.size(), 3U);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        EXPECT_EQ(poses[i].matrix(), trajectory.poses[i].matrix()) << i;
+    const auto scans = left.scans();
+    ASSERT_GE(scans.stamps_s.size(), poses.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(scans.stamps_s[i], stamps_s[i]) << i;
+    // The next run replaces it.
+    const Words again = {"-i", rawlog_, "-o", killed, "--no-map"};
+    expectFailure(runTool("delio-slam", again), 1, {"exists", "--force"});
+    ASSERT_EQ(runTool("delio-slam", again + Words{"--force"}).exitCode, 0);
+    EXPECT_FALSE(fs::exists(killed / run::RunFolder::kIncomplete));
+    EXPECT_EQ(readText(killed / "trajectory_kitti.txt"), readText(out_ / "trajectory_kitti.txt"));
 }
 
-TEST_F(Resume, ADamagedStateIsRefused) {
-    ASSERT_EQ(runTool("delio-slam", {"-i", drive_, "-o", out_}, "scans 8").exitCode, 130);
-    const fs::path file = out_ / "incomplete" / "state";
-    const std::string state = readText(file);
-    for (const double part : {0.0, 0.001, 0.3, 0.9}) {
-        test::writeText(
-            file,
-            state.substr(0, static_cast<std::size_t>(part * static_cast<double>(state.size()))));
-        expectFailure(slamInto({"--resume"}), 1, {"cannot be gone on with", "--force"});
-        std::string turned = state;
-        turned[static_cast<std::size_t>(part * static_cast<double>(state.size()))] ^= 4;
-        test::writeText(file, turned);
-        expectFailure(slamInto({"--resume"}), 1, {"cannot be gone on with", "--force"});
-    }
-    test::writeText(file, state);
-    fs::remove(out_ / "incomplete" / "map.spool");
-    expectFailure(slamInto({"--resume"}), 1, {"map.spool"});
+TEST_F(Ended, ByCtrlC) {
+    const auto stopped = runTool("delio-slam", {"-i", drive_, "-o", out_}, "scans 8");
+    ASSERT_EQ(stopped.exitCode, 130) << stopped.err;
+    EXPECT_NE(stopped.err.find("interrupted; the results are those of"), std::string::npos);
+    EXPECT_FALSE(summary()["complete"].as<bool>());
+    expectNothingLeft();
+    expectFailure(slamInto({}), 1, {"exists", "--force"});
+    expectFailure(slamInto({"--resume"}), 2, {"--resume"});
 }
 
-TEST_F(Resume, TwoRunsIntoOneFolder) {
+TEST_F(Ended, TwoRunsIntoOneFolder) {
     fs::create_directory(out_);
     const int folder = open(out_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     ASSERT_EQ(flock(folder, LOCK_EX | LOCK_NB), 0);
-    for (const char* how : {"--force", "--resume"})
-        expectFailure(slamInto({how}), 1, {"another program"});
+    expectFailure(slamInto({"--force"}), 1, {"another program"});
     close(folder);
     EXPECT_EQ(slamInto({"--count", "2", "--no-map"}).exitCode, 0);
 }
 
-TEST_F(Resume, OldResultsStayWhereNewOnesCannotBeWritten) {
+TEST_F(Ended, OldResultsStayWhereNewOnesCannotBeWritten) {
     writeDrive();
     ASSERT_EQ(runTool("delio-slam", {"-i", rawlog_, "-o", out_, "--no-map"}).exitCode, 0);
     const std::string summary = readText(out_ / "summary.yaml"),
@@ -167,7 +158,7 @@ TEST_F(Resume, OldResultsStayWhereNewOnesCannotBeWritten) {
     EXPECT_EQ(readText(out_ / "trajectory_kitti.txt"), trajectory);
 }
 
-TEST_F(Resume, WhatIsReadIsNotReplaced) {
+TEST_F(Ended, WhatIsReadIsNotReplaced) {
     const auto before = test::namesIn(whole_);
     for (const char* input : {"posegraph.g2o", "map.ply"})
         expectFailure(runTool("delio-slam", {"-i", whole_ / input, "-o", whole_, "--force"}), 1,
