@@ -19,7 +19,6 @@ class LiveView : public SlamListener {
     const char* name() const override { return "live_view"; }
     /** Does nothing once the window was closed. */
     void add(const SlamScan& scan) override;
-    void undo() noexcept override {}  // what was drawn was drawn
 
     bool isOpen() const;
 

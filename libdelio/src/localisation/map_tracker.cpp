@@ -55,8 +55,6 @@ void MapTracker::expect(const Eigen::Isometry3d& vehicle) {
         Eigen::Vector3d::Constant(kOff_rad * kOff_rad);
 }
 
-void MapTracker::undo() noexcept { now_ = std::move(before_); }
-
 /** The latest scans, to be searched for together. */
 void MapTracker::remember(const Eigen::Matrix3Xf& points) {
     constexpr std::size_t kMost = 5;
@@ -194,7 +192,6 @@ std::optional<Increment> MapTracker::search(const Eigen::Matrix3d& level, MapFix
 
 MapFix MapTracker::add(const Increment& increment, const Eigen::Matrix3Xf& points,
                        const Eigen::Vector3d& up) {
-    before_ = now_;
     MapFix fix;
     fix.reason = "not searched for at this scan";
     const Eigen::Matrix3d level = scan::turnedUp(up).cast<double>();

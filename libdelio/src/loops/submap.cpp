@@ -53,35 +53,29 @@ std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,
 std::optional<Submap> SubmapBuilder::add(std::size_t node, const Increment& increment,
                                          const Eigen::Matrix3Xf& points,
                                          const Eigen::Vector3d& up) {
-    const bool ends = isComplete() || isBeyondGap(increment), isFirst = ends || parts_.empty();
     std::optional<Submap> ended;
-    if (ends) ended = merged();
+    if (isComplete() || isBeyondGap(increment)) {
+        ended = merged();
+        ended_ = parts_.back().driven;
+        parts_.clear();
+    }
     Part part{node,
               Eigen::Isometry3d::Identity(),
               {},
               up,
               parts_.empty() ? ended_ : parts_.back().driven};
     Eigen::Isometry3d moved = increment.pose;
-    if (!isFirst) {
+    if (!parts_.empty()) {
         part.pose = parts_.back().pose * increment.pose;
         const auto seen = std::find_if(parts_.rbegin(), parts_.rend(),
                                        [](const Part& other) { return other.showsMore; });
         if (seen != parts_.rend()) moved = seen->pose.inverse() * part.pose;
     }
-    part.showsMore = isFirst || isMuch(moved);
+    part.showsMore = parts_.empty() || isMuch(moved);
     if (part.showsMore) part.points = points;
-    // Only now the builder changes: all before may throw.
-    if (ends) {
-        ended_ = parts_.back().driven;
-        parts_.clear();
-    }
     if (node > 0) part.driven.add(increment, part.showsMore ? moved.translation().norm() : 0);
     parts_.push_back(std::move(part));
     return ended;
-}
-
-void SubmapBuilder::undo() noexcept {
-    if (!parts_.empty()) parts_.pop_back();
 }
 
 bool SubmapBuilder::isBeyondGap(const Increment& increment) const {

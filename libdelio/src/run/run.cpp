@@ -111,6 +111,8 @@ RunRow Run::process(const Scan& scan, double read_ms) {
     row.sensorPose = scan.sensorPose;
     row.read_ms = read_ms;
     row.report = slam_.process(scan);
+    for (const auto& failed : row.report.failed) switchOff(failed, scan.index);
+    row.report.failed.clear();
     row.points = row.report.step.used.indices.size();
     if (row.points == 0 && !row.report.step.reason.empty()) {
         const auto why = scan::whyNoneIsLeft(scan, record_.options.scan());
@@ -133,6 +135,24 @@ RunRow Run::process(const Scan& scan, double read_ms) {
         warn("the rows so far are not kept while the drive goes on: " + plainMessage(e));
     }
     return row;
+}
+
+/** What a listener has is of no use once it has failed: its part of the results is left out. */
+void Run::switchOff(const FailedListener& failed, std::size_t scan) {
+    const std::string what = std::string("the listener '") + failed.listener->name() +
+                             "' failed at scan " + std::to_string(scan) +
+                             " and its results are missing: " + failed.message;
+    if (record_.fault.empty())
+        fail(what);
+    else
+        warn(what);
+    const auto drop = [&](auto& listener) {
+        if (listener == failed.listener) listener.reset();
+    };
+    drop(graph_);
+    drop(map_);
+    drop(follower_);
+    drop(loops_);
 }
 
 /** Where there are none, the graph stays as it was. */
@@ -159,8 +179,8 @@ void Run::anchor() {
     if (settings_.graph) record_.optimisation = record_.graph.optimise(record_.options.graph);
 }
 
-void Run::optimise() {
-    Stopwatch watch;
+/** Loops are closed, the graph is optimised or brought into the stored map's frame. */
+void Run::optimiseGraph() {
     record_.graph = graph_->graph();
     try {
         if (loops_) closeLoops();
@@ -177,8 +197,16 @@ void Run::optimise() {
         // What the odometry found is worth keeping.
         fail("the pose graph was not optimised: " + plainMessage(e));
     }
-    record_.optimise_ms = watch.lap_ms();
+}
+
+void Run::optimise() {
+    Stopwatch watch;
     record_.odometry = slam_.trajectory();
+    if (graph_)
+        optimiseGraph();
+    else  // it failed: nodes without edges
+        for (const auto& pose : record_.odometry.poses) record_.graph.addNode(pose);
+    record_.optimise_ms = watch.lap_ms();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
     if (!record_.stampsRise) record_.final.stamps_s.clear();
 }
@@ -193,7 +221,7 @@ void Run::store() {
                       [&](std::size_t i) { return submaps.points(i); }};
     stored_ = own_;
     try {
-        if (settings_.extend && record_.isLocalised()) extend();
+        if (settings_.extend && follower_ && record_.isLocalised()) extend();
     } catch (const std::exception& e) {
         fail("the map was not extended: " + plainMessage(e));
     }
@@ -264,7 +292,7 @@ void Run::finish(bool complete) {
     slam_.close();
     optimise();
     if (map_) record_.options.map = map_->builder().options();  // as they were used
-    if (settings_.map) store();
+    if (settings_.map && graph_ && loops_) store();
     if (truth_) score();
 }
 

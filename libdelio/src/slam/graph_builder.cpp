@@ -7,34 +7,7 @@
 #include <vector>
 
 namespace delio {
-GraphBuilder::State GraphBuilder::state() const {
-    const auto& poses = graph_.poses();
-    State state;
-    state.nodes = poses.size();
-    state.firstMoved = poses.size() - std::min<std::size_t>(poses.size(), options_.window);
-    state.moved.assign(poses.begin() + static_cast<std::ptrdiff_t>(state.firstMoved), poses.end());
-    state.recent = recent_;
-    return state;
-}
-
-void GraphBuilder::takeBack(State& state) noexcept {
-    while (graph_.poses().size() > state.nodes) graph_.removeLast();
-    graph_.restore(state.firstMoved, state.moved);
-    recent_.swap(state.recent);
-}
-
 void GraphBuilder::add(const SlamScan& scan) {
-    State before = state();
-    try {
-        append(scan);
-    } catch (...) {
-        takeBack(before);
-        throw;
-    }
-    before_ = std::move(before);
-}
-
-void GraphBuilder::append(const SlamScan& scan) {
     const Recent latest{scan.node, scan.step.features, scan.scan.sensorPose};
     if (recent_.empty())
         graph_.addNode(scan.pose);

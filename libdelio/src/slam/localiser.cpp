@@ -17,6 +17,8 @@ void Localiser::expect(const Eigen::Isometry3d& vehicle) { follower_->expect(veh
 
 Localisation Localiser::process(const Scan& scan) {
     auto report = slam_.process(scan);
+    if (!report.failed.empty()) fault_ = report.failed.front().message;
+    if (!fault_.empty()) throw Error("the localisation ended: " + fault_);
     return {std::move(report.step), follower_->fixes().back()};
 }
 

@@ -24,21 +24,8 @@ void LoopCloser::add(const SlamScan& scan) {
     // The pose of a scan that was not registered is a guess.
     const auto still = scan.step.predicted ? Eigen::Matrix3Xf(3, 0) : stillPoints(scan);
     poses_.push_back(scan.pose);
-    std::optional<loops::Submap> ended;
-    try {
-        waiting_.reserve(waiting_.size() + 1);
-        ended = builder_.add(scan.node, scan.increment, still, up_);
-    } catch (...) {
-        poses_.pop_back();
-        throw;
-    }
-    end(std::move(ended));  // nothing throws from here on
+    end(builder_.add(scan.node, scan.increment, still, up_));
     searchNext();
-}
-
-void LoopCloser::undo() noexcept {
-    builder_.undo();
-    poses_.pop_back();
 }
 
 void LoopCloser::end(std::optional<loops::Submap> submap) {

@@ -6,14 +6,8 @@ namespace delio {
 void MapFollower::add(const SlamScan& scan) {
     const auto& points = scan.step.used.points;
     if (!up_ && points.cols() > 0) up_ = scan::upIn(scan.scan.sensorPose, points);
+    if (history_ == History::Last) fixes_.clear();
     fixes_.push_back(
         tracker_.add(scan.increment, stillPoints(scan), up_.value_or(Eigen::Vector3d::UnitZ())));
-    // undo() needs the fix before the last one.
-    if (history_ == History::Last && fixes_.size() > 2) fixes_.erase(fixes_.begin());
-}
-
-void MapFollower::undo() noexcept {
-    tracker_.undo();
-    fixes_.pop_back();
 }
 }  // namespace delio

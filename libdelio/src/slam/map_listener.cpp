@@ -24,15 +24,10 @@ mrpt::maps::CPointsMap::Ptr pointsForMap(const Scan& scan, const UsedPoints& use
 }  // namespace
 
 void MapListener::add(const SlamScan& scan) {
-    added_ = !scan.step.predicted;
-    if (!added_) return;
+    if (scan.step.predicted) return;
     for (const auto& [name, value] : scan.step.details)
         if (name == "scale") builder_.takeScale(value);
     builder_.add(scan.node, scan.pose, *pointsForMap(scan.scan, scan.step.used),
                  scan.scan.sensorPose, scan.scan.time, scan.step.used.dynamic);
-}
-
-void MapListener::undo() noexcept {
-    if (added_) builder_.undo();
 }
 }  // namespace delio

@@ -1,5 +1,6 @@
 #include "delio/slam/slam.h"
 
+#include <exception>
 #include <string>
 
 #include "delio/core/error.h"
@@ -23,51 +24,40 @@ void Slam::requireOpen() const {
     if (!odometry_) throw Error("the drive is closed: it takes no more scans");
 }
 
-/** All listeners are told, or none. */
 void Slam::tell(const SlamScan& scan, ScanReport& report) {
-    std::size_t told = 0;
-    try {
-        for (; told < listeners_.size(); ++told) {
-            report.listeners_ms.emplace_back(listeners_[told]->name(), 0);
-            timed(report.listeners_ms.back().second, [&] { listeners_[told]->add(scan); });
+    for (auto it = listeners_.begin(); it != listeners_.end();) {
+        report.listeners_ms.emplace_back((*it)->name(), 0);
+        try {
+            timed(report.listeners_ms.back().second, [&] { (*it)->add(scan); });
+            ++it;
+        } catch (const std::exception& e) {
+            report.failed.push_back({*it, plainMessage(e)});
+            it = listeners_.erase(it);
         }
-    } catch (...) {
-        while (told > 0) listeners_[--told]->undo();
-        throw;
     }
 }
 
 ScanReport Slam::process(const Scan& scan) {
     requireOpen();
     requireConsistent(scan);
-    ScanReport report{odometry_->process(scan), {}};
+    ScanReport report;
+    report.step = odometry_->process(scan);
     requireFinite(report.step.increment, scan);
     auto& [poses, stamps_s] = trajectory_;
-    const std::size_t node = nodes_, kept = poses.size();
-    Increment increment;  // since the last scan that was taken
-    SlamScan told{node, scan, report.step, {}, Eigen::Isometry3d::Identity()};
-    if (node > 0) {
-        increment = refused_ ? chained(*refused_, report.step.increment) : report.step.increment;
-        told.increment = ofVehicle(increment, sensorPose_, scan.sensorPose);
+    SlamScan told{nodes_, scan, report.step, {}, Eigen::Isometry3d::Identity()};
+    if (nodes_ > 0) {
+        told.increment = ofVehicle(report.step.increment, sensorPose_, scan.sensorPose);
         told.pose = poses.back() * told.increment.pose;
     }
-    try {
-        poses.push_back(told.pose);
-        stamps_s.push_back(scan.stamp_s);
-        tell(told, report);
-    } catch (...) {
-        poses.resize(kept);
-        stamps_s.resize(kept);
-        if (node > 0) refused_ = increment;
-        throw;
-    }
     if (history_ == History::Last) {
-        poses.erase(poses.begin(), poses.end() - 1);
-        stamps_s.erase(stamps_s.begin(), stamps_s.end() - 1);
+        poses.clear();
+        stamps_s.clear();
     }
+    poses.push_back(told.pose);
+    stamps_s.push_back(scan.stamp_s);
     ++nodes_;
     sensorPose_ = scan.sensorPose;
-    refused_.reset();
+    tell(told, report);
     return report;
 }
 }  // namespace delio

@@ -143,24 +143,6 @@ TEST_F(InTheTown, WhoIsSaidToBeSomewhereIsLookedForThere) {
     for (const auto& fix : follow(far, poses, town())) EXPECT_FALSE(isAnchor(fix));
 }
 
-TEST_F(InTheTown, UndoLeavesNoTrace) {
-    const auto there = roundTheBlock(0);
-    test::Noise noise(5);
-    auto once = tracker(), twice = tracker();
-    for (std::size_t i = 10; i < 18; ++i) {
-        Increment step{Eigen::Isometry3d::Identity(), 1e-5 * Matrix6::Identity()};
-        if (i > 10) step.pose = there[i - 1].inverse() * there[i];
-        const auto points = seenFrom(town(), there[i], noise);
-        twice.add(step, points, Eigen::Vector3d::UnitZ());
-        twice.undo();
-        const auto a = once.add(step, points, Eigen::Vector3d::UnitZ()),
-                   b = twice.add(step, points, Eigen::Vector3d::UnitZ());
-        EXPECT_EQ(a.where, b.where);
-        EXPECT_EQ(a.searched, b.searched);
-        EXPECT_LT(test::metresBetween(a.vehicle.pose, b.vehicle.pose), 0.01);
-    }
-}
-
 TEST_F(InTheTown, ScansWithoutPointsAreNoReasonToStop) {
     auto one = tracker();
     const Eigen::Matrix3Xf none(3, 0);

@@ -31,10 +31,6 @@ struct Drive {
         take(builder.add(poses.size(), step, points, up));
         poses.push_back(pose);
     }
-    void undo() {
-        builder.undo();
-        poses.pop_back();
-    }
     std::vector<Submap> finish() {
         take(builder.finish());
         return submaps;
@@ -86,18 +82,6 @@ TEST(SubmapBuilder, LeavesOutWhatIsFar) {
     Drive drive;
     drive.add(poseAt(0, 0, 0), Eigen::Vector3f(51, 0, 0));
     EXPECT_EQ(drive.finish().at(0).points.cols(), 0);
-}
-
-TEST(SubmapBuilder, TakesBackTheLatest) {
-    Drive drive;
-    for (int i = 0; i < 26; ++i) drive.add(poseAt(i, 0, 0));
-    drive.add(poseAt(500, 0, 0));  // begins the second, and is taken back
-    drive.undo();
-    for (int i = 26; i < 40; ++i) drive.add(poseAt(i, 0, 0));
-    const auto submaps = drive.finish();
-    ASSERT_EQ(submaps.size(), 2U);
-    EXPECT_EQ(submaps[1].first, 26U);
-    EXPECT_NEAR(submaps[1].driven.path_m, static_cast<double>(submaps[1].key), 1e-9);
 }
 
 // An hour of standing still, with its noise, is no path, and takes no memory.

@@ -58,7 +58,10 @@ TEST_P(Clocks, NoJumpOfThePoseAndOneWarning) {
     for (std::size_t i = 0; i < kScans; ++i) {
         EXPECT_EQ(steps[i].interrupted, clock.interrupts && i == kAt) << i;
         EXPECT_FALSE(steps[i].predicted) << i << " " << steps[i].reason;
-        rows.push_back({i, 0, Eigen::Isometry3d::Identity(), 0, 0, {steps[i], {}}});
+        run::RunRow row;
+        row.scan = i;
+        row.report.step = steps[i];
+        rows.push_back(row);
         if (i == 0) continue;
         SCOPED_TRACE(i);
         expectPose(steps[i].increment.pose, stepTo(truth, i), 2 * kMetres, kDegrees);

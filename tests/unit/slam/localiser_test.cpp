@@ -48,7 +48,7 @@ TEST(Localiser, TakesObservationsAndGivesPosesWithCovariance) {
     EXPECT_THROW(localiser.process(mrpt::obs::CObservationIMU()), Error);
 }
 
-TEST(MapFollower, WithoutAHistoryItCanTakeTheLastScanBack) {
+TEST(MapFollower, WithoutAHistoryItKeepsTheLastFix) {
     const test::TemporaryFolder folder;
     {
         const TownDrive drive(roundTheBlock(0));
@@ -65,12 +65,8 @@ TEST(MapFollower, WithoutAHistoryItCanTakeTheLastScanBack) {
         Increment increment{Eigen::Isometry3d::Identity(), 1e-5 * Matrix6::Identity()};
         if (i > 0) increment.pose = poses[i - 1].inverse() * poses[i];
         follower.add({i, scan, step, increment, poses[i]});
-        EXPECT_LE(follower.fixes().size(), 2U);
-        if (i == 0) continue;
-        const MapFix before = follower.fixes().front();
-        follower.undo();
-        EXPECT_EQ(follower.fixes().back().vehicle.pose.matrix(), before.vehicle.pose.matrix());
-        follower.add({i, scan, step, increment, poses[i]});
+        EXPECT_EQ(follower.fixes().size(), 1U);
     }
+    EXPECT_LT(test::metresBetween(follower.fixes().back().vehicle.pose, poses[5]), 0.1);
 }
 }  // namespace

@@ -62,16 +62,6 @@ class PoseGraph {
     void addEdge(std::size_t from, std::size_t to, const Eigen::Isometry3d& pose,
                  const Matrix6& information);
 
-    /** Takes back the last node with all edges that it has; the others keep their order. What came
-     *  after addNode() so is undone where a scan failed half-way. Error where there is no node;
-     *  otherwise it cannot fail. */
-    void removeLast();
-
-    /** Puts back poses that optimiseLast() moved: those of the nodes `firstNode`, `firstNode` + 1
-     *  ..., as poses() gave them before; node 0's too, if it is among them. Error, and nothing
-     *  changed, for a node that does not exist and for a pose that is not finite. */
-    void restore(std::size_t firstNode, const std::vector<Eigen::Isometry3d>& poses);
-
     /** Error, naming the node, where a node is not connected to node 0. */
     OptimisationResult optimise(const PoseGraphOptions& options);
 

@@ -52,8 +52,6 @@ class MapTracker {
      *  vehicle's frame; the unit vector that points up there. */
     MapFix add(const Increment& increment, const Eigen::Matrix3Xf& points,
                const Eigen::Vector3d& up);
-    /** Takes back the scan that was added last. */
-    void undo() noexcept;
 
     const StoredMap& map() const { return *map_; }                   //!< that it was made with
     const LocalisationOptions& options() const { return options_; }  //!< that it was made with
@@ -97,6 +95,6 @@ class MapTracker {
     LocalisationOptions options_;
     PlaceSearch search_;
     LocalMap local_;
-    State now_, before_;
+    State now_;
 };
 }  // namespace delio

@@ -64,8 +64,6 @@ class SubmapBuilder {
      *  vector that points up in it. Where it begins another submap, the one that ended. */
     std::optional<Submap> add(std::size_t node, const Increment& increment,
                               const Eigen::Matrix3Xf& points, const Eigen::Vector3d& up);
-    /** Takes back the scan that was added last. */
-    void undo() noexcept;
 
     /** The one that is being made, if any. */
     std::optional<Submap> finish();

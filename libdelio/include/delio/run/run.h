@@ -63,7 +63,8 @@ class Run {
     void readSideFiles(const std::string& recording, const std::string& truth = "",
                        bool truthIsCam0 = true);
 
-    /** One more listener: see Slam. */
+    /** One more listener: see Slam. One that fails is named in the record, as its fault or in a
+     *  warning. */
     void attach(std::shared_ptr<SlamListener> listener) { slam_.attach(std::move(listener)); }
 
     /** Processes the next scan, which took `read_ms` to read. */
@@ -90,7 +91,9 @@ class Run {
  private:
     bool searchesLoops() const;
     loops::LoopOptions loopOptions() const;
+    void switchOff(const FailedListener& failed, std::size_t scan);
     void optimise();
+    void optimiseGraph();
     void closeLoops();
     void anchor();
     void store();

@@ -16,7 +16,6 @@ class GraphBuilder : public SlamListener {
 
     const char* name() const override { return "graph"; }
     void add(const SlamScan& scan) override;
-    void undo() noexcept override { takeBack(before_); }
 
     /** Optimises the whole graph; while driving, its last nodes were. */
     graph::OptimisationResult optimise() { return graph_.optimise(options_); }
@@ -29,21 +28,10 @@ class GraphBuilder : public SlamListener {
         std::shared_ptr<const ScanFeatures> features;
         Eigen::Isometry3d sensorPose = Eigen::Isometry3d::Identity();
     };
-    /** What it takes to forget a scan. */
-    struct State {
-        std::size_t nodes = 0;
-        std::size_t firstMoved = 0;
-        std::vector<Eigen::Isometry3d> moved;  //!< poses that the window may move
-        std::deque<Recent> recent;
-    };
-    State state() const;
-    void takeBack(State& state) noexcept;
-    void append(const SlamScan& scan);
     void addSkipEdges(const Recent& latest);
 
     graph::PoseGraphOptions options_;
     graph::PoseGraph graph_;
     std::deque<Recent> recent_;  //!< scans that edges may still be made to, latest first
-    State before_;               //!< the scan that was added last
 };
 }  // namespace delio

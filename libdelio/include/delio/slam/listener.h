@@ -30,13 +30,10 @@ class SlamListener {
  public:
     virtual ~SlamListener() = default;
 
-    /** Under which its time is told. */
+    /** Name of its time in scans.csv, and of the listener in messages. */
     virtual const char* name() const = 0;
 
-    /** Takes the next scan. May throw; then it is as it was before. */
+    /** Takes the next scan. A listener that throws gets no more scans (ScanReport::failed). */
     virtual void add(const SlamScan& scan) = 0;
-
-    /** Takes back the scan that was added last: another listener failed on it. */
-    virtual void undo() noexcept = 0;
 };
 }  // namespace delio

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "delio/odometry/make_odometry.h"
 #include "delio/slam/map_follower.h"
@@ -29,7 +30,8 @@ class Localiser {
      *  metres: then it is looked for there only. */
     void expect(const Eigen::Isometry3d& vehicle);
 
-    /** The next scan. As Slam::process() where something is thrown. */
+    /** The next scan. Error where the odometry fails, as in Slam::process(), and from the first
+     * scan on that could not be compared with the map. */
     Localisation process(const Scan& scan);
 
     /** The same for who works with MRPT: a LiDAR observation (see io::decodeObservation) with its
@@ -42,5 +44,6 @@ class Localiser {
     std::shared_ptr<MapFollower> follower_;
     Slam slam_;
     std::size_t observations_ = 0;
+    std::string fault_;  //!< of the follower; empty: none
 };
 }  // namespace delio

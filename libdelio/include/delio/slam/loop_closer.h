@@ -19,7 +19,6 @@ class LoopCloser : public SlamListener {
 
     const char* name() const override { return "submaps"; }
     void add(const SlamScan& scan) override;
-    void undo() noexcept override;
 
     /** `graph`: of the same drive, a node each scan. Once, after the last scan. Error where submaps
      *  could not be put aside. */

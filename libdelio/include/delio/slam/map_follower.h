@@ -18,9 +18,8 @@ class MapFollower : public SlamListener {
 
     const char* name() const override { return "localisation"; }
     void add(const SlamScan& scan) override;
-    void undo() noexcept override;
 
-    /** One for each scan; with History::Last those of the last one or two scans. */
+    /** One for each scan; with History::Last that of the last scan. */
     const std::vector<MapFix>& fixes() const { return fixes_; }
     const StoredMap& map() const { return tracker_.map(); }  //!< that is followed through
 

@@ -13,12 +13,10 @@ class MapListener : public SlamListener {
 
     const char* name() const override { return "map"; }
     void add(const SlamScan& scan) override;
-    void undo() noexcept override;
 
     const map::MapBuilder& builder() const { return builder_; }  //!< with what was added so far
 
  private:
     map::MapBuilder builder_;
-    bool added_ = false;  //!< the last scan is in the map
 };
 }  // namespace delio

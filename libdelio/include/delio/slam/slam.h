@@ -1,6 +1,5 @@
 #pragma once
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +8,17 @@
 #include "delio/slam/listener.h"
 
 namespace delio {
+/** A listener that threw, and what it said. */
+struct FailedListener {
+    std::shared_ptr<const SlamListener> listener;
+    std::string message;  //!< one plain line
+};
+
 /** What became of one scan. */
 struct ScanReport {
-    Step step;                        //!< of the odometry
-    std::vector<Named> listeners_ms;  //!< time of each listener, under its name
+    Step step;                           //!< of the odometry
+    std::vector<Named> listeners_ms;     //!< time of each listener, under its name
+    std::vector<FailedListener> failed;  //!< listeners that were switched off at this scan
 };
 
 /** An odometry and its listeners: scans in, and each listener is told of every step in turn. Poses
@@ -26,10 +32,9 @@ class Slam {
     /** From the next scan on it is told of every scan, after those that were attached before. */
     void attach(std::shared_ptr<SlamListener> listener);
 
-    /** Where the odometry or a listener throws, trajectory and listeners are as they were before,
-     *  as if the scan had not been recorded: how far it led is counted to the next one. (Not where
-     *  that is not known: the odometry threw, or gave an increment that is not finite, which is an
-     *  Error.) */
+    /** A listener that throws is switched off: it gets no more scans, the others and the odometry
+     *  go on, and the report names it. Where the odometry throws, or gives an increment that is not
+     *  finite, which is an Error, trajectory and listeners are as they were before. */
     ScanReport process(const Scan& scan);
 
     /** No more scans come: what the odometry has kept to register them goes. process()
@@ -50,7 +55,5 @@ class Slam {
     std::size_t nodes_ = 0;  //!< scans that were taken
     /** Sensor in the vehicle at the last scan that was taken. */
     Eigen::Isometry3d sensorPose_ = Eigen::Isometry3d::Identity();
-    /** From the last scan that was taken to the one that was refused after it, of the sensor. */
-    std::optional<Increment> refused_;
 };
 }  // namespace delio
