@@ -121,8 +121,7 @@ std::string finish(const std::string& input, const std::string& folder, const st
     const auto& record = run.record();
     const bool anyUsed = record.predicted() < record.rows.size();
     if (!anyUsed)
-        run.fail("no scan of '" + input +
-                 "' could be used: " + record.rows.front().report.step.reason);
+        run.fail("no scan of '" + input + "' could be used: " + record.rows.front().reason);
     run.finish(record.fault.empty() && !cli::interrupted());
     malloc_trim(0);  // pictures take a lot
     std::string fault = run::RunFolder(folder).write(record, anyUsed ? run.maps() : run::RunMaps{},

@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "delio/odometry/paper_odometry.h"
-#include "delio/slam/listener.h"
+#include "delio/slam/slam.h"
 
 namespace delio {
 /** A window that shows a drive while it is processed: the map as it grows, the current scan and the

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "delio/core/error.h"
-#include "doubtful_edges.h"
-#include "levmarq_seam.h"
+#include "graph/doubtful_edges.h"
+#include "graph/levmarq_seam.h"
 
 namespace delio::graph {
 namespace {

@@ -7,12 +7,13 @@
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/io/drive_meta.h"
-#include "delio/localisation/join_maps.h"
 #include "delio/run/doubts.h"
 #include "delio/run/run_folder.h"
 #include "delio/scan/preprocess.h"
 #include "io/side_file.h"
-#include "row_files.h"
+#include "places/join_maps.h"
+#include "run/tables.h"
+#include "slam/place_listeners.h"
 
 namespace delio::run {
 namespace {
@@ -63,7 +64,7 @@ Run::~Run() = default;
 bool Run::searchesLoops() const { return settings_.loops && settings_.graph; }
 
 /** Where no loops are wanted, no path is long enough to lead back. */
-loops::LoopOptions Run::loopOptions() const {
+places::LoopOptions Run::loopOptions() const {
     auto loops = record_.options.loops;
     if (!searchesLoops()) loops.min_path = std::numeric_limits<double>::infinity();
     return loops;
@@ -105,22 +106,14 @@ void Run::readSideFiles(const io::SideFile& calib, const io::SideFile& poses,
 }
 
 RunRow Run::process(const Scan& scan, double read_ms) {
-    RunRow row;
-    row.scan = scan.index;
-    row.stamp_s = scan.stamp_s;
-    row.sensorPose = scan.sensorPose;
-    row.read_ms = read_ms;
-    row.report = slam_.process(scan);
-    for (const auto& failed : row.report.failed) switchOff(failed, scan.index);
-    row.report.failed.clear();
-    row.points = row.report.step.used.indices.size();
-    if (row.points == 0 && !row.report.step.reason.empty()) {
-        const auto why = scan::whyNoneIsLeft(scan, record_.options.scan());
-        if (!why.empty()) row.report.step.reason = why;
-    }
-    row.report.step.used = {};
-    row.report.step.features.reset();  // the graph keeps what it needs
+    const auto report = slam_.process(scan);
+    for (const auto& failed : report.failed) switchOff(failed, scan.index);
     auto& rows = record_.rows;
+    auto row = rowOf(scan, report, read_ms, rows.empty() ? nullptr : &rows.back());
+    if (row.points == 0 && !row.reason.empty()) {
+        const auto why = scan::whyNoneIsLeft(scan, record_.options.scan());
+        if (!why.empty()) row.reason = why;
+    }
     if (record_.stampsRise && !rows.empty() && scan.stamp_s <= rows.back().stamp_s) {
         record_.stampsRise = false;
         warn(
@@ -217,7 +210,7 @@ void Run::store() {
     own_ = MapContent{record_.graph,
                       {{settings_.drive, 0, record_.odometry.stamps_s}},
                       submaps.submaps(),
-                      [&](std::size_t i) { return submaps.sketch(i); },
+                      [&](std::size_t i) { return submaps.descriptor(i); },
                       [&](std::size_t i) { return submaps.points(i); }};
     stored_ = own_;
     try {
@@ -245,7 +238,7 @@ evaluation::Comparison Run::compared(const io::Trajectory& vehicle) const {
     for (const auto& row : record_.rows) {
         used.scans.push_back(row.scan);
         used.stamps_s.push_back(row.stamp_s);
-        used.predicted.push_back(row.report.step.predicted);
+        used.predicted.push_back(row.predicted);
     }
     const auto estimate =
         truthIsCam0_ ? io::lidarToCam0(ofSensor(vehicle, record_.rows), record_.calibration.Tr)
@@ -287,7 +280,7 @@ void Run::finish(bool complete) {
     const Doubts doubts = doubtsOf(record_.rows);
     for (const auto& warning : warningsOf(doubts)) warn(warning);
     if (doubts.pairs > 0 && doubts.predicted.scans == doubts.pairs)
-        fail("no scan could be registered: " + record_.rows[1].report.step.reason);
+        fail("no scan could be registered: " + record_.rows[1].reason);
     record_.complete = complete;
     slam_.close();
     optimise();

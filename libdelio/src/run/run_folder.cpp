@@ -13,7 +13,7 @@
 #include "delio/map/page.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
-#include "scan_row.h"
+#include "run/tables.h"
 
 namespace delio::run {
 namespace fs = std::filesystem;
@@ -44,7 +44,7 @@ constexpr const char* kAll[] = {RunFolder::kSummary,
                                 RunFolder::kRemovalPicture,
                                 RunFolder::kTrajectoryPicture};
 
-void writeScans(const RunRows& rows, const std::string& path) {
+void writeScans(const std::vector<RunRow>& rows, const std::string& path) {
     io::writeScanTable(
         rows.size(), [&](std::size_t i) { return scanRowOf(rows[i]); }, path);
 }
@@ -78,6 +78,14 @@ std::vector<std::string> RunFolder::files() const {
     std::vector<std::string> files;
     for (const char* name : kAll) files.push_back(path(name));
     return files;
+}
+
+std::vector<LoopRow> RunFolder::loops() const { return readLoopTable(path(kLoops)); }
+
+std::vector<LoopRow> RunFolder::joints() const { return readLoopTable(path(kJoints)); }
+
+std::vector<LocalisationRow> RunFolder::localisation() const {
+    return readLocalisationTable(path(kLocalisation));
 }
 
 graph::PoseGraph RunFolder::graph() const { return io::loadG2o(path(kGraph)); }

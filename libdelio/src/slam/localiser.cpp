@@ -3,6 +3,7 @@
 #include "delio/core/error.h"
 #include "delio/graph/pose_pdf.h"
 #include "delio/io/decode_observation.h"
+#include "slam/place_listeners.h"
 
 namespace delio {
 Localiser::Localiser(std::shared_ptr<const StoredMap> map, const OdometryOptions& options,

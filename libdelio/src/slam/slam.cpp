@@ -1,5 +1,7 @@
 #include "delio/slam/slam.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <string>
 
@@ -7,6 +9,27 @@
 #include "delio/core/stopwatch.h"
 
 namespace delio {
+Eigen::Matrix3Xf staticPoints(const SlamScan& scan) {
+    constexpr Eigen::Index kMost = 20000;
+    const auto& points = scan.step.used.points;
+    const auto& dynamic = scan.step.used.dynamic;
+    const auto moving = std::count(dynamic.begin(), dynamic.end(), std::uint8_t{1});
+    // Every n-th point in sensor order, so that all azimuths are thinned alike.
+    const Eigen::Index all = points.cols() - moving,
+                       stride = std::max<Eigen::Index>(1, (all + kMost - 1) / kMost);
+    Eigen::Matrix3Xf still(3, (all + stride - 1) / stride);
+    Eigen::Index kept = 0, toPass = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        if (!dynamic.empty() && dynamic[static_cast<std::size_t>(i)]) continue;
+        if (toPass == 0) {
+            still.col(kept++) = points.col(i);
+            toPass = stride;
+        }
+        --toPass;
+    }
+    return scan.scan.sensorPose.cast<float>() * still;
+}
+
 namespace {
 /** All poses after it would be what it is. */
 void requireFinite(const Increment& increment, const Scan& scan) {

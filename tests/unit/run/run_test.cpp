@@ -38,7 +38,7 @@ TEST_F(ToyRun, NotesEachScan) {
         EXPECT_GT(row.points, 20000U);
         EXPECT_LE(row.points, scan.points->size());
         EXPECT_GT(row.total_ms(), 1.5);
-        EXPECT_EQ(row.report.listeners_ms.size(), 3U);  // graph, submaps and map
+        EXPECT_EQ(row.figures.listeners_ms().size(), 3U);  // graph, submaps and map
     }
     const auto& record = run.record();
     EXPECT_EQ(record.rows.size(), kScans);
@@ -225,7 +225,7 @@ TEST_F(ToyRun, TheMapFollowsTheSizeOfThePlace) {
         return run.maps().points->build(run.record().final.poses).points;
     };
     const auto first = driven({});
-    const auto details = first->record().rows.front().report.step.details;
+    const auto details = first->record().rows.front().figures.details();
     const auto scale = std::find_if(details.begin(), details.end(),
                                     [](const auto& detail) { return detail.first == "scale"; });
     ASSERT_NE(scale, details.end());

@@ -1,4 +1,4 @@
-#include "delio/slam/graph_builder.h"
+#include "delio/slam/listeners.h"
 
 #include <gtest/gtest.h>
 

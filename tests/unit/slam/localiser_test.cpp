@@ -5,7 +5,10 @@
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 
-#include "../localisation/town_map.h"
+#include <filesystem>
+#include <string>
+
+#include "../places/town_map.h"
 #include "delio/core/error.h"
 #include "test_data.h"
 
@@ -46,6 +49,30 @@ TEST(Localiser, TakesObservationsAndGivesPosesWithCovariance) {
     EXPECT_GT(found->cov(0, 0), 0);
     EXPECT_LT(found->cov(0, 0), 0.01);
     EXPECT_THROW(localiser.process(mrpt::obs::CObservationIMU()), Error);
+}
+
+// The map's file is cut off while it is in use.
+TEST(Localiser, EndsWhereTheMapCannotBeRead) {
+    const test::TemporaryFolder folder;
+    {
+        const TownDrive drive(roundTheBlock(0));
+        StoredMap::save(drive.content, fileIn(folder));
+    }
+    Localiser localiser(std::make_shared<const StoredMap>(fileIn(folder)));
+    std::filesystem::resize_file(fileIn(folder), 100);
+    test::Noise noise(21);
+    Scan scan = test::scanOf(seenFrom(town(), test::poseAt(10, 0, 0), noise));
+    for (int i = 0; i < 3; ++i) {
+        scan.stamp_s = 0.1 * i;
+        try {
+            localiser.process(scan);
+            FAIL() << i;
+        } catch (const Error& error) {
+            const std::string what = error.what();
+            EXPECT_NE(what.find("the localisation ended"), std::string::npos) << what;
+            EXPECT_NE(what.find(fileIn(folder)), std::string::npos) << what;
+        }
+    }
 }
 
 TEST(MapFollower, WithoutAHistoryItKeepsTheLastFix) {

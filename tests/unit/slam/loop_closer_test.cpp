@@ -1,4 +1,4 @@
-#include "delio/slam/loop_closer.h"
+#include "slam/place_listeners.h"
 
 #include <gtest/gtest.h>
 #include <pthread.h>
@@ -8,16 +8,16 @@
 #include <system_error>
 #include <thread>
 
-#include "../loops/town.h"
+#include "../places/town.h"
 #include "delio/core/error.h"
 
 namespace {
 using namespace delio;
-using namespace delio::loops_test;
+using namespace delio::places_test;
 
 /** Round the block with a sensor that lies on its side, whose pose on the vehicle is known or not;
  * `change`: of each step. */
-loops::ClosedLoops driven(bool isKnown, const std::function<void(Step&)>& change = {}) {
+places::ClosedLoops driven(bool isKnown, const std::function<void(Step&)>& change = {}) {
     const Eigen::Isometry3d side = test::poseAtDeg(0, 0, 0, 0, 0, 90);
     Poses truth = roundTheBlock(15);
     if (!isKnown)  // the vehicle's frame is the sensor's

@@ -6,7 +6,6 @@
 
 #include "delio/core/increment.h"
 #include "delio/core/stage_options.h"
-#include "delio/graph/residual.h"
 
 namespace delio::graph {
 struct WhitenedGraph;
@@ -45,7 +44,8 @@ struct OptimisationResult {
 };
 
 /** The pose graph of the paper's section V: F(x) = sum over edges of e' Omega e is minimised over
- *  the poses of all nodes but node 0, which stays where it is. e is that of residual.h, Omega the
+ *  the poses of all nodes but node 0, which stays where it is. e is [translation,
+ *  rotation log] of Z^-1 T_from^-1 T_to with the measured increment Z, Omega the
  *  inverse of the edge's covariance. Poses are metres, in the frame that node 0's pose is given
  *  in. Poses given to addNode are the start of the minimisation, good or poor. */
 class PoseGraph {

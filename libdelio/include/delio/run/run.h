@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "delio/io/scan_reader.h"
-#include "delio/run/run_maps.h"
 #include "delio/run/run_record.h"
-#include "delio/slam/graph_builder.h"
-#include "delio/slam/loop_closer.h"
-#include "delio/slam/map_follower.h"
-#include "delio/slam/map_listener.h"
+#include "delio/slam/listeners.h"
+
+namespace delio {
+class LoopCloser;
+class MapFollower;
+}  // namespace delio
 
 namespace delio::run {
 class RowFiles;
@@ -90,7 +91,7 @@ class Run {
 
  private:
     bool searchesLoops() const;
-    loops::LoopOptions loopOptions() const;
+    places::LoopOptions loopOptions() const;
     void switchOff(const FailedListener& failed, std::size_t scan);
     void optimise();
     void optimiseGraph();

@@ -7,10 +7,13 @@
 #include <string>
 
 #include "delio/odometry/make_odometry.h"
-#include "delio/slam/map_follower.h"
+#include "delio/places/localisation.h"
+#include "delio/places/stored_map.h"
 #include "delio/slam/slam.h"
 
 namespace delio {
+class MapFollower;
+
 /** What a Localiser says of one scan. */
 struct Localisation {
     Step step;   //!< of the odometry

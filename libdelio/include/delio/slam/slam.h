@@ -1,20 +1,54 @@
 #pragma once
+#include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "delio/io/trajectory.h"
 #include "delio/odometry/odometry.h"
-#include "delio/slam/listener.h"
+#include "delio/odometry/step.h"
+#include "delio/scan/scan.h"
 
 namespace delio {
-/** A listener that threw, and what it said. */
-struct FailedListener {
-    std::shared_ptr<const SlamListener> listener;
-    std::string message;  //!< one plain line
+/** Which poses are kept: of all scans, or only what the next scan needs, so that memory does not
+ * grow with the drive. */
+enum class History { All, Last };
+
+/** One scan as Slam passes it to its listeners. References are valid during the call. */
+struct SlamScan {
+    std::size_t node;  //!< number of its pose, from 0
+    const Scan& scan;  //!< as it came
+    const Step& step;  //!< what the odometry said of it
+    /** Of the vehicle, since the scan before; identity for the first. */
+    Increment increment;
+    /** Of the vehicle, by the odometry alone: maps its coordinates to those it had at the first
+     *  scan. */
+    Eigen::Isometry3d pose;
 };
 
-/** What became of one scan. */
+/** Static points of a scan, in the vehicle's frame: at most 20 000, as several scans are merged. */
+Eigen::Matrix3Xf staticPoints(const SlamScan& scan);
+
+/** Gets every step of an odometry: a pose graph, a map, a window. */
+class SlamListener {
+ public:
+    virtual ~SlamListener() = default;
+
+    /** Name of its time in scans.csv, and of the listener in messages. */
+    virtual const char* name() const = 0;
+
+    /** Takes the next scan. A listener that throws gets no more scans (ScanReport::failed). */
+    virtual void add(const SlamScan& scan) = 0;
+};
+
+/** A listener that threw, and what it said. */
+struct FailedListener {
+    std::shared_ptr<const SlamListener> listener;  //!< that was switched off
+    std::string message;                           //!< one plain line
+};
+
+/** Result of one scan. */
 struct ScanReport {
     Step step;                           //!< of the odometry
     std::vector<Named> listeners_ms;     //!< time of each listener, under its name
