@@ -17,7 +17,6 @@
 #include "delio/io/g2o.h"
 #include "delio/io/scan_reader.h"
 #include "delio/picture/illustrate.h"
-#include "delio/run/keeper.h"
 #include "delio/run/run_folder.h"
 #include "heap.h"
 #include "initial_pose.h"
@@ -53,35 +52,23 @@ void warnOfOthers(const io::ScanReader& reader,
         warn("scans of sensor '" + other + "' were not used; see --sensor-label");
 }
 
-/** A run that cannot be gone on with later goes on now. */
-void keep(run::Keeper& keeper, run::Run& run, bool isLast) {
-    try {
-        keeper.add(run);
-        if (isLast) keeper.keep(run);
-    } catch (const std::exception& e) {
-        run.warn("the run could not be gone on with later: " + plainMessage(e));
-    }
-}
-
 /** Scans into the run until the end, the wanted count, an interrupt or a fault in the rawlog. With
  *  more than one thread each is read while the one before is registered: `read_ms` is what is
  *  waited for. */
 void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double read_ms,
-             run::Run& run, run::Keeper& keeper) {
+             run::Run& run) {
     const unsigned count = line.count.getValue(), passedOver = line.every.getValue() - 1;
     const auto policy = line.threads.getValue() == 1 ? std::launch::deferred : std::launch::async;
     cli::Progress progress("scans", count);
     try {
-        for (std::size_t done = run.record().rows.size() + 1; now.scan; ++done) {
+        for (std::size_t done = 1; now.scan; ++done) {
             // A fault in a scan that is not wanted is none: the last one is not read beyond.
             std::future<Reading> next;
             if (done != count) next = std::async(policy, [&] { return read(reader, passedOver); });
             const auto row = run.process(*now.scan, read_ms);
             if (line.verbose.getValue()) cli::inform(describe(row));
-            const bool isStopped = cli::interrupted();
-            keep(keeper, run, isStopped);
             progress.update(done, now.fraction);
-            if (isStopped || done == count) break;
+            if (cli::interrupted() || done == count) break;
             Stopwatch watch;
             now = next.get();
             read_ms = watch.lap_ms();
@@ -107,12 +94,6 @@ std::shared_ptr<LiveView> liveViewFor(SlamCommandLine& line, const Options& opti
     return view;
 }
 
-/** What the scans of a run are, in a line. */
-std::string scansOf(SlamCommandLine& line, const std::string& input) {
-    return fs::absolute(input).string() + " --start " + std::to_string(line.start.getValue()) +
-           " --every " + std::to_string(line.every.getValue());
-}
-
 /** The first scan that is wanted. Error where there is none. */
 Reading firstOf(SlamCommandLine& line, const std::string& input, io::ScanReader& reader) {
     const unsigned start = line.start.getValue();
@@ -123,21 +104,6 @@ Reading firstOf(SlamCommandLine& line, const std::string& input, io::ScanReader&
     throw Error("'" + input + "' holds no LiDAR scans" +
                 (label.empty() ? "" : " of sensor '" + label + "'") +
                 (start > 0 ? " after --start " + std::to_string(start) : ""));
-}
-
-/** The run as it was kept, and the scan to go on with, if there is one. */
-Reading resume(SlamCommandLine& line, io::ScanReader& reader, const run::Keeper& keeper,
-               run::Run& run) {
-    keeper.resume(run);
-    const std::size_t done = run.record().rows.size(), count = line.count.getValue();
-    cli::inform("going on after " + std::to_string(done) + " scans");
-    if (count > 0 && done >= count) return {};
-    const std::size_t every = line.every.getValue();
-    auto next = read(reader, line.start.getValue() + done * every);
-    // Scans that the reader left out were passed over, too.
-    while (next.scan && done > 0 && next.scan->index < run.record().rows.back().scan + every)
-        next = read(reader, 0);
-    return next;
 }
 
 void warnOfRecording(const io::ScanReader& reader, run::Run& run) {
@@ -155,8 +121,7 @@ std::string finish(const std::string& input, const std::string& folder, const st
     const auto& record = run.record();
     const bool anyUsed = record.predicted() < record.rows.size();
     if (!anyUsed)
-        run.fail("no scan of '" + input +
-                 "' could be used: " + record.rows.front().report.step.reason);
+        run.fail("no scan of '" + input + "' could be used: " + record.rows.front().reason);
     run.finish(record.fault.empty() && !cli::interrupted());
     malloc_trim(0);  // pictures take a lot
     std::string fault = run::RunFolder(folder).write(record, anyUsed ? run.maps() : run::RunMaps{},
@@ -172,37 +137,26 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     const std::string name = io::nameOfDrive(input);
     const auto reader = io::openScans(sourceFor(line, input));
     const Options options = optionsFor(line, reader->meta());
-    const std::string folder = settings.folder;
-    run::Keeper keeper(folder, scansOf(line, input));
-    const bool resumes = line.resume.getValue() && keeper.hasState();
-    Reading first;
-    if (!resumes) first = firstOf(line, input, *reader);
+    auto first = firstOf(line, input, *reader);
     const double read_ms = watch.lap_ms();
     cli::catchInterrupts();  // from here on there is something to write
     if (cli::interrupted()) return {cli::kExitInterrupted};
     settings.sensorLabel = reader->label();
     settings.drive = name;
-    settings.folder = keeper.folder();
-    settings.mayGoOn = true;
     cli::inform("reading " + describe(reader->recording()));
-    if (!resumes) keeper.begin();
     run::Run run(options, settings);
     warnOfRecording(*reader, run);
     run.readSideFiles(reader->calibration(), reader->truth(), line.truth.getValue(),
                       line.truthFrame.getValue() == "cam0");
     const auto view = liveViewFor(line, options, run);
-    if (resumes) first = resume(line, *reader, keeper, run);
-    process(line, std::move(first), *reader, read_ms, run, keeper);
-    if (run.record().rows.empty()) {  // not even the first one: there is nothing to write
-        keeper.remove();
-        throw Error(run.record().fault);
-    }
-    const std::string fault = finish(input, folder, place, run);
-    const bool isAlone = line.input.getValue().size() == 1;  // others are not gone on with
-    if (!cli::interrupted() || !isAlone) keeper.remove();
+    process(line, std::move(first), *reader, read_ms, run);
+    // Not even the first one: there is nothing to write.
+    if (run.record().rows.empty()) throw Error(run.record().fault);
+    const std::string fault = finish(input, settings.folder, place, run);
     if (!fault.empty()) throw Error(fault);
     if (cli::interrupted()) {
-        if (keeper.hasState()) cli::inform("interrupted; --resume goes on from there");
+        cli::inform("interrupted; the results are those of " +
+                    std::to_string(run.record().rows.size()) + " scans");
         return {cli::kExitInterrupted, run.record().extended, false};
     }
     if (view && view->isOpen()) cli::inform("done; close the window to end");
@@ -259,8 +213,7 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
         if (input != "-" && !fs::exists(input))
             throw Error("cannot read '" + input + "': no such file or folder");
     checkFolders(line);
-    const OutputFolder folder(line.output.getValue(), line.force.getValue(),
-                              line.resume.getValue());
+    const OutputFolder folder(line.output.getValue(), line.force.getValue());
     const auto settings = settingsFor(line, argc, argv);
     if (inputs.size() > 1)
         return slamSeveral(inputs, settings,

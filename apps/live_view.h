@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "odometry/paper_odometry.h"
-#include "delio/slam/listener.h"
+#include "delio/slam/slam.h"
 
 namespace delio {
 /** A window that shows a drive while it is processed: the map as it grows, the current scan and the
@@ -19,7 +19,6 @@ class LiveView : public SlamListener {
     const char* name() const override { return "live_view"; }
     /** Does nothing once the window was closed. */
     void add(const SlamScan& scan) override;
-    void undo() noexcept override {}  // what was drawn was drawn
 
     bool isOpen() const;
 

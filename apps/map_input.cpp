@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "delio/core/error.h"
-#include "delio/localisation/stored_map.h"
 #include "delio/map/pcd.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
+#include "delio/places/stored_map.h"
 #include "delio/run/run_folder.h"
 
 namespace delio {

@@ -8,9 +8,8 @@ namespace delio {
  *  done; one that was made for nothing is taken away again. No other run can have it meanwhile. */
 class OutputFolder {
  public:
-    /** Throws Error where it cannot be written into, or is not empty and neither `force`, nor there
-     *  is a run in it that `resume` may go on with. */
-    OutputFolder(const std::string& folder, bool force, bool resume);
+    /** Throws Error where it cannot be written into, or is not empty without `force`. */
+    OutputFolder(const std::string& folder, bool force);
 
  private:
     io::TargetFolder folder_;

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "delio/evaluation/rotation_angle.h"
 #include "delio/run/doubts.h"
 #include "delio/run/summary.h"
 
@@ -114,10 +113,8 @@ void printGraphTable(const run::RunRecord& record, const std::string& folder, st
 }
 
 std::string describe(const run::RunRow& row) {
-    const Step& step = row.report.step;
-    const auto& pose = step.increment.pose;
-    return format("scan %zu: moved %.3f m, turned %.3f deg, %.0f ms%s%s", row.scan,
-                  pose.translation().norm(), mrpt::RAD2DEG(evaluation::rotationAngle_rad(pose)),
-                  row.total_ms(), step.predicted ? ", predicted: " : "", step.reason.c_str());
+    return format("scan %zu: moved %.3f m, turned %.3f deg, %.0f ms%s%s", row.scan, row.moved_m,
+                  mrpt::RAD2DEG(row.turned_rad), row.total_ms(),
+                  row.predicted ? ", predicted: " : "", row.reason.c_str());
 }
 }  // namespace delio

@@ -14,7 +14,6 @@
 #include "delio/io/partial_folder.h"
 #include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
-#include "delio/run/keeper.h"
 #include "delio/run/run_folder.h"
 
 namespace delio {
@@ -66,7 +65,7 @@ std::vector<std::string> namesOf(const std::list<Drive>& drives, const std::stri
     if (taken.size() < names.size())
         throw Error("two drives, of the recordings and of the map '" + map +
                     "', have one name: their trajectories would be one another's");
-    taken.insert(run::Keeper::kFolder);
+    taken.insert(RunFolder::kIncomplete);
     for (const auto& drive : drives) {
         if (taken.count(drive.name) > 0)
             throw Error("a drive cannot be called '" + drive.name + "', as '" + drive.input +

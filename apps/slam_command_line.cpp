@@ -64,7 +64,7 @@ cli::HelpText slamHelp() {
     help.examples = {{{"delio-slam -i dataset/sequences/07 -o 07-results", "A sequence of KITTI"},
                       {"delio-slam -i b.bag -o b --sensor-label /points --map 07-results",
                        "Where in that map was another drive"}}};
-    help.interrupted = "what was done is written, --resume goes on from there";
+    help.interrupted = "what was done is written";
     return help;
 }
 
@@ -125,10 +125,6 @@ std::string contradictionIn(SlamCommandLine& line) {
         return "--keep-dynamic keeps what is taken out of the map: it does not go with --no-map";
     if (line.noMap.isSet() && (line.extend.isSet() || inputs.size() > 1))
         return "--no-map does not go with what is to become one map";
-    if (line.resume.isSet() && line.force.isSet())
-        return "--resume goes on with what is there, --force begins anew";
-    if (line.resume.isSet() && (inputs.size() > 1 || isGraph(inputs.front())))
-        return "--resume goes on with one drive";
     if (inputs.size() < 2) return "";
     if (line.map.isSet() && !line.extend.isSet())
         return "several drives are joined to one map: with --map that needs --extend";

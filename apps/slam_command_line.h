@@ -101,10 +101,6 @@ struct SlamCommandLine {
     Switch noLoops{"", "no-loops", "Do not search for places that the drive comes back to", cmd};
     Switch noGraph{"", "no-graph", "Leave out the pose graph's optimisation, and loops", cmd};
     Switch gui{"", "gui", "Show the drive in a window while it is processed", cmd};
-    Switch resume{"", "resume",
-                  "Go on with the run in OUTDIR that was ended by force, on the same recording and "
-                  "with the same options; begin where there is none",
-                  cmd};
     Switch force{"", "force", "Overwrite what exists", cmd};
     Switch verbose{"", "verbose", "A line for each scan, and all the text of errors", cmd};
 };

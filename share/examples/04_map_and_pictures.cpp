@@ -6,8 +6,7 @@
 #include <delio/map/ply.h>
 #include <delio/picture/render.h>
 #include <delio/picture/scene.h>
-#include <delio/slam/graph_builder.h>
-#include <delio/slam/map_listener.h>
+#include <delio/slam/listeners.h>
 #include <delio/slam/options.h>
 #include <delio/slam/slam.h>
 

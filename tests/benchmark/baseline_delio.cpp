@@ -2,7 +2,7 @@
 #include "delio/core/geometry.h"
 #include "paper/coupled_registration.h"
 #include "odometry/rings.h"
-#include "delio/slam/graph_builder.h"
+#include "delio/slam/listeners.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"
 

@@ -84,8 +84,8 @@ void DriveMeasures::addRanges(const Eigen::Matrix3Xd& points) {
             }
 }
 
-/** Ground: within 0.15 m of the lowest points (5 %) of its square metre, where those lie about as
- *  deep as the road. */
+/** DenseSubmap: within 0.15 m of the lowest points (5 %) of its square metre, where those lie about
+ * as deep as the road. */
 void DriveMeasures::addGround(const Eigen::Matrix3Xd& points) {
     std::map<std::pair<long, long>, Samples> cells;
     for (const auto& p : points.colwise())

@@ -26,7 +26,7 @@
 #include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
 #include "delio/odometry/odometry.h"
-#include "delio/slam/graph_builder.h"
+#include "delio/slam/listeners.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"
 

@@ -125,7 +125,7 @@ void startAt(const std::shared_ptr<const StoredMap>& map, const std::vector<Scan
         if (found.fix.where == Whereabouts::kUnknown) {
             if (settings.list && i + 1 == scans.size())
                 std::printf("    start %zu (%.1f m from the map): %s, share %.2f\n", first,
-                            distance, found.fix.reason.c_str(), found.fix.share);
+                            distance, found.fix.reason.c_str(), found.fix.inlierRatio);
             continue;
         }
         const Isometry3d off =
@@ -136,7 +136,8 @@ void startAt(const std::shared_ptr<const StoredMap>& map, const std::vector<Scan
         if (!right) {
             ++starts.wrong;
             std::printf("    start %zu: WRONG by %.2f m %.2f deg, share %.2f\n", first,
-                        off.translation().norm(), angleOf(off.linear()) / kDeg, found.fix.share);
+                        off.translation().norm(), angleOf(off.linear()) / kDeg,
+                        found.fix.inlierRatio);
         }
         starts.scans.push_back(static_cast<double>(i + 1));
         return;
@@ -152,17 +153,17 @@ void note(const Localisation& found, double ms, const Scan& scan, const Isometry
     const double off_m = off.translation().norm(), off_rad = angleOf(off.linear());
     ++tracking.scans;
     if (found.fix.where != Whereabouts::kInMap || !found.fix.measured) {
-        tracking.outsideShare.push_back(found.fix.share);
+        tracking.outsideShare.push_back(found.fix.inlierRatio);
         if (distance < kMapped_m) ++tracking.mappedNotIn;
         if (settings.list)
             std::printf("    scan %zu (%.1f m from the map): %s, share %.2f\n", scan.index,
-                        distance, found.fix.reason.c_str(), found.fix.share);
+                        distance, found.fix.reason.c_str(), found.fix.inlierRatio);
         return;
     }
     ++tracking.inMap;
     tracking.off_m.push_back(off_m);
     tracking.off_deg.push_back(off_rad / kDeg);
-    tracking.share.push_back(found.fix.share);
+    tracking.share.push_back(found.fix.inlierRatio);
     if (settings.elsewhere || off_m > kRight_m || off_rad > kRight_rad) ++tracking.wrong;
     if (found.fix.searched) return;
     tracking.ms.push_back(ms);

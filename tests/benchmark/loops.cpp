@@ -20,7 +20,7 @@
 #include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"
 #include "delio/run/summary.h"
-#include "delio/slam/loop_closer.h"
+#include "slam/place_listeners.h"
 
 namespace {
 using namespace delio;
@@ -128,7 +128,7 @@ std::vector<Revisit> revisits(const Poses& truth) {
 }
 
 /** What loops can do at best: the same chain with the true edge of every revisit. */
-Poses closedByTruth(const loops::ClosedLoops& closed, const Poses& believed, const Poses& truth) {
+Poses closedByTruth(const places::ClosedLoops& closed, const Poses& believed, const Poses& truth) {
     graph::PoseGraph graph;
     for (const auto& pose : believed) graph.addNode(pose);
     for (std::size_t i = 0; i + 1 < believed.size(); ++i) graph.addEdge(closed.graph.edges()[i]);
@@ -144,7 +144,7 @@ Poses closedByTruth(const loops::ClosedLoops& closed, const Poses& believed, con
     return graph.poses();
 }
 
-void printRecall(const loops::ClosedLoops& closed, const std::vector<loops::Submap>& submaps,
+void printRecall(const places::ClosedLoops& closed, const std::vector<places::Submap>& submaps,
                  const Poses& truth) {
     const auto known = revisits(truth);
     std::size_t all[4] = {}, found[4] = {};
@@ -165,7 +165,7 @@ void printRecall(const loops::ClosedLoops& closed, const std::vector<loops::Subm
                         100.0 * static_cast<double>(found[kind]) / static_cast<double>(all[kind]));
 }
 
-void printLoops(const loops::ClosedLoops& closed, const Poses& truth, bool list) {
+void printLoops(const places::ClosedLoops& closed, const Poses& truth, bool list) {
     constexpr double kWrong_m = 0.5, kWrong_rad = M_PI / 180;
     std::size_t wrong = 0;
     for (const auto& loop : closed.candidates) {

@@ -66,7 +66,6 @@ class Labels : public SlamListener {
                             labels.at(scan.step.used.indices[k]) != 0, told});
         }
     }
-    void undo() noexcept override { scans_.pop_back(); }
 
     Voxels voxels(const std::vector<Eigen::Isometry3d>& poses) const {
         Voxels voxels;

@@ -4,7 +4,7 @@
 #include <random>
 #include <thread>
 
-#include "delio/localisation/stored_map.h"
+#include "delio/places/stored_map.h"
 #include "delio_slam_fixture.h"
 #include "drive_state.h"
 

@@ -205,8 +205,9 @@ TEST_F(DelioSlam, CtrlCKeepsWhatWasDone) {
         "delio-slam", Words{"-i", rawlog_, "-o", out_, "--no-map", "--set", "graph.skip_edges=0"},
         "delio-slam: scans ");
     EXPECT_EQ(run.exitCode, 130) << run.err;
-    EXPECT_EQ(test::errorOf(run), "delio-slam: interrupted; --resume goes on from there\n");
     const auto scans = summary()["scans"].as<int>();
+    EXPECT_EQ(test::errorOf(run), "delio-slam: interrupted; the results are those of " +
+                                      std::to_string(scans) + " scans\n");
     EXPECT_GE(scans, 20);
     EXPECT_LT(scans, 400);
     expectPart(static_cast<std::size_t>(scans));

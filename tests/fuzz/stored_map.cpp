@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "delio/localisation/stored_map.h"
-#include "localisation/bytes.h"
+#include "delio/places/stored_map.h"
+#include "places/bytes.h"
 #include "target.h"
 
 using namespace delio;
@@ -53,7 +53,7 @@ std::string take(std::string& from, std::size_t count) {
 }
 
 /** A map of the plain bytes of its parts: the index (of one submap, without the places of its
- *  parts), a sketch and points, each behind its length of two bytes. */
+ *  parts), a descriptor and points, each behind its length of two bytes. */
 std::string mapOf(std::string plain) {
     std::array<std::string, 3> parts;
     for (std::string& part : parts) {
@@ -83,7 +83,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return fuzz::mayRefuse([&] {
         const StoredMap map(file);
         for (const auto& drive : map.drives()) map.trajectory(drive);
-        for (std::size_t i = 0; i < map.submaps().size(); ++i) map.sketch(i);
+        for (std::size_t i = 0; i < map.submaps().size(); ++i) map.descriptor(i);
         map.cloud(0.5);
     });
 }

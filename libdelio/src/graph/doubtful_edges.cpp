@@ -1,11 +1,14 @@
-#include "doubtful_edges.h"
+#include "graph/doubtful_edges.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "graph/chain.h"
+#include "graph/residual.h"
+
 namespace delio::graph {
 namespace {
-/** Edges over at most so many steps have a say about each of them. */
+/** Only edges over at most so many steps vote on each of these steps. */
 constexpr std::size_t kShort = 10;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
@@ -14,11 +17,11 @@ Vector6 errorOf(const PoseGraph& graph, const Edge& edge) {
 }
 
 /** The steps between successive nodes: step i leads from node i to node i+1. */
-class Chain {
+class Steps {
  public:
-    Chain(const PoseGraph& graph, double width)
+    Steps(const PoseGraph& graph, double width)
         : edges_(graph.poses().size(), kNone),
-          covariances_(graph.poses().size(), Matrix6::Zero()),
+          chain_(graph.poses().size()),
           unknown_(graph.poses().size(), 0) {
         for (std::size_t i = 0; i < graph.edges().size(); ++i) {
             const Edge& edge = graph.edges()[i];
@@ -29,13 +32,12 @@ class Chain {
         for (std::size_t step = 0; step + 1 < graph.poses().size(); ++step) {
             const std::size_t i = edges_[step];
             const bool known = i != kNone && squaredError(graph, i) <= width * width;
-            covariances_[step + 1] = covariances_[step];
             unknown_[step + 1] = unknown_[step] + (known ? 0 : 1);
             if (!known) continue;
             const Edge& edge = graph.edges()[i];
-            const Matrix6 A = adjointOf(graph.poses()[edge.to]);
-            covariances_[step + 1] += A * edge.increment.covariance * A.transpose();
+            chain_.set(step, edge.increment.covariance, graph.poses()[edge.to]);
         }
+        chain_.sumUp();
     }
 
     std::size_t edgeOf(std::size_t step) const { return edges_[step]; }
@@ -45,10 +47,7 @@ class Chain {
         return unknown_[first] == unknown_[last];
     }
 
-    /** Covariance of the chain's motion between the two nodes, about the world's origin. */
-    Matrix6 covarianceOf(std::size_t first, std::size_t last) const {
-        return covariances_[last] - covariances_[first];
-    }
+    const Chain& chain() const { return chain_; }
 
  private:
     static double squaredError(const PoseGraph& graph, std::size_t i) {
@@ -57,23 +56,23 @@ class Chain {
     }
 
     std::vector<std::size_t> edges_;    //!< of each step, the best of several
-    std::vector<Matrix6> covariances_;  //!< summed up to each node
+    Chain chain_;                       //!< of the steps that are known
     std::vector<std::size_t> unknown_;  //!< steps that are not known, counted up to each node
 };
 }  // namespace
 
 std::vector<bool> doubtfulEdges(const PoseGraph& graph, double width) {
     const auto& edges = graph.edges();
-    const Chain chain(graph, width);
+    const Steps steps(graph, width);
     std::vector<bool> doubtful(edges.size(), false);
     std::vector<unsigned> against(graph.poses().size(), 0), agreeing(graph.poses().size(), 0);
     const auto spanOf = [](const Edge& edge) { return std::minmax(edge.from, edge.to); };
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const auto [first, last] = spanOf(edges[i]);
-        if (chain.edgeOf(first) == i || !chain.knows(first, last)) continue;
+        if (steps.edgeOf(first) == i || !steps.knows(first, last)) continue;
         const Matrix6 A = adjointOf(graph.poses()[edges[i].to].inverse());
         const Matrix6 covariance =
-            edges[i].increment.covariance + A * chain.covarianceOf(first, last) * A.transpose();
+            edges[i].increment.covariance + A * steps.chain().between(first, last) * A.transpose();
         const Vector6 e = errorOf(graph, edges[i]);
         doubtful[i] = e.dot(covariance.ldlt().solve(e)) > width * width;
         if (last - first > kShort) continue;
@@ -85,7 +84,7 @@ std::vector<bool> doubtfulEdges(const PoseGraph& graph, double width) {
         wrongSteps[step + 1] = wrongSteps[step] + (against[step] >= 2 && agreeing[step] == 0);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const auto [first, last] = spanOf(edges[i]);
-        if (wrongSteps[first] != wrongSteps[last]) doubtful[i] = chain.edgeOf(first) == i;
+        if (wrongSteps[first] != wrongSteps[last]) doubtful[i] = steps.edgeOf(first) == i;
     }
     return doubtful;
 }

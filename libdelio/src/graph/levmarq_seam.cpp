@@ -1,4 +1,6 @@
-#include "levmarq_seam.h"
+#include "graph/levmarq_seam.h"
+
+#include "graph/residual.h"
 
 #include <mrpt/graphslam/levmarq.h>
 

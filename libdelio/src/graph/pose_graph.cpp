@@ -6,8 +6,8 @@
 #include <string>
 
 #include "delio/core/error.h"
-#include "doubtful_edges.h"
-#include "levmarq_seam.h"
+#include "graph/doubtful_edges.h"
+#include "graph/levmarq_seam.h"
 
 namespace delio::graph {
 namespace {
@@ -95,32 +95,6 @@ void PoseGraph::append(const Edge& edge, const Matrix6& information) {
     edgesUpTo_[std::max(edge.from, edge.to)].push_back(edges_.size());
     edges_.push_back(edge);
     information_.push_back(information);
-}
-
-void PoseGraph::removeLast() {
-    if (poses_.empty()) throw Error("pose graph: there are no nodes");
-    auto& removed = edgesUpTo_.back();
-    std::sort(removed.begin(), removed.end());
-    for (auto last = removed.rbegin(); last != removed.rend(); ++last) {
-        const std::size_t i = *last;
-        edges_.erase(edges_.begin() + static_cast<std::ptrdiff_t>(i));
-        information_.erase(information_.begin() + static_cast<std::ptrdiff_t>(i));
-        if (i == edges_.size()) continue;  // it was the last one, as it is while driving
-        for (auto& ofNode : edgesUpTo_)
-            for (std::size_t& other : ofNode)
-                if (other > i) --other;
-    }
-    edgesUpTo_.pop_back();
-    poses_.pop_back();
-}
-
-void PoseGraph::restore(std::size_t firstNode, const std::vector<Eigen::Isometry3d>& poses) {
-    if (firstNode > poses_.size() || poses.size() > poses_.size() - firstNode)
-        throw Error("pose graph: " + std::to_string(poses.size()) + " poses from node " +
-                    std::to_string(firstNode) + " on need nodes that are not there (there are " +
-                    std::to_string(poses_.size()) + ")");
-    for (std::size_t i = 0; i < poses.size(); ++i) requireFinite(poses[i], firstNode + i);
-    std::copy(poses.begin(), poses.end(), poses_.begin() + static_cast<std::ptrdiff_t>(firstNode));
 }
 
 void PoseGraph::requireConnected(std::size_t firstFree) const {

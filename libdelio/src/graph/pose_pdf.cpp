@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "delio/graph/information.h"
+#include "graph/residual.h"
 
 namespace delio::graph {
 mrpt::poses::CPose3DPDFGaussian posePdfOf(const Increment& increment) {

@@ -13,8 +13,8 @@
 
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
-#include "delio/graph/information.h"
 #include "delio/io/output_file.h"
+#include "graph/residual.h"
 
 namespace delio::io {
 using graph::convertInformation;

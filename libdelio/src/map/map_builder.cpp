@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "../core/checkpoint.h"
 #include "build_map.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
@@ -108,13 +107,11 @@ void MapOptions::check(const std::string& section) const {
     requireOrder(section + ".min_range", minRange_m, section + ".max_range", maxRange_m);
 }
 
-MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel, std::string folder,
-                       bool isKept)
+MapBuilder::MapBuilder(const MapOptions& options, std::string sensorLabel, std::string folder)
     : given_(options),
       options_(options),
       sensorLabel_(std::move(sensorLabel)),
-      folder_(std::move(folder)),
-      isKept_(isKept) {}
+      folder_(std::move(folder)) {}
 
 MapBuilder::~MapBuilder() = default;
 MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
@@ -127,8 +124,8 @@ void MapBuilder::takeScale(double scale) {
 }
 
 bool MapBuilder::isFarFromLastKeyframe(const Isometry3d& pose) const {
-    const Eigen::Vector3d moved = pose.translation() - now_.keyPose.translation();
-    const Eigen::Matrix3d turned = now_.keyPose.linear().transpose() * pose.linear();
+    const Eigen::Vector3d moved = pose.translation() - keyPose_.translation();
+    const Eigen::Matrix3d turned = keyPose_.linear().transpose() * pose.linear();
     return moved.norm() >= options_.keyframeDistance_m ||
            angleOf(turned) >= options_.keyframeAngle_deg * kDeg;
 }
@@ -136,15 +133,13 @@ bool MapBuilder::isFarFromLastKeyframe(const Isometry3d& pose) const {
 /** One that stands sees what comes and goes, too. */
 bool MapBuilder::isFarFromLastView(const Isometry3d& pose, mrpt::Clock::time_point stamp) const {
     constexpr std::chrono::duration<double> kPause(0.45);  // stamps are rounded
-    return now_.views == 0 || stamp - now_.viewStamp >= kPause ||
-           (pose.translation() - now_.viewPose.translation()).norm() >= options_.removal.spacing_m;
+    return views_ == 0 || stamp - viewStamp_ >= kPause ||
+           (pose.translation() - viewPose_.translation()).norm() >= options_.removal.spacing_m;
 }
 
 void MapBuilder::putAside(const std::vector<float>& points, const CPointsMap* view,
                           StoredScan& scan) {
-    if (!spool_)
-        spool_ = std::make_shared<io::Spool>(isKept_ ? io::Spool::named(spoolPath(), kWhat, kOption)
-                                                     : io::Spool(folder_, kWhat, kOption));
+    if (!spool_) spool_ = std::make_shared<io::Spool>(folder_, kWhat, kOption);
     scan.points = spool_->append(points);
     if (!view) return;
     const auto packed = odometry::RangeImage(finitePoints(*view), options_.removal.cell_deg).packed();
@@ -155,67 +150,31 @@ void MapBuilder::putAside(const std::vector<float>& points, const CPointsMap* vi
 bool MapBuilder::add(std::size_t poseIndex, const Isometry3d& approximatePose,
                      const CPointsMap& sensorPoints, const Isometry3d& sensorPose,
                      mrpt::Clock::time_point stamp, const std::vector<std::uint8_t>& moving) {
-    before_ = now_;
-    canUndo_ = true;
     const auto points = thinned(sensorPoints, approximatePose * sensorPose, moving, options_);
-    if (points.floats.empty() || !now_.fault.empty()) return false;
+    if (points.floats.empty()) return false;
     StoredScan scan;
     scan.poseIndex = poseIndex;
     scan.sensorPose = sensorPose;
     scan.stamp = stamp;
     scan.withIntensity = dynamic_cast<const CPointsMapXYZI*>(&sensorPoints) != nullptr;
     scan.still = points.still;
-    scan.isKeyframe =
-        scan.still > 0 && (now_.keyframes == 0 || isFarFromLastKeyframe(approximatePose));
+    scan.isKeyframe = scan.still > 0 && (keyframes_ == 0 || isFarFromLastKeyframe(approximatePose));
     const bool isView = options_.removal.enabled && isFarFromLastView(approximatePose, stamp);
-    try {
-        putAside(points.floats, isView ? &sensorPoints : nullptr, scan);
-    } catch (const Error& e) {
-        now_.fault = e.what();
-        giveUp();
-        return false;
-    }
+    putAside(points.floats, isView ? &sensorPoints : nullptr, scan);
     scans_.push_back(scan);
-    now_.scans = scans_.size();
     if (scan.isKeyframe) {
-        ++now_.keyframes;
-        now_.keyPose = approximatePose;
+        ++keyframes_;
+        keyPose_ = approximatePose;
     }
     if (isView) {
-        ++now_.views;
-        now_.viewPose = approximatePose;
-        now_.viewStamp = stamp;
+        ++views_;
+        viewPose_ = approximatePose;
+        viewStamp_ = stamp;
     }
     return scan.isKeyframe;
 }
 
-/** There will be no map: what was put aside for it leaves its room to the other results. */
-void MapBuilder::giveUp() {
-    spool_.reset();
-    std::error_code ignored;
-    if (isKept_) std::filesystem::resize_file(spoolPath(), 0, ignored);
-}
-
-void MapBuilder::undo() noexcept {
-    if (!canUndo_) return;
-    // What was put aside stays on the disk: a simplemap that was given out may still need it.
-    if (!spool_ && before_.scans > 0) before_.fault = now_.fault;  // what was given up is gone
-    now_ = std::move(before_);
-    scans_.erase(scans_.begin() + static_cast<std::ptrdiff_t>(now_.scans), scans_.end());
-    canUndo_ = false;
-}
-
-void MapBuilder::save(std::ostream& out) const {
-    checkpoint::save(out, {"map", checkpoint::textOf({&given_, &given_.removal})}, *this);
-}
-
-void MapBuilder::restore(std::istream& in) {
-    checkpoint::restore(in, {"map", checkpoint::textOf({&given_, &given_.removal})}, *this);
-    canUndo_ = false;
-}
-
 BuiltMap MapBuilder::build(const std::vector<Isometry3d>& poses) const {
-    if (!now_.fault.empty()) throw Error(now_.fault);
     return buildMap({scans_, spool_, options_, sensorLabel_}, poses);
 }
 }  // namespace delio::map

@@ -5,11 +5,11 @@
 namespace delio::run {
 namespace {
 template <typename IsOfKind>
-Stretches stretchesOf(const RunRows& rows, const IsOfKind& isOfKind) {
+Stretches stretchesOf(const std::vector<RunRow>& rows, const IsOfKind& isOfKind) {
     Stretches found;
     std::size_t inRow = 0;
     for (std::size_t i = 1; i < rows.size(); ++i) {
-        inRow = isOfKind(rows[i].report.step) ? inRow + 1 : 0;
+        inRow = isOfKind(rows[i]) ? inRow + 1 : 0;
         found.scans += inRow > 0;
         if (inRow <= found.longest) continue;
         found.longest = inRow;
@@ -18,9 +18,9 @@ Stretches stretchesOf(const RunRows& rows, const IsOfKind& isOfKind) {
     return found;
 }
 
-bool isWeak(const Step& step) {
-    return !step.predicted && (step.quality.unobservedRotation.cols() > 0 ||
-                               step.quality.unobservedTranslation.cols() > 0);
+bool isWeak(const RunRow& row) {
+    return !row.predicted && (row.quality.unobservedRotation.cols() > 0 ||
+                              row.quality.unobservedTranslation.cols() > 0);
 }
 
 /** Counts each of the vehicle's axes that one of these, of the sensor, is nearest to. */
@@ -40,21 +40,21 @@ std::string ofAll(const Stretches& found, std::size_t pairs) {
 }
 }  // namespace
 
-Doubts doubtsOf(const RunRows& rows) {
+Doubts doubtsOf(const std::vector<RunRow>& rows) {
     Doubts doubts;
     doubts.pairs = rows.empty() ? 0 : rows.size() - 1;
-    doubts.predicted = stretchesOf(rows, [](const Step& step) { return step.predicted; });
+    doubts.predicted = stretchesOf(rows, [](const RunRow& row) { return row.predicted; });
     doubts.weak = stretchesOf(rows, isWeak);
     for (std::size_t i = 1; i < rows.size(); ++i) {
-        const RunRow row = rows[i];
-        const Quality& quality = row.report.step.quality;
-        if (!isWeak(row.report.step)) continue;
+        const RunRow& row = rows[i];
+        const Quality& quality = row.quality;
+        if (!isWeak(row)) continue;
         count(quality.unobservedTranslation, row, doubts.weakAlong);
         count(quality.unobservedRotation, row, doubts.weakAbout);
     }
-    doubts.searched = stretchesOf(rows, [](const Step& step) { return step.searched; });
-    doubts.interrupted = stretchesOf(rows, [](const Step& step) { return step.interrupted; });
-    doubts.standing = stretchesOf(rows, [](const Step& step) { return step.standing; });
+    doubts.searched = stretchesOf(rows, [](const RunRow& row) { return row.searched; });
+    doubts.interrupted = stretchesOf(rows, [](const RunRow& row) { return row.interrupted; });
+    doubts.standing = stretchesOf(rows, [](const RunRow& row) { return row.standing; });
     return doubts;
 }
 
@@ -101,7 +101,8 @@ std::vector<std::string> warningsOf(const Doubts& doubts) {
     return warnings;
 }
 
-std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes, const RunRows& rows) {
+std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes,
+                                    const std::vector<RunRow>& rows) {
     std::vector<std::string> warnings;
     for (std::size_t i = 0; i < fixes.size();) {
         const auto where = fixes[i].where;

@@ -3,17 +3,17 @@
 #include <mrpt/core/format.h>
 
 #include <limits>
-#include <sstream>
 
-#include "core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/io/drive_meta.h"
-#include "delio/localisation/join_maps.h"
 #include "delio/run/doubts.h"
 #include "delio/run/run_folder.h"
-#include "io/side_file.h"
 #include "odometry/preprocess.h"
+#include "io/side_file.h"
+#include "places/join_maps.h"
+#include "run/tables.h"
+#include "slam/place_listeners.h"
 
 namespace delio::run {
 namespace {
@@ -34,6 +34,11 @@ Run::Run(const Options& options, const RunSettings& settings)
     record_.drive = settings.drive;
     record_.options = options;
     attach(graph_);
+    std::string temporary;
+    if (!settings.folder.empty()) {
+        temporary = RunFolder(settings.folder).path(RunFolder::kIncomplete);
+        rows_ = std::make_unique<RowFiles>(temporary);
+    }
     if (!settings.storedMap.empty()) {
         record_.storedMap =
             settings.storedMapName.empty() ? settings.storedMap : settings.storedMapName;
@@ -45,19 +50,21 @@ Run::Run(const Options& options, const RunSettings& settings)
     }
     if (searchesLoops() || settings.map) {
         loops_ = std::make_shared<LoopCloser>(options.submaps, loopOptions(), options.closures,
-                                              settings.folder, settings.mayGoOn);
+                                              temporary);
         attach(loops_);
     }
     if (!settings.map) return;
     map_ = std::make_shared<MapListener>(
-        map::MapBuilder(options.map, settings.sensorLabel, settings.folder, settings.mayGoOn));
+        map::MapBuilder(options.map, settings.sensorLabel, temporary));
     attach(map_);
 }
+
+Run::~Run() = default;
 
 bool Run::searchesLoops() const { return settings_.loops && settings_.graph; }
 
 /** Where no loops are wanted, no path is long enough to lead back. */
-loops::LoopOptions Run::loopOptions() const {
+places::LoopOptions Run::loopOptions() const {
     auto loops = record_.options.loops;
     if (!searchesLoops()) loops.min_path = std::numeric_limits<double>::infinity();
     return loops;
@@ -99,20 +106,14 @@ void Run::readSideFiles(const io::SideFile& calib, const io::SideFile& poses,
 }
 
 RunRow Run::process(const Scan& scan, double read_ms) {
-    RunRow row;
-    row.scan = scan.index;
-    row.stamp_s = scan.stamp_s;
-    row.sensorPose = scan.sensorPose;
-    row.read_ms = read_ms;
-    row.report = slam_.process(scan);
-    row.points = row.report.step.used.indices.size();
-    if (row.points == 0 && !row.report.step.reason.empty()) {
-        const auto why = odometry::whyNoneIsLeft(scan, record_.options.scan());
-        if (!why.empty()) row.report.step.reason = why;
-    }
-    row.report.step.used = {};
-    row.report.step.features.reset();  // the graph keeps what it needs
+    const auto report = slam_.process(scan);
+    for (const auto& failed : report.failed) switchOff(failed, scan.index);
     auto& rows = record_.rows;
+    auto row = rowOf(scan, report, read_ms, rows.empty() ? nullptr : &rows.back());
+    if (row.points == 0 && !row.reason.empty()) {
+        const auto why = odometry::whyNoneIsLeft(scan, record_.options.scan());
+        if (!why.empty()) row.reason = why;
+    }
     if (record_.stampsRise && !rows.empty() && scan.stamp_s <= rows.back().stamp_s) {
         record_.stampsRise = false;
         warn(
@@ -121,29 +122,30 @@ RunRow Run::process(const Scan& scan, double read_ms) {
                          scan.index));
     }
     rows.push_back(row);
+    try {
+        if (rows_) rows_->add(row, slam_.trajectory().poses.back());
+    } catch (const std::exception& e) {
+        warn("the rows so far are not kept while the drive goes on: " + plainMessage(e));
+    }
     return row;
 }
 
-/** What decides which results there are, for a state's label. */
-std::string Run::asked() const {
-    std::ostringstream text;
-    record_.options.write(text);
-    text << settings_.sensorLabel << '\n'
-         << settings_.graph << settings_.map << settings_.loops << settings_.keepDynamic
-         << settings_.extend << '\n'
-         << settings_.storedMap << '\n';
-    if (settings_.initialPose) text << settings_.initialPose->matrix();
-    return text.str();
-}
-
-void Run::save(std::ostream& out) const {
-    checkpoint::save(out, {"run", asked()}, record_);
-    slam_.save(out);
-}
-
-void Run::restore(std::istream& in) {
-    checkpoint::restore(in, {"run", asked()}, record_);
-    slam_.restore(in);
+/** What a listener has is of no use once it has failed: its part of the results is left out. */
+void Run::switchOff(const FailedListener& failed, std::size_t scan) {
+    const std::string what = std::string("the listener '") + failed.listener->name() +
+                             "' failed at scan " + std::to_string(scan) +
+                             " and its results are missing: " + failed.message;
+    if (record_.fault.empty())
+        fail(what);
+    else
+        warn(what);
+    const auto drop = [&](auto& listener) {
+        if (listener == failed.listener) listener.reset();
+    };
+    drop(graph_);
+    drop(map_);
+    drop(follower_);
+    drop(loops_);
 }
 
 /** Where there are none, the graph stays as it was. */
@@ -170,8 +172,8 @@ void Run::anchor() {
     if (settings_.graph) record_.optimisation = record_.graph.optimise(record_.options.graph);
 }
 
-void Run::optimise() {
-    Stopwatch watch;
+/** Loops are closed, the graph is optimised or brought into the stored map's frame. */
+void Run::optimiseGraph() {
     record_.graph = graph_->graph();
     try {
         if (loops_) closeLoops();
@@ -188,8 +190,16 @@ void Run::optimise() {
         // What the odometry found is worth keeping.
         fail("the pose graph was not optimised: " + plainMessage(e));
     }
-    record_.optimise_ms = watch.lap_ms();
+}
+
+void Run::optimise() {
+    Stopwatch watch;
     record_.odometry = slam_.trajectory();
+    if (graph_)
+        optimiseGraph();
+    else  // it failed: nodes without edges
+        for (const auto& pose : record_.odometry.poses) record_.graph.addNode(pose);
+    record_.optimise_ms = watch.lap_ms();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
     if (!record_.stampsRise) record_.final.stamps_s.clear();
 }
@@ -200,11 +210,11 @@ void Run::store() {
     own_ = MapContent{record_.graph,
                       {{settings_.drive, 0, record_.odometry.stamps_s}},
                       submaps.submaps(),
-                      [&](std::size_t i) { return submaps.sketch(i); },
+                      [&](std::size_t i) { return submaps.descriptor(i); },
                       [&](std::size_t i) { return submaps.points(i); }};
     stored_ = own_;
     try {
-        if (settings_.extend && record_.isLocalised()) extend();
+        if (settings_.extend && follower_ && record_.isLocalised()) extend();
     } catch (const std::exception& e) {
         fail("the map was not extended: " + plainMessage(e));
     }
@@ -228,7 +238,7 @@ evaluation::Comparison Run::compared(const io::Trajectory& vehicle) const {
     for (const auto& row : record_.rows) {
         used.scans.push_back(row.scan);
         used.stamps_s.push_back(row.stamp_s);
-        used.predicted.push_back(row.report.step.predicted);
+        used.predicted.push_back(row.predicted);
     }
     const auto estimate =
         truthIsCam0_ ? io::lidarToCam0(ofSensor(vehicle, record_.rows), record_.calibration.Tr)
@@ -270,12 +280,12 @@ void Run::finish(bool complete) {
     const Doubts doubts = doubtsOf(record_.rows);
     for (const auto& warning : warningsOf(doubts)) warn(warning);
     if (doubts.pairs > 0 && doubts.predicted.scans == doubts.pairs)
-        fail("no scan could be registered: " + record_.rows[1].report.step.reason);
+        fail("no scan could be registered: " + record_.rows[1].reason);
     record_.complete = complete;
     slam_.close();
     optimise();
     if (map_) record_.options.map = map_->builder().options();  // as they were used
-    if (settings_.map) store();
+    if (settings_.map && graph_ && loops_) store();
     if (truth_) score();
 }
 

@@ -13,8 +13,7 @@
 #include "delio/map/page.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
-#include "delio/run/keeper.h"
-#include "scan_row.h"
+#include "run/tables.h"
 
 namespace delio::run {
 namespace fs = std::filesystem;
@@ -45,7 +44,7 @@ constexpr const char* kAll[] = {RunFolder::kSummary,
                                 RunFolder::kRemovalPicture,
                                 RunFolder::kTrajectoryPicture};
 
-void writeScans(const RunRows& rows, const std::string& path) {
+void writeScans(const std::vector<RunRow>& rows, const std::string& path) {
     io::writeScanTable(
         rows.size(), [&](std::size_t i) { return scanRowOf(rows[i]); }, path);
 }
@@ -79,6 +78,14 @@ std::vector<std::string> RunFolder::files() const {
     std::vector<std::string> files;
     for (const char* name : kAll) files.push_back(path(name));
     return files;
+}
+
+std::vector<LoopRow> RunFolder::loops() const { return readLoopTable(path(kLoops)); }
+
+std::vector<LoopRow> RunFolder::joints() const { return readLoopTable(path(kJoints)); }
+
+std::vector<LocalisationRow> RunFolder::localisation() const {
+    return readLocalisationTable(path(kLocalisation));
 }
 
 graph::PoseGraph RunFolder::graph() const { return io::loadG2o(path(kGraph)); }
@@ -137,9 +144,10 @@ std::string RunFolder::write(RunRecord record, const RunMaps& maps,
     std::error_code fault;
     fs::create_directories(folder_, fault);
     if (fault) throw Error("cannot make the folder '" + folder_ + "': " + fault.message());
-    // Where a run may be gone on with, what a kill leaves goes with the rest of it.
-    const std::string kept = path(Keeper::kFolder);
-    io::PartialFolder partial(folder_, folder_, fs::is_directory(kept, fault) ? kept : "");
+    // What a kill leaves lies with the rest of the run that was killed, if there is a place.
+    const std::string incomplete = path(kIncomplete);
+    io::PartialFolder partial(folder_, folder_,
+                              fs::is_directory(incomplete, fault) ? incomplete : "");
     try {
         const RunFolder results(partial.path().string());
         results.writeTables(record);

@@ -54,8 +54,8 @@ Summary::Figures meanTimes(const RunRecord& record) {
     Summary::Figures means{{"read", 0}};
     for (const auto& row : record.rows) {
         means.front().second += row.read_ms;
-        add(row.report.step.times_ms, means);
-        add(row.report.listeners_ms, means);
+        add(row.figures.stages_ms(), means);
+        add(row.figures.listeners_ms(), means);
     }
     for (auto& [name, ms] : means)
         ms /= static_cast<double>(std::max<std::size_t>(record.rows.size(), 1));
@@ -64,9 +64,8 @@ Summary::Figures meanTimes(const RunRecord& record) {
 
 template <typename Flag>
 std::size_t countOf(const RunRecord& record, const Flag& flag) {
-    return static_cast<std::size_t>(
-        std::count_if(record.rows.begin(), record.rows.end(),
-                      [&](const RunRow& row) { return row.report.step.*flag; }));
+    return static_cast<std::size_t>(std::count_if(record.rows.begin(), record.rows.end(),
+                                                  [&](const RunRow& row) { return row.*flag; }));
 }
 
 std::string wordsOf(const std::vector<std::string>& words) {
@@ -121,8 +120,9 @@ Summary::Figures figuresIn(const YAML::Node& node) {
 }
 }  // namespace
 
-Summary::Figures latencyOf(const RunRows& rows) {
+Summary::Figures latencyOf(const std::vector<RunRow>& rows) {
     std::vector<double> ms;
+    ms.reserve(rows.size() + 1);
     for (const auto& row : rows) ms.push_back(row.total_ms());
     if (ms.empty()) ms.push_back(0);
     std::sort(ms.begin(), ms.end());
@@ -144,7 +144,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.fault = record.fault;
     summary.scans = record.rows.empty() ? record.final.poses.size() : record.rows.size();
     const Doubts doubts = doubtsOf(record.rows);
-    summary.predicted = countOf(record, &Step::predicted);
+    summary.predicted = countOf(record, &RunRow::predicted);
     summary.longest_predicted = doubts.predicted.longest;
     summary.weakly_observed = doubts.weak.scans;
     summary.longest_weakly_observed = doubts.weak.longest;
@@ -152,7 +152,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.standing = doubts.standing.scans;
     summary.weakly_observed_along = doubts.weakAlong;
     summary.weakly_observed_about = doubts.weakAbout;
-    summary.searched = countOf(record, &Step::searched);
+    summary.searched = countOf(record, &RunRow::searched);
     summary.longest_searched = doubts.searched.longest;
     summary.searched_loops = record.searchedLoops;
     summary.loop_candidates = record.loops.size();
@@ -163,7 +163,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
         ++(fix.where == Whereabouts::kInMap     ? summary.in_map
            : fix.where == Whereabouts::kOutside ? summary.outside_map
                                                 : summary.not_found_in_map);
-    summary.deskewed = countOf(record, &Step::deskewed);
+    summary.deskewed = countOf(record, &RunRow::deskewed);
     summary.path_m = record.path_m();
     summary.vertical_correction_deg = record.options.scan().vertical_correction_deg;
     summary.ms_per_scan = record.msPerScan();

@@ -1,9 +1,9 @@
 #include "delio/slam/localiser.h"
 
-#include "../core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/graph/pose_pdf.h"
 #include "delio/io/decode_observation.h"
+#include "slam/place_listeners.h"
 
 namespace delio {
 Localiser::Localiser(std::shared_ptr<const StoredMap> map, const OdometryOptions& options,
@@ -18,6 +18,8 @@ void Localiser::expect(const Eigen::Isometry3d& vehicle) { follower_->expect(veh
 
 Localisation Localiser::process(const Scan& scan) {
     auto report = slam_.process(scan);
+    if (!report.failed.empty()) fault_ = report.failed.front().message;
+    if (!fault_.empty()) throw Error("the localisation ended: " + fault_);
     return {std::move(report.step), follower_->fixes().back()};
 }
 
@@ -33,15 +35,5 @@ std::optional<mrpt::poses::CPose3DPDFGaussian> Localiser::process(
     const auto found = process(scan);
     if (found.fix.where == Whereabouts::kUnknown) return {};
     return graph::posePdfOf(found.fix.vehicle);
-}
-
-void Localiser::save(std::ostream& out) const {
-    checkpoint::save(out, {"localiser", ""}, observations_);
-    slam_.save(out);
-}
-
-void Localiser::restore(std::istream& in) {
-    checkpoint::restore(in, {"localiser", ""}, observations_);
-    slam_.restore(in);
 }
 }  // namespace delio

@@ -1,12 +1,35 @@
 #include "delio/slam/slam.h"
 
+#include <algorithm>
+#include <cstdint>
+#include <exception>
 #include <string>
 
-#include "../core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 
 namespace delio {
+Eigen::Matrix3Xf staticPoints(const SlamScan& scan) {
+    constexpr Eigen::Index kMost = 20000;
+    const auto& points = scan.step.used.points;
+    const auto& dynamic = scan.step.used.dynamic;
+    const auto moving = std::count(dynamic.begin(), dynamic.end(), std::uint8_t{1});
+    // Every n-th point in sensor order, so that all azimuths are thinned alike.
+    const Eigen::Index all = points.cols() - moving,
+                       stride = std::max<Eigen::Index>(1, (all + kMost - 1) / kMost);
+    Eigen::Matrix3Xf still(3, (all + stride - 1) / stride);
+    Eigen::Index kept = 0, toPass = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        if (!dynamic.empty() && dynamic[static_cast<std::size_t>(i)]) continue;
+        if (toPass == 0) {
+            still.col(kept++) = points.col(i);
+            toPass = stride;
+        }
+        --toPass;
+    }
+    return scan.scan.sensorPose.cast<float>() * still;
+}
+
 namespace {
 /** All poses after it would be what it is. */
 void requireFinite(const Increment& increment, const Scan& scan) {
@@ -24,70 +47,40 @@ void Slam::requireOpen() const {
     if (!odometry_) throw Error("the drive is closed: it takes no more scans");
 }
 
-/** All listeners are told, or none. */
 void Slam::tell(const SlamScan& scan, ScanReport& report) {
-    std::size_t told = 0;
-    try {
-        for (; told < listeners_.size(); ++told) {
-            report.listeners_ms.emplace_back(listeners_[told]->name(), 0);
-            timed(report.listeners_ms.back().second, [&] { listeners_[told]->add(scan); });
+    for (auto it = listeners_.begin(); it != listeners_.end();) {
+        report.listeners_ms.emplace_back((*it)->name(), 0);
+        try {
+            timed(report.listeners_ms.back().second, [&] { (*it)->add(scan); });
+            ++it;
+        } catch (const std::exception& e) {
+            report.failed.push_back({*it, plainMessage(e)});
+            it = listeners_.erase(it);
         }
-    } catch (...) {
-        while (told > 0) listeners_[--told]->undo();
-        throw;
     }
-}
-
-std::string Slam::listenerNames() const {
-    std::string names;
-    for (const auto& listener : listeners_) names += std::string(listener->name()) + "\n";
-    return names;
-}
-
-void Slam::save(std::ostream& out) const {
-    requireOpen();
-    checkpoint::save(out, {"drive", listenerNames()}, *this);
-    odometry_->save(out);
-    for (const auto& listener : listeners_) listener->save(out);
-}
-
-void Slam::restore(std::istream& in) {
-    checkpoint::restore(in, {"drive", listenerNames()}, *this);
-    odometry_->restore(in);
-    for (const auto& listener : listeners_) listener->restore(in);
 }
 
 ScanReport Slam::process(const Scan& scan) {
     requireOpen();
     requireConsistent(scan);
-    ScanReport report{odometry_->process(scan), {}};
+    ScanReport report;
+    report.step = odometry_->process(scan);
     requireFinite(report.step.increment, scan);
     auto& [poses, stamps_s] = trajectory_;
-    const std::size_t node = nodes_, kept = poses.size();
-    Increment increment;  // since the last scan that was taken
-    SlamScan told{node, scan, report.step, {}, Eigen::Isometry3d::Identity()};
-    if (node > 0) {
-        increment = refused_ ? chained(*refused_, report.step.increment) : report.step.increment;
-        told.increment = ofVehicle(increment, sensorPose_, scan.sensorPose);
+    SlamScan told{nodes_, scan, report.step, {}, Eigen::Isometry3d::Identity()};
+    if (nodes_ > 0) {
+        told.increment = ofVehicle(report.step.increment, sensorPose_, scan.sensorPose);
         told.pose = poses.back() * told.increment.pose;
     }
-    try {
-        poses.push_back(told.pose);
-        stamps_s.push_back(scan.stamp_s);
-        tell(told, report);
-    } catch (...) {
-        poses.resize(kept);
-        stamps_s.resize(kept);
-        if (node > 0) refused_ = increment;
-        throw;
-    }
     if (history_ == History::Last) {
-        poses.erase(poses.begin(), poses.end() - 1);
-        stamps_s.erase(stamps_s.begin(), stamps_s.end() - 1);
+        poses.clear();
+        stamps_s.clear();
     }
+    poses.push_back(told.pose);
+    stamps_s.push_back(scan.stamp_s);
     ++nodes_;
     sensorPose_ = scan.sensorPose;
-    refused_.reset();
+    tell(told, report);
     return report;
 }
 }  // namespace delio

@@ -48,7 +48,7 @@ Exit status:
   130  interrupted; the same command goes on
 """
 
-OWN = ("-i", "--input", "-o", "--output", "--profile", "--threads", "--force", "--resume", "--gui",
+OWN = ("-i", "--input", "-o", "--output", "--profile", "--threads", "--force", "--gui",
        "--ground-truth", "--print-config", "-h", "--help", "--version")
 
 

@@ -3,11 +3,11 @@
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <zlib.h>
 
-#include "delio/localisation/stored_map.h"
 #include "delio/map/pcd.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
 #include "delio/picture/scene.h"
+#include "delio/places/stored_map.h"
 #include "seeds.h"
 
 namespace delio::fuzz {
@@ -72,7 +72,7 @@ void storedMap() {
     MapContent content;
     content.graph = smallGraph();
     content.drives.push_back({"drive", 0, {0, 0.1, 0.2}});
-    loops::Submap submap;
+    places::Submap submap;
     submap.last = 2;
     submap.points.resize(3, 0);
     content.submaps.push_back(submap);
@@ -80,7 +80,7 @@ void storedMap() {
     for (Eigen::Index i = 0; i < points.cols(); ++i)
         points.col(i) << static_cast<float>(i % 10), static_cast<float>(i / 10),
             0.1F * static_cast<float>(i % 7);
-    content.sketch = [&](std::size_t) { return loops::Sketch(points); };
+    content.descriptor = [&](std::size_t) { return places::Descriptor(points); };
     content.points = [&](std::size_t) { return points; };
     std::string file;
     behind("0", seed("stored_map", "file"), [&](const fs::path& path) {

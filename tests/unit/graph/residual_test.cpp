@@ -1,4 +1,4 @@
-#include "delio/graph/residual.h"
+#include "graph/residual.h"
 
 #include <gtest/gtest.h>
 

@@ -40,7 +40,7 @@ class AScanInAYard : public testing::Test {
     }
 
     PlaneOdometryOptions options;
-    ScanToMap map{options.scanToMap, options.map, options.registration, options.pointMap,
+    odometry::LocalMap map{options.scanToMap, options.map, options.registration, options.pointMap,
                   options.points};
     ScanView view;
     const Eigen::Isometry3d there = poseAt(2, 0.1, 0);

@@ -8,29 +8,20 @@ using run::RunRow;
 
 /** Scans 5, 6, 7 ...: '.' registered, 'p' predicted, 'w' an axis not observed, 'i' interrupted, 's'
  *  searched, '0' standing. */
-std::vector<RunRow> listOf(const std::string& kinds) {
+std::vector<RunRow> rowsOf(const std::string& kinds) {
     std::vector<RunRow> rows;
     for (const char kind : kinds) {
         RunRow row;
         row.scan = 5 + rows.size();
-        Step& step = row.report.step;
-        step.predicted = kind == 'p';
-        step.interrupted = kind == 'i';
-        step.searched = kind == 's';
-        step.standing = kind == '0';
-        if (kind == 'w' || kind == 'p') step.quality.unobservedTranslation.setIdentity(3, 1);
+        row.predicted = kind == 'p';
+        row.interrupted = kind == 'i';
+        row.searched = kind == 's';
+        row.standing = kind == '0';
+        if (kind == 'w' || kind == 'p') row.quality.unobservedTranslation.setIdentity(3, 1);
         rows.push_back(row);
     }
     return rows;
 }
-
-run::RunRows kept(const std::vector<RunRow>& rows) {
-    run::RunRows result;
-    for (const auto& row : rows) result.push_back(row);
-    return result;
-}
-
-run::RunRows rowsOf(const std::string& kinds) { return kept(listOf(kinds)); }
 
 TEST(Doubts, AreCountedWithTheirLongestStretch) {
     const auto doubts = run::doubtsOf(rowsOf(".pp.ppp..ww.wi"));
@@ -64,17 +55,17 @@ TEST(Doubts, StandingScansAreCountedAndNoWarning) {
 }
 
 TEST(Doubts, WeakAxesAreTheVehicles) {
-    auto rows = listOf(".wwww.");
-    EXPECT_EQ(run::weakAxesOf(run::doubtsOf(kept(rows))), "along x in 4");
+    auto rows = rowsOf(".wwww.");
+    EXPECT_EQ(run::weakAxesOf(run::doubtsOf(rows)), "along x in 4");
     // A sensor that looks to the left: its x is the vehicle's y.
     rows[1].sensorPose.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
     // Two that are open, neither along one of the vehicle's; both nearest to x count once.
-    auto& axes = rows[2].report.step.quality.unobservedTranslation;
+    auto& axes = rows[2].quality.unobservedTranslation;
     axes.resize(3, 2);
     axes << 0.8, -0.8, 0.6, 0.6, 0, 0;
-    rows[3].report.step.quality.unobservedTranslation.resize(3, 0);
-    rows[3].report.step.quality.unobservedRotation = -Eigen::Vector3d::UnitZ();
-    const auto doubts = run::doubtsOf(kept(rows));
+    rows[3].quality.unobservedTranslation.resize(3, 0);
+    rows[3].quality.unobservedRotation = -Eigen::Vector3d::UnitZ();
+    const auto doubts = run::doubtsOf(rows);
     EXPECT_EQ(doubts.weak.scans, 4U);
     EXPECT_EQ(run::weakAxesOf(doubts), "along x in 2, along y in 1, about z in 1");
     const auto warnings = run::warningsOf(doubts);

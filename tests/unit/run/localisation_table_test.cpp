@@ -1,4 +1,4 @@
-#include "delio/run/localisation_table.h"
+#include "run/tables.h"
 
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ std::vector<MapFix> someFixes() {
     return fixes;
 }
 
-run::RunRows someRows() {
-    run::RunRows rows;
+std::vector<run::RunRow> someRows() {
+    std::vector<run::RunRow> rows;
     for (std::size_t i = 0; i < 12; ++i) {
         run::RunRow row;
         row.scan = 100 + 2 * i;

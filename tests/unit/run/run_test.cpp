@@ -1,12 +1,15 @@
 #include "delio/run/run.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 
 #include "delio/core/error.h"
+#include "delio/run/run_folder.h"
 #include "poses.h"
 #include "ring_scan.h"
+#include "test_data.h"
 #include "toy_run.h"
 
 namespace {
@@ -21,7 +24,6 @@ class Thrower : public SlamListener {
     void add(const SlamScan& scan) override {
         if (scan.node == 2) throw Fault();
     }
-    void undo() noexcept override {}
 };
 struct OutOfOrder : std::runtime_error {
     OutOfOrder() : std::runtime_error("out of order") {}
@@ -36,7 +38,7 @@ TEST_F(ToyRun, NotesEachScan) {
         EXPECT_GT(row.points, 20000U);
         EXPECT_LE(row.points, scan.points->size());
         EXPECT_GT(row.total_ms(), 1.5);
-        EXPECT_EQ(row.report.listeners_ms.size(), 3U);  // graph, submaps and map
+        EXPECT_EQ(row.figures.listeners_ms().size(), 3U);  // graph, submaps and map
     }
     const auto& record = run.record();
     EXPECT_EQ(record.rows.size(), kScans);
@@ -49,6 +51,26 @@ TEST_F(ToyRun, NotesEachScan) {
     EXPECT_FALSE(record.optimised());
     EXPECT_FALSE(record.metrics);  // no truth
     EXPECT_GT(map::cloudOf(run.maps().points->build(record.final.poses).points).size(), 1000U);
+}
+
+TEST_F(ToyRun, AFullDiskDoesNotEndTheDrive) {
+    const test::TemporaryFolder folder;
+    run::RunSettings settings;
+    settings.map = false;
+    settings.folder = folder.path().string();
+    const auto rows = folder / run::RunFolder::kIncomplete;
+    {
+        run::Run run(Options(), settings);
+        std::filesystem::create_symlink("/dev/full", rows / run::RunFolder::kScans);
+        process(run);
+        run.finish(true);
+        ASSERT_EQ(run.record().warnings.size(), 1U);
+        EXPECT_NE(run.record().warnings[0].find(run::RunFolder::kScans), std::string::npos);
+        EXPECT_EQ(run.record().fault, "");
+        EXPECT_EQ(run.record().rows.size(), kScans);
+        EXPECT_TRUE(std::filesystem::is_empty(rows));
+    }
+    EXPECT_FALSE(std::filesystem::exists(rows));
 }
 
 TEST_F(ToyRun, ContradictingOptionsAreRefused) {
@@ -142,27 +164,44 @@ TEST_F(ToyRun, TimesThatDoNotRise) {
     EXPECT_EQ(run.record().odometry.stamps_s.size(), kScans);
 }
 
-TEST_F(ToyRun, AListenerThatThrowsLeavesWhatWasDoneBefore) {
+TEST_F(ToyRun, AListenerThatThrowsIsNamedAndTheDriveGoesOn) {
     for (const auto& listener :
          std::vector<std::shared_ptr<SlamListener>>{std::make_shared<Thrower<OutOfOrder>>(),
                                                     std::make_shared<Thrower<std::bad_alloc>>()}) {
-        run::Run run(Options(), {});
+        run::Run run(Options(), {}), undisturbed(Options(), {});
         run.attach(listener);
-        std::string fault;
-        try {
-            process(run);
-        } catch (const std::exception& e) {
-            fault = plainMessage(e);
-        }
-        ASSERT_NE(fault, "");
-        run.fail(fault);
+        for (auto* each : {&run, &undisturbed}) process(*each);
+        const std::string fault = run.record().fault;
+        EXPECT_NE(fault.find("'thrower' failed at scan"), std::string::npos) << fault;
+        EXPECT_TRUE(run.record().warnings.empty());
         run.finish(false);
+        undisturbed.finish(true);
         EXPECT_EQ(run::RunFolder(out_).write(run.record(), run.maps(), {}), fault);
         const run::RunFolder results(out_);
-        EXPECT_EQ(results.scans().scans.size(), 2U);
-        EXPECT_EQ(io::readTrajectory(results.path(run::RunFolder::kTrajectory)).poses.size(), 2U);
-        EXPECT_TRUE(std::filesystem::exists(results.path(run::RunFolder::kPly)));
+        EXPECT_EQ(results.summary().fault, fault);
+        EXPECT_EQ(results.scans().scans.size(), kScans);
+        EXPECT_EQ(results.storedMap().submaps().size(), 1U);
+        EXPECT_TRUE(results.has(run::RunFolder::kPly));
+        const auto &poses = run.record().final.poses, &expected = undisturbed.record().final.poses;
+        ASSERT_EQ(poses.size(), kScans);
+        for (std::size_t i = 0; i < kScans; ++i) EXPECT_EQ(poses[i].matrix(), expected[i].matrix());
     }
+}
+
+// Whichever of the run's own parts fails, the odometry's results are there.
+TEST_F(ToyRun, WithoutRoomForItsTemporaryFilesThereIsNoMap) {
+    run::RunSettings settings;
+    settings.folder = out_;
+    run::Run run(Options(), settings);
+    std::filesystem::remove(folder_ / "out" / run::RunFolder::kIncomplete);
+    process(run);
+    run.finish(false);
+    const std::string fault = run::RunFolder(out_).write(run.record(), run.maps(), {});
+    EXPECT_NE(fault.find("'map' failed at scan"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("cannot put scans for the map aside"), std::string::npos) << fault;
+    const run::RunFolder results(out_);
+    EXPECT_EQ(results.trajectory().poses.size(), kScans);
+    EXPECT_FALSE(results.has(run::RunFolder::kPly));
 }
 
 // A room: the map is finer than in a street, and what config.ini says makes it again.
@@ -186,7 +225,7 @@ TEST_F(ToyRun, TheMapFollowsTheSizeOfThePlace) {
         return run.maps().points->build(run.record().final.poses).points;
     };
     const auto first = driven({});
-    const auto details = first->record().rows.front().report.step.details;
+    const auto details = first->record().rows.front().figures.details();
     const auto scale = std::find_if(details.begin(), details.end(),
                                     [](const auto& detail) { return detail.first == "scale"; });
     ASSERT_NE(scale, details.end());

@@ -134,11 +134,13 @@ TEST(Summary, SumsUpARecord) {
     for (int i = 0; i < 4; ++i) {
         run::RunRow row;
         row.read_ms = 1;
-        row.report.step.predicted = i == 1;
-        row.report.step.searched = i > 1;
-        row.report.step.deskewed = i > 0;
-        row.report.step.times_ms = {{"registration", 10.0 * i}};
-        row.report.listeners_ms = {{"graph", 2}, {"map", 5}};
+        row.predicted = i == 1;
+        row.searched = i > 1;
+        row.deskewed = i > 0;
+        ScanReport report;
+        report.step.times_ms = {{"registration", 10.0 * i}};
+        report.listeners_ms = {{"graph", 2}, {"map", 5}};
+        row.figures = run::RowFigures(report, {});
         record.rows.push_back(row);
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
         pose.translation().x() = 2 * i;

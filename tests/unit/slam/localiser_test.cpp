@@ -5,9 +5,12 @@
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 
-#include "../localisation/town_map.h"
+#include <filesystem>
+#include <string>
+
+#include "../places/town_map.h"
 #include "delio/core/error.h"
-#include "states.h"
+#include "test_data.h"
 
 namespace {
 using namespace delio;
@@ -48,60 +51,31 @@ TEST(Localiser, TakesObservationsAndGivesPosesWithCovariance) {
     EXPECT_THROW(localiser.process(mrpt::obs::CObservationIMU()), Error);
 }
 
-TEST(Localiser, GoesOnWhereAnotherEnded) {
-    const test::TemporaryFolder folder;
-    {
-        const TownDrive drive(roundTheBlock(0));
-        StoredMap::save(drive.content, fileIn(folder));
-    }
-    const auto map = std::make_shared<const StoredMap>(fileIn(folder));
-    Localiser whole(map);
-    std::vector<Scan> scans;
-    std::vector<std::string> states, steps;
-    Poses poses;
-    test::Noise noise(21);
-    for (int i = 0; i < 8; ++i) {
-        scans.push_back(test::scanOf(seenFrom(town(), test::poseAt(10 + 0.8 * i, 0, 0), noise)));
-        scans.back().stamp_s = 0.1 * i;
-        states.push_back(test::stateOf(whole));
-        const auto found = whole.process(scans.back());
-        steps.push_back(test::bytesOf(found.step));
-        poses.push_back(found.fix.vehicle.pose);
-    }
-    for (const std::size_t count : {1U, 4U}) {
-        Localiser again(map);
-        test::restore(again, states[count]);
-        for (std::size_t i = count; i < scans.size(); ++i) {
-            const auto found = again.process(scans[i]);
-            EXPECT_TRUE(test::bytesOf(found.step) == steps[i]) << i;
-            EXPECT_EQ(found.fix.vehicle.pose.matrix(), poses[i].matrix()) << i;
-        }
-    }
-}
-
-TEST(Localiser, DoesNotGrowWithTheDrive) {
+// The map's file is cut off while it is in use.
+TEST(Localiser, EndsWhereTheMapCannotBeRead) {
     const test::TemporaryFolder folder;
     {
         const TownDrive drive(roundTheBlock(0));
         StoredMap::save(drive.content, fileIn(folder));
     }
     Localiser localiser(std::make_shared<const StoredMap>(fileIn(folder)));
-    const auto odometry = makeOdometry({});  // what it keeps of the place is its own
+    std::filesystem::resize_file(fileIn(folder), 100);
     test::Noise noise(21);
     Scan scan = test::scanOf(seenFrom(town(), test::poseAt(10, 0, 0), noise));
-    std::vector<std::size_t> sizes;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 3; ++i) {
         scan.stamp_s = 0.1 * i;
-        localiser.process(scan);
-        odometry->process(scan);
-        if (i % 20 == 19)
-            sizes.push_back(test::stateOf(localiser).size() - test::stateOf(*odometry).size());
+        try {
+            localiser.process(scan);
+            FAIL() << i;
+        } catch (const Error& error) {
+            const std::string what = error.what();
+            EXPECT_NE(what.find("the localisation ended"), std::string::npos) << what;
+            EXPECT_NE(what.find(fileIn(folder)), std::string::npos) << what;
+        }
     }
-    // A pose alone has 96 bytes.
-    EXPECT_LT(sizes[1], sizes[0] + 20 * 96);
 }
 
-TEST(MapFollower, WithoutAHistoryItCanTakeTheLastScanBack) {
+TEST(MapFollower, WithoutAHistoryItKeepsTheLastFix) {
     const test::TemporaryFolder folder;
     {
         const TownDrive drive(roundTheBlock(0));
@@ -118,12 +92,8 @@ TEST(MapFollower, WithoutAHistoryItCanTakeTheLastScanBack) {
         Increment increment{Eigen::Isometry3d::Identity(), 1e-5 * Matrix6::Identity()};
         if (i > 0) increment.pose = poses[i - 1].inverse() * poses[i];
         follower.add({i, scan, step, increment, poses[i]});
-        EXPECT_LE(follower.fixes().size(), 2U);
-        if (i == 0) continue;
-        const MapFix before = follower.fixes().front();
-        follower.undo();
-        EXPECT_EQ(follower.fixes().back().vehicle.pose.matrix(), before.vehicle.pose.matrix());
-        follower.add({i, scan, step, increment, poses[i]});
+        EXPECT_EQ(follower.fixes().size(), 1U);
     }
+    EXPECT_LT(test::metresBetween(follower.fixes().back().vehicle.pose, poses[5]), 0.1);
 }
 }  // namespace

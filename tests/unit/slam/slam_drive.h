@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "delio/odometry/odometry.h"
-#include "delio/slam/graph_builder.h"
-#include "delio/slam/map_listener.h"
+#include "delio/slam/listeners.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"
 #include "poses.h"

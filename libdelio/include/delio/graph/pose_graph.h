@@ -6,7 +6,6 @@
 
 #include "delio/core/increment.h"
 #include "delio/core/stage_options.h"
-#include "delio/graph/residual.h"
 
 namespace delio::graph {
 struct WhitenedGraph;
@@ -45,7 +44,8 @@ struct OptimisationResult {
 };
 
 /** The pose graph of the paper's section V: F(x) = sum over edges of e' Omega e is minimised over
- *  the poses of all nodes but node 0, which stays where it is. e is that of residual.h, Omega the
+ *  the poses of all nodes but node 0, which stays where it is. e is [translation,
+ *  rotation log] of Z^-1 T_from^-1 T_to with the measured increment Z, Omega the
  *  inverse of the edge's covariance. Poses are metres, in the frame that node 0's pose is given
  *  in. Poses given to addNode are the start of the minimisation, good or poor. */
 class PoseGraph {
@@ -61,16 +61,6 @@ class PoseGraph {
     /** The same from an information matrix Omega, which is kept to the bit. */
     void addEdge(std::size_t from, std::size_t to, const Eigen::Isometry3d& pose,
                  const Matrix6& information);
-
-    /** Takes back the last node with all edges that it has; the others keep their order. What came
-     *  after addNode() so is undone where a scan failed half-way. Error where there is no node;
-     *  otherwise it cannot fail. */
-    void removeLast();
-
-    /** Puts back poses that optimiseLast() moved: those of the nodes `firstNode`, `firstNode` + 1
-     *  ..., as poses() gave them before; node 0's too, if it is among them. Error, and nothing
-     *  changed, for a node that does not exist and for a pose that is not finite. */
-    void restore(std::size_t firstNode, const std::vector<Eigen::Isometry3d>& poses);
 
     /** Error, naming the node, where a node is not connected to node 0. */
     OptimisationResult optimise(const PoseGraphOptions& options);

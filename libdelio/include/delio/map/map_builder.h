@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
-#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -71,10 +70,9 @@ class MapBuilder {
  public:
     /** @param sensorLabel becomes the label of the simplemap's observations
      *  @param folder where scans are put aside, in a file without a name; empty: the system's
-     *  folder for temporary files
-     *  @param isKept in `folder`/map.spool instead, which stays: what save() wrote refers to it */
+     *  folder for temporary files */
     explicit MapBuilder(const MapOptions& options, std::string sensorLabel = "lidar",
-                        std::string folder = "", bool isKept = false);
+                        std::string folder = "");
     ~MapBuilder();
     /** Moves; what is left of the other is of no use. */
     MapBuilder(MapBuilder&&) noexcept;
@@ -90,8 +88,8 @@ class MapBuilder {
      *  keyframeDistance_m or keyframeAngle_deg away from the keyframe before it. Its points between
      *  minRange_m and maxRange_m of the sensor are used, the first of each voxel of voxelSize_m
      *  (0: all); points that are not finite are left out. A scan without any usable point that
-     *  stands still is never a keyframe. If the disk is full, there is no map, and build() says so.
-     *  Whatever is thrown, the map is as it was before.
+     *  stands still is never a keyframe. Error if the scan cannot be put aside; the map is of no
+     * use then.
      *  @param poseIndex which of the final poses will be this scan's
      *  @param approximatePose decides whether this is a keyframe, and in which voxels its points
      *  are
@@ -104,36 +102,14 @@ class MapBuilder {
              const mrpt::maps::CPointsMap& sensorPoints, const Eigen::Isometry3d& sensorPose,
              mrpt::Clock::time_point stamp, const std::vector<std::uint8_t>& moving = {});
 
-    /** Takes the last add() back: the map is as if that scan had never come. Of add()s only the
-     *  last can be taken back, and once. */
-    void undo() noexcept;
+    std::size_t keyframes() const { return keyframes_; }  //!< among the scans that were added
 
-    std::size_t keyframes() const { return now_.keyframes; }  //!< among the scans that were added
-
-    /** What was added. Error where scans are in a file without a name, or it cannot be written. */
-    void save(std::ostream& out) const;
-    /** Into one of the same options and folder to which nothing was added. Error where the state is
-     *  cut off, damaged or of other options, or the file of the scans is. */
-    void restore(std::istream& in);
-
-    /** The map at the given poses. Throws Error if a scan's poseIndex is outside `poses`, or if one
-     *  could not be put aside. */
+    /** The map at the given poses. Throws Error if a scan's poseIndex is outside `poses`. */
     BuiltMap build(const std::vector<Eigen::Isometry3d>& poses) const;
 
  private:
-    /** What add() decides by, and changes. */
-    struct State {
-        std::size_t scans = 0, keyframes = 0, views = 0;
-        Eigen::Isometry3d keyPose = Eigen::Isometry3d::Identity();   //!< of the last keyframe
-        Eigen::Isometry3d viewPose = Eigen::Isometry3d::Identity();  //!< of the last view
-        mrpt::Clock::time_point viewStamp;
-        std::string fault;  //!< why a scan could not be put aside
-    };
-
     bool isFarFromLastKeyframe(const Eigen::Isometry3d& pose) const;
     bool isFarFromLastView(const Eigen::Isometry3d& pose, mrpt::Clock::time_point stamp) const;
-    void giveUp();
-    std::string spoolPath() const { return folder_ + "/map.spool"; }
     void putAside(const std::vector<float>& points, const mrpt::maps::CPointsMap* view,
                   StoredScan& scan);
 
@@ -142,8 +118,9 @@ class MapBuilder {
     std::string sensorLabel_, folder_;
     std::vector<StoredScan> scans_;
     std::shared_ptr<io::Spool> spool_;  //!< made with the first scan
-    State now_, before_;                //!< before the last add()
-    bool canUndo_ = false;
-    bool isKept_;
+    std::size_t keyframes_ = 0, views_ = 0;
+    Eigen::Isometry3d keyPose_ = Eigen::Isometry3d::Identity();   //!< of the last keyframe
+    Eigen::Isometry3d viewPose_ = Eigen::Isometry3d::Identity();  //!< of the last view
+    mrpt::Clock::time_point viewStamp_;
 };
 }  // namespace delio::map

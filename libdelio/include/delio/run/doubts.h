@@ -29,7 +29,7 @@ struct Doubts {
 };
 
 /** Counts them. */
-Doubts doubtsOf(const RunRows& rows);
+Doubts doubtsOf(const std::vector<RunRow>& rows);
 
 /** "38, at most 30 in a row (from scan 12)"; `scans`: in place of those that were counted. */
 std::string textOf(const Stretches& found, std::size_t scans);
@@ -41,5 +41,6 @@ std::string weakAxesOf(const Doubts& doubts);
 std::vector<std::string> warningsOf(const Doubts& doubts);
 
 /** The same of a drive in a stored map: where it was not in it. */
-std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes, const RunRows& rows);
+std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes,
+                                    const std::vector<RunRow>& rows);
 }  // namespace delio::run

@@ -1,31 +1,32 @@
 #pragma once
 #include <functional>
-#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "delio/io/scan_reader.h"
-#include "delio/run/run_maps.h"
 #include "delio/run/run_record.h"
-#include "delio/slam/graph_builder.h"
-#include "delio/slam/loop_closer.h"
-#include "delio/slam/map_follower.h"
-#include "delio/slam/map_listener.h"
+#include "delio/slam/listeners.h"
+
+namespace delio {
+class LoopCloser;
+class MapFollower;
+}  // namespace delio
 
 namespace delio::run {
+class RowFiles;
+
 /** What a run is told beside the options of its stages. */
 struct RunSettings {
     std::string profile = "accurate";   //!< that the options were made of, for the summary
     std::vector<std::string> command;   //!< for the summary
     std::string sensorLabel = "lidar";  //!< of the observations in map.simplemap
     std::string drive = "drive";        //!< its name in the stored map
-    /** Where keyframes are put aside while the drive goes on; empty: the system's folder for
-     *  temporary files. */
+    /** Folder of the results. While the run lives, `folder`/incomplete has scans.csv and the
+     *  odometry's trajectory as far as they go, and temporary files. Empty: neither table is
+     *  written, and temporary files are in the system's folder. */
     std::string folder;
-    /** They are put aside in files of `folder` that stay: what Run::save() needs. */
-    bool mayGoOn = false;
     bool graph = true;         //!< false: the chain of increments alone, not optimised
     bool map = true;           //!< false: memory grows by the poses alone
     bool keepDynamic = false;  //!< map_dynamic.ply: what was taken out of the map
@@ -50,6 +51,9 @@ class Run {
  public:
     /** Error where the options contradict each other, or the stored map cannot be read. */
     Run(const Options& options, const RunSettings& settings);
+    ~Run();
+    Run(const Run&) = delete;
+    Run& operator=(const Run&) = delete;
 
     /** Calibration and true poses, as the drive's reader has them. `truth`: a pose file that
      *  replaces `poses`. `truthIsCam0`: it is KITTI's, otherwise the vehicle's. Throws Error if the
@@ -60,18 +64,12 @@ class Run {
     void readSideFiles(const std::string& recording, const std::string& truth = "",
                        bool truthIsCam0 = true);
 
-    /** One more listener: see Slam. */
+    /** One more listener: see Slam. One that fails is named in the record, as its fault or in a
+     *  warning. */
     void attach(std::shared_ptr<SlamListener> listener) { slam_.attach(std::move(listener)); }
 
     /** Processes the next scan, which took `read_ms` to read. */
     RunRow process(const Scan& scan, double read_ms = 0);
-
-    /** All that was done so far, to go on from there later. Error where it cannot be written. */
-    void save(std::ostream& out) const;
-    /** Into a run of the same options and settings, whose side files are read and that has seen no
-     *  scan. Error where what was saved is damaged, or of another run: then this one is of no use.
-     */
-    void restore(std::istream& in);
 
     /** Notes a line for the summary, and tells RunSettings::onWarning. */
     void warn(const std::string& text);
@@ -92,10 +90,11 @@ class Run {
     }
 
  private:
-    std::string asked() const;
     bool searchesLoops() const;
-    loops::LoopOptions loopOptions() const;
+    places::LoopOptions loopOptions() const;
+    void switchOff(const FailedListener& failed, std::size_t scan);
     void optimise();
+    void optimiseGraph();
     void closeLoops();
     void anchor();
     void store();
@@ -105,6 +104,7 @@ class Run {
 
     RunSettings settings_;
     RunRecord record_;
+    std::unique_ptr<RowFiles> rows_;  //!< of the drive so far; null without a folder
     Slam slam_;
     std::shared_ptr<GraphBuilder> graph_;
     std::shared_ptr<MapListener> map_;

@@ -4,14 +4,28 @@
 #include <vector>
 
 #include "delio/io/scan_table.h"
-#include "delio/run/localisation_table.h"
-#include "delio/run/loop_table.h"
-#include "delio/run/run_maps.h"
+#include "delio/places/localisation.h"
+#include "delio/places/stored_map.h"
 #include "delio/run/run_record.h"
 #include "delio/run/summary.h"
 
 namespace delio::run {
 class RunFolder;
+
+/** What a reader of loops.csv wants to know of a pair. */
+struct LoopRow {
+    std::size_t fromNode = 0;  //!< of the pose graph, the earlier
+    std::size_t toNode = 0;    //!< the later
+    bool accepted = false;     //!< both are one place
+    std::string reason;        //!< why it was not
+};
+
+/** What a reader of localisation.csv wants to know of a scan. */
+struct LocalisationRow {
+    std::size_t scan = 0;                       //!< its number in its recording
+    Whereabouts where = Whereabouts::kUnknown;  //!< with respect to the map
+    bool measured = false;                      //!< registered to the map
+};
 
 /** The file of a stored map: `path` itself, or the one in the folder of a run. Error where there is
  *  none. */
@@ -57,6 +71,9 @@ class RunFolder {
     /** Of several drives: which is in which map. A run of one drive has none. */
     static constexpr const char* kDrives = "drives.csv";
 
+    /** Folder of a run in progress: its rows so far, see RunSettings::folder. */
+    static constexpr const char* kIncomplete = "incomplete";
+
     /** It need not be there yet. */
     explicit RunFolder(std::string folder) : folder_(std::move(folder)) {}
 
@@ -77,17 +94,14 @@ class RunFolder {
     io::Trajectory trajectory() const { return io::readTrajectory(path(kTrajectory)); }
     /** Poses before the pose graph. */
     io::Trajectory odometry() const { return io::readTrajectory(path(kOdometry)); }
-    io::Trajectory cam0() const { return io::readTrajectory(path(kCam0)); }       //!< of kCam0
-    io::Trajectory tum() const { return io::readTrajectory(path(kTum)); }         //!< with stamps
-    graph::PoseGraph graph() const;                                               //!< of kGraph
-    io::ScanTable scans() const { return io::readScanTable(path(kScans)); }       //!< of kScans
-    std::vector<LoopRow> loops() const { return readLoopTable(path(kLoops)); }    //!< of kLoops
-    std::vector<LoopRow> joints() const { return readLoopTable(path(kJoints)); }  //!< of kJoints
-    /** Of kLocalisation. */
-    std::vector<LocalisationRow> localisation() const {
-        return readLocalisationTable(path(kLocalisation));
-    }
-    StoredMap storedMap() const { return StoredMap(path(kStoredMap)); }  //!< of kStoredMap
+    io::Trajectory cam0() const { return io::readTrajectory(path(kCam0)); }  //!< of kCam0
+    io::Trajectory tum() const { return io::readTrajectory(path(kTum)); }    //!< with stamps
+    graph::PoseGraph graph() const;                                          //!< of kGraph
+    io::ScanTable scans() const { return io::readScanTable(path(kScans)); }  //!< of kScans
+    std::vector<LoopRow> loops() const;                                      //!< of kLoops
+    std::vector<LoopRow> joints() const;                                     //!< of kJoints
+    std::vector<LocalisationRow> localisation() const;                       //!< of kLocalisation
+    StoredMap storedMap() const { return StoredMap(path(kStoredMap)); }      //!< of kStoredMap
     /** The options that were in effect. */
     Options options() const;
     Summary summary() const { return readSummary(path(kSummary)); }  //!< of kSummary

@@ -1,4 +1,7 @@
 #pragma once
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -7,12 +10,59 @@
 #include "delio/evaluation/comparison.h"
 #include "delio/graph/pose_graph.h"
 #include "delio/io/trajectory.h"
-#include "delio/localisation/anchored_graph.h"
-#include "delio/loops/loop_search.h"
-#include "delio/run/run_rows.h"
+#include "delio/map/map_builder.h"
+#include "delio/places/localisation.h"
+#include "delio/places/loops.h"
+#include "delio/places/stored_map.h"
 #include "delio/slam/options.h"
+#include "delio/slam/slam.h"
 
 namespace delio::run {
+/** Times and figures of a scan under their names. Rows with the same names share them. */
+class RowFigures {
+ public:
+    RowFigures() = default;
+    /** `before`: those of the row before. */
+    RowFigures(const ScanReport& report, const RowFigures& before);
+
+    std::vector<Named> stages_ms() const;     //!< of the odometry's stages
+    std::vector<Named> listeners_ms() const;  //!< of Slam's listeners
+    std::vector<Named> details() const;       //!< of the odometry's method
+
+ private:
+    struct Names {
+        std::vector<std::string> stages, listeners, details;
+    };
+    std::shared_ptr<const Names> names_;
+    std::vector<double> values_;  //!< in the order of the names
+};
+
+/** What is said of one scan: a row of scans.csv. */
+struct RunRow {
+    std::size_t scan = 0;  //!< number of the scan in its recording
+    double stamp_s = 0;    //!< seconds of the drive
+    Eigen::Isometry3d sensorPose = Eigen::Isometry3d::Identity();  //!< sensor to vehicle
+    std::size_t points = 0;                                        //!< that were used
+    std::size_t notFinite = 0;                                     //!< Step::notFinite
+    double read_ms = 0;                                            //!< time to read it
+    double moved_m = 0;        //!< by the sensor since the scan before
+    double turned_rad = 0;     //!< the same
+    bool predicted = false;    //!< Step::predicted
+    bool searched = false;     //!< Step::searched
+    bool interrupted = false;  //!< Step::interrupted
+    bool standing = false;     //!< Step::standing
+    bool deskewed = false;     //!< Step::deskewed
+    std::string reason;        //!< why it was predicted
+    Quality quality;           //!< of the registration
+    RowFigures figures;        //!< times and details
+
+    /** Of reading, odometry, pose graph and submaps. */
+    double total_ms() const;
+};
+
+/** The row of a scan that `report` is of. `before`: the last row; null for the first. */
+RunRow rowOf(const Scan& scan, const ScanReport& report, double read_ms, const RunRow* before);
+
 /** What a run was asked for and found: all that a RunFolder writes, but for the map. */
 struct RunRecord {
     std::string profile;               //!< that the options were made of
@@ -20,7 +70,7 @@ struct RunRecord {
     std::string drive = "drive";       //!< its name
     Options options;                   //!< of every stage
 
-    RunRows rows;                       //!< of the scans that were processed
+    std::vector<RunRow> rows;           //!< of the scans that were processed
     bool complete = false;              //!< every scan was processed
     std::string fault;                  //!< what ended the run early, or is missing in it
     std::vector<std::string> warnings;  //!< a line each
@@ -31,18 +81,18 @@ struct RunRecord {
     /** Poses after the pose graph; in the frame of the stored map, if the drive was found in one.
      */
     io::Trajectory final;
-    bool stampsRise = true;                    //!< false: the final trajectory has no times
-    graph::PoseGraph graph;                    //!< optimised
-    graph::OptimisationResult optimisation;    //!< of the whole graph
-    double optimise_ms = 0;                    //!< time of that
-    std::string storedMap;                     //!< that the drive was localised in; empty: none
-    std::vector<MapFix> fixes;                 //!< of every scan, where there is one
-    std::vector<loops::LoopCandidate> joints;  //!< with the map's submaps, where it was extended
-    bool extended = false;                     //!< the stored map got what this drive saw
-    std::size_t addedSubmaps = 0;              //!< that it got
-    bool searchedLoops = false;                //!< else `loops` says nothing
-    std::vector<loops::LoopCandidate> loops;   //!< and what became of them
-    double loop_search_ms = 0;                 //!< beside the drive, and after it
+    bool stampsRise = true;                     //!< false: the final trajectory has no times
+    graph::PoseGraph graph;                     //!< optimised
+    graph::OptimisationResult optimisation;     //!< of the whole graph
+    double optimise_ms = 0;                     //!< time of that
+    std::string storedMap;                      //!< that the drive was localised in; empty: none
+    std::vector<MapFix> fixes;                  //!< of every scan, where there is one
+    std::vector<places::LoopCandidate> joints;  //!< with the map's submaps, where it was extended
+    bool extended = false;                      //!< the stored map got what this drive saw
+    std::size_t addedSubmaps = 0;               //!< that it got
+    bool searchedLoops = false;                 //!< else `loops` says nothing
+    std::vector<places::LoopCandidate> loops;   //!< and what became of them
+    double loop_search_ms = 0;                  //!< beside the drive, and after it
 
     io::Calibration calibration;  //!< of the drive, where there is one
     /** The final trajectory beside true poses, where they are known. */
@@ -63,5 +113,12 @@ struct RunRecord {
 };
 
 /** A vehicle's trajectory as that of its sensor. `rows`: one for each pose. */
-io::Trajectory ofSensor(const io::Trajectory& vehicle, const RunRows& rows);
+io::Trajectory ofSensor(const io::Trajectory& vehicle, const std::vector<RunRow>& rows);
+
+/** The maps that a run made; null: none. */
+struct RunMaps {
+    const map::MapBuilder* points = nullptr;  //!< of map.ply and all that is drawn
+    const MapContent* stored = nullptr;       //!< to come back to
+    bool keepDynamic = false;  //!< what is taken out of `points` has a file of its own
+};
 }  // namespace delio::run

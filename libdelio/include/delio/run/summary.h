@@ -62,7 +62,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms);
 
 /** From when a scan is wanted to its pose, ms (RunRow::total_ms()): the median of the scans, 95 %
  * of them, and the worst. */
-Summary::Figures latencyOf(const RunRows& rows);
+Summary::Figures latencyOf(const std::vector<RunRow>& rows);
 
 /** Largest memory of this process so far, MB. */
 double peakMemory_mb();

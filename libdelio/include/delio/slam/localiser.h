@@ -2,15 +2,18 @@
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
-#include <iosfwd>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "delio/odometry/odometry.h"
-#include "delio/slam/map_follower.h"
+#include "delio/places/localisation.h"
+#include "delio/places/stored_map.h"
 #include "delio/slam/slam.h"
 
 namespace delio {
+class MapFollower;
+
 /** What a Localiser says of one scan. */
 struct Localisation {
     Step step;   //!< of the odometry
@@ -30,7 +33,8 @@ class Localiser {
      *  metres: then it is looked for there only. */
     void expect(const Eigen::Isometry3d& vehicle);
 
-    /** The next scan. As Slam::process() where something is thrown. */
+    /** The next scan. Error where the odometry fails, as in Slam::process(), and from the first
+     * scan on that could not be compared with the map. */
     Localisation process(const Scan& scan);
 
     /** The same for who works with MRPT: a LiDAR observation (see io::decodeObservation) with its
@@ -39,14 +43,10 @@ class Localiser {
     std::optional<mrpt::poses::CPose3DPDFGaussian> process(
         const mrpt::obs::CObservation& observation);
 
-    /** See Slam::save(). */
-    void save(std::ostream& out) const;
-    /** See Slam::restore(); the map has to be the same one. */
-    void restore(std::istream& in);
-
  private:
     std::shared_ptr<MapFollower> follower_;
     Slam slam_;
     std::size_t observations_ = 0;
+    std::string fault_;  //!< of the follower; empty: none
 };
 }  // namespace delio

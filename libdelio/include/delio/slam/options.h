@@ -7,10 +7,11 @@
 
 #include "delio/graph/pose_graph.h"
 #include "delio/io/drive_meta.h"
-#include "delio/localisation/map_tracker.h"
-#include "delio/loops/loop_search.h"
 #include "delio/map/map_builder.h"
 #include "delio/odometry/odometry.h"
+#include "delio/places/localisation.h"
+#include "delio/places/loops.h"
+#include "delio/places/submap.h"
 
 namespace delio {
 /** The options of every stage, as one .ini file has them: a section a stage. The defaults are those
@@ -18,9 +19,9 @@ namespace delio {
 struct Options : public OdometryOptions {
     graph::PoseGraphOptions graph;     //!< [graph]
     map::MapOptions map;               //!< [map], and [removal]
-    loops::SubmapOptions submaps;      //!< [submaps]
-    loops::LoopOptions loops;          //!< [loops]
-    loops::ClosureOptions closures;    //!< [closures]
+    places::SubmapOptions submaps;     //!< [submaps]
+    places::LoopOptions loops;         //!< [loops]
+    places::ClosureOptions closures;   //!< [closures]
     PlaceSearchOptions placeSearch;    //!< [place_search]
     LocalisationOptions localisation;  //!< [localisation]
 

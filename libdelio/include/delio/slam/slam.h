@@ -1,19 +1,58 @@
 #pragma once
-#include <iosfwd>
+#include <Eigen/Core>
+#include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "delio/io/trajectory.h"
 #include "delio/odometry/odometry.h"
-#include "delio/slam/listener.h"
+#include "delio/odometry/step.h"
+#include "delio/odometry/scan.h"
 
 namespace delio {
-/** What became of one scan. */
+/** Which poses are kept: of all scans, or only what the next scan needs, so that memory does not
+ * grow with the drive. */
+enum class History { All, Last };
+
+/** One scan as Slam passes it to its listeners. References are valid during the call. */
+struct SlamScan {
+    std::size_t node;  //!< number of its pose, from 0
+    const Scan& scan;  //!< as it came
+    const Step& step;  //!< what the odometry said of it
+    /** Of the vehicle, since the scan before; identity for the first. */
+    Increment increment;
+    /** Of the vehicle, by the odometry alone: maps its coordinates to those it had at the first
+     *  scan. */
+    Eigen::Isometry3d pose;
+};
+
+/** Static points of a scan, in the vehicle's frame: at most 20 000, as several scans are merged. */
+Eigen::Matrix3Xf staticPoints(const SlamScan& scan);
+
+/** Gets every step of an odometry: a pose graph, a map, a window. */
+class SlamListener {
+ public:
+    virtual ~SlamListener() = default;
+
+    /** Name of its time in scans.csv, and of the listener in messages. */
+    virtual const char* name() const = 0;
+
+    /** Takes the next scan. A listener that throws gets no more scans (ScanReport::failed). */
+    virtual void add(const SlamScan& scan) = 0;
+};
+
+/** A listener that threw, and what it said. */
+struct FailedListener {
+    std::shared_ptr<const SlamListener> listener;  //!< that was switched off
+    std::string message;                           //!< one plain line
+};
+
+/** Result of one scan. */
 struct ScanReport {
-    Step step;                        //!< of the odometry
-    std::vector<Named> listeners_ms;  //!< time of each listener, under its name
+    Step step;                           //!< of the odometry
+    std::vector<Named> listeners_ms;     //!< time of each listener, under its name
+    std::vector<FailedListener> failed;  //!< listeners that were switched off at this scan
 };
 
 /** An odometry and its listeners: scans in, and each listener is told of every step in turn. Poses
@@ -27,30 +66,20 @@ class Slam {
     /** From the next scan on it is told of every scan, after those that were attached before. */
     void attach(std::shared_ptr<SlamListener> listener);
 
-    /** Where the odometry or a listener throws, trajectory and listeners are as they were before,
-     *  as if the scan had not been recorded: how far it led is counted to the next one. (Not where
-     *  that is not known: the odometry threw, or gave an increment that is not finite, which is an
-     *  Error.) */
+    /** A listener that throws is switched off: it gets no more scans, the others and the odometry
+     *  go on, and the report names it. Where the odometry throws, or gives an increment that is not
+     *  finite, which is an Error, trajectory and listeners are as they were before. */
     ScanReport process(const Scan& scan);
 
-    /** No more scans come: what the odometry has kept to register them goes, and with it what
-     *  process() and save() need; they are an Error from then on. */
+    /** No more scans come: what the odometry has kept to register them goes. process()
+     *  is an Error from then on. */
     void close() { odometry_.reset(); }
 
     /** Of the odometry alone: the poses of all scans, or the last one (see History). */
     const io::Trajectory& trajectory() const { return trajectory_; }
 
-    /** The drive as far as it has come, with odometry and listeners: written between two scans, it
-     *  is gone on with from there. Error where something of it cannot be written. */
-    void save(std::ostream& out) const;
-    /** Into one with an odometry and listeners that were made alike, attached in the same order,
-     *  and that has seen no scan. Error where the state is cut off, damaged, of other options, of
-     *  other listeners or of another version; then this is of no use. */
-    void restore(std::istream& in);
-
  private:
     void requireOpen() const;
-    std::string listenerNames() const;
     void tell(const SlamScan& scan, ScanReport& report);
 
     std::unique_ptr<Odometry> odometry_;
@@ -60,7 +89,5 @@ class Slam {
     std::size_t nodes_ = 0;  //!< scans that were taken
     /** Sensor in the vehicle at the last scan that was taken. */
     Eigen::Isometry3d sensorPose_ = Eigen::Isometry3d::Identity();
-    /** From the last scan that was taken to the one that was refused after it, of the sensor. */
-    std::optional<Increment> refused_;
 };
 }  // namespace delio

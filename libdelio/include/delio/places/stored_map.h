@@ -1,0 +1,95 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "delio/graph/pose_graph.h"
+#include "delio/io/trajectory.h"
+#include "delio/places/submap.h"
+
+namespace delio::places {
+struct Descriptor;
+}  // namespace delio::places
+
+namespace delio {
+/** A drive that a map was made of: its scans are nodes of the map's graph, one after the other. */
+struct StoredDrive {
+    std::string name;              //!< of its recording: io::nameOfDrive()
+    std::size_t firstNode = 0;     //!< node of its first scan
+    std::vector<double> stamps_s;  //!< of each of its scans
+};
+
+/** Content of a stored map. Poses are the vehicle's in the map's frame, which is that of
+ *  the first scan of its first drive. */
+struct MapContent {
+    graph::PoseGraph graph;               //!< a node a scan, of all drives
+    std::vector<StoredDrive> drives;      //!< in the order of their nodes
+    std::vector<places::Submap> submaps;  //!< without their points
+    /** Descriptor of each of them. */
+    std::function<places::Descriptor(std::size_t)> descriptor;
+    /** Points of each of them: metres, its level frame. */
+    std::function<Eigen::Matrix3Xf(std::size_t)> points;
+};
+
+/** A map for localisation: the drives' submaps with their descriptors, and the pose graph. A file,
+ * with a version, each part with a checksum; parts are read when they are asked for, by any thread.
+ * Coordinates are rounded to 5 mm. */
+class StoredMap {
+ public:
+    static constexpr std::uint32_t kVersion = 1;  //!< of the file
+
+    /** Throws Error where the file is missing, no such map, of another version or cut off. */
+    explicit StoredMap(const std::string& path);
+    ~StoredMap();
+    StoredMap(const StoredMap&) = delete;
+    StoredMap& operator=(const StoredMap&) = delete;
+
+    const std::string& path() const { return path_; }         //!< of the file
+    const graph::PoseGraph& graph() const { return graph_; }  //!< a node a scan, of all drives
+    /** In the order of their nodes. */
+    const std::vector<StoredDrive>& drives() const { return drives_; }
+    /** Without their points. */
+    const std::vector<places::Submap>& submaps() const { return submaps_; }
+    /** Of each submap: maps its coordinates to the map's. */
+    const std::vector<Eigen::Isometry3d>& levelFrames() const { return level_; }
+
+    /** Of one of its drives, in the map's frame. */
+    io::Trajectory trajectory(const StoredDrive& drive) const;
+
+    /** Descriptor of a submap. Error where that part of the file is damaged. */
+    places::Descriptor descriptor(std::size_t submap) const;
+    /** Points of a submap: metres, its level frame. Error likewise. */
+    Eigen::Matrix3Xf points(std::size_t submap) const;
+
+    /** All of them in the map's frame, one in `spacing` metres. */
+    Eigen::Matrix3Xf cloud(double spacing) const;
+
+    /** As it would be written once more; refers to this map. */
+    MapContent content() const;
+
+    /** Writes a map: under a temporary name, so that what stands under `path` is always whole.
+     *  Error where that cannot be done. */
+    static void save(const MapContent& content, const std::string& path);
+
+ private:
+    struct Part {
+        std::uint64_t offset = 0, bytes = 0, unpacked = 0;
+        std::uint32_t checksum = 0;
+    };
+    class Writer;
+    std::vector<std::uint8_t> read(const Part& part) const;
+    void readIndex(const Part& index);
+    [[noreturn]] void damaged(const std::string& how) const;
+
+    std::string path_;
+    int file_ = -1;
+    std::uint64_t size_ = 0;
+    graph::PoseGraph graph_;
+    std::vector<StoredDrive> drives_;
+    std::vector<places::Submap> submaps_;
+    std::vector<Eigen::Isometry3d> level_;
+    std::vector<Part> descriptors_, clouds_;
+};
+}  // namespace delio

@@ -1,0 +1,56 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "delio/places/localisation.h"
+#include "delio/places/stored_map.h"
+#include "places/closure.h"
+#include "places/place_index.h"
+
+namespace delio {
+/** Where a cloud was found in the map, or why it was not. */
+struct FoundPlace {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< the cloud's frame to the map's
+    double overlap = 0;      //!< RegistrableSubmap::support() of the cloud by the map
+    double conflict = 0;     //!< FreeSpace::conflict(), the larger of both directions
+    double rival = 0;        //!< overlap of the second-best place
+    std::size_t submap = 0;  //!< of the map, in which it was found
+    std::string reason;      //!< empty: it was found
+};
+
+/** Finds a levelled cloud in a stored map without an initial guess. All places and headings are
+ *  compared coarsely (PlaceIndex), the best ones in the descriptors' resolution, rotation first;
+ * then they are registered. Verification is that of loops: enough overlap, no walls in the other's
+ * free space, and no second place that is nearly as good. */
+class PlaceSearch {
+ public:
+    /** Reads the descriptors of all submaps of `map`. Error if they are damaged. */
+    PlaceSearch(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& options);
+
+    const PlaceSearchOptions& options() const { return options_; }  //!< that it was made with
+
+    /** `cloud`: z up, metres. */
+    FoundPlace find(const Eigen::Matrix3Xf& cloud);
+    /** Among some submaps only. */
+    FoundPlace find(const Eigen::Matrix3Xf& cloud, const std::vector<std::size_t>& submaps);
+
+ private:
+    struct Hypothesis {
+        std::size_t place;
+        places::Shift shift;
+    };
+    std::vector<Hypothesis> hypotheses(const std::vector<places::PlaceMatch>& matches,
+                                       const places::Descriptor& seen) const;
+    FoundPlace registered(const Hypothesis& hypothesis, const places::DenseSubmap& place,
+                          const places::Descriptor& seen, const places::DenseSubmap& cloud) const;
+    FoundPlace verified(const std::vector<places::PlaceMatch>& matches,
+                        const Eigen::Matrix3Xf& cloud, const places::Descriptor& seen);
+
+    std::shared_ptr<const StoredMap> map_;
+    PlaceSearchOptions options_;
+    std::vector<places::Descriptor> descriptors_;
+    places::PlaceIndex index_;
+    places::DenseSubmapCache cache_{6};
+};
+}  // namespace delio

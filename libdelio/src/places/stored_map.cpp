@@ -1,0 +1,341 @@
+#include "delio/places/stored_map.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "delio/core/error.h"
+#include "delio/io/output_file.h"
+#include "core/voxel_grid.h"
+#include "io/most_bytes.h"
+#include "io/names.h"
+#include "places/bytes.h"
+#include "places/descriptor.h"
+
+namespace delio {
+namespace {
+// magic, version, offset, bytes, unpacked bytes and checksum of the index, size of the file, and
+// the checksum of all that.
+constexpr std::array<char, 8> kMagic{'D', 'e', 'L', 'i', 'O', 'm', 'a', 'p'};
+constexpr std::size_t kHead = 8 + 4 + 8 + 8 + 8 + 4 + 8 + 4;
+constexpr double kCell_m = places::HeightImage::kCell_m;
+
+std::uint32_t checksumOf(const std::uint8_t* bytes, std::size_t count) {
+    return static_cast<std::uint32_t>(crc32_z(0, bytes, count));
+}
+
+void put(ByteWriter& bytes, const Matrix6& symmetric) {
+    for (Eigen::Index i = 0; i < 6; ++i)
+        for (Eigen::Index k = i; k < 6; ++k) bytes.put(symmetric(i, k));
+}
+Matrix6 getSymmetric(ByteReader& bytes) {
+    Matrix6 symmetric;
+    for (Eigen::Index i = 0; i < 6; ++i)
+        for (Eigen::Index k = i; k < 6; ++k)
+            symmetric(i, k) = symmetric(k, i) = bytes.get<double>();
+    return symmetric;
+}
+
+void put(ByteWriter& bytes, const graph::PoseGraph& graph) {
+    bytes.put<std::uint64_t>(graph.poses().size());
+    for (const auto& pose : graph.poses()) bytes.put(pose);
+    bytes.put<std::uint64_t>(graph.edges().size());
+    for (const auto& edge : graph.edges()) {
+        bytes.put<std::uint64_t>(edge.from);
+        bytes.put<std::uint64_t>(edge.to);
+        bytes.put(edge.increment.pose);
+        put(bytes, edge.increment.covariance);
+    }
+}
+graph::PoseGraph getGraph(ByteReader& bytes) {
+    graph::PoseGraph graph;
+    for (auto left = bytes.get<std::uint64_t>(); left > 0; --left) graph.addNode(bytes.getPose());
+    for (auto left = bytes.get<std::uint64_t>(); left > 0; --left) {
+        graph::Edge edge;
+        edge.from = bytes.get<std::uint64_t>();
+        edge.to = bytes.get<std::uint64_t>();
+        edge.increment.pose = bytes.getPose();
+        edge.increment.covariance = getSymmetric(bytes);
+        graph.addEdge(edge);
+    }
+    return graph;
+}
+
+void put(ByteWriter& bytes, const places::Submap& submap) {
+    for (const auto node : {submap.first, submap.key, submap.last}) bytes.put<std::uint64_t>(node);
+    for (const double value :
+         {submap.driven.path_m, submap.driven.variance_m2, submap.driven.variance_rad2})
+        bytes.put(value);
+    bytes.put(isometry(submap.level, Eigen::Vector3d::Zero()));
+}
+places::Submap getSubmap(ByteReader& bytes, std::size_t nodes) {
+    places::Submap submap;
+    for (auto* node : {&submap.first, &submap.key, &submap.last}) {
+        *node = bytes.get<std::uint64_t>();
+        if (*node >= nodes) throw std::out_of_range("node");
+    }
+    for (auto* value :
+         {&submap.driven.path_m, &submap.driven.variance_m2, &submap.driven.variance_rad2})
+        *value = bytes.get<double>();
+    submap.level = bytes.getPose().linear();
+    submap.points.resize(3, 0);
+    return submap;
+}
+
+/** Centres of cells, as whole numbers of half a cell. */
+void putCentres(ByteWriter& bytes, const Eigen::Matrix2Xd& centres) {
+    std::vector<std::int16_t> halves;
+    for (Eigen::Index i = 0; i < centres.cols(); ++i)
+        for (Eigen::Index k = 0; k < 2; ++k)
+            halves.push_back(static_cast<std::int16_t>(std::lround(2 * centres(k, i) / kCell_m)));
+    bytes.putAll(halves.data(), halves.size());
+}
+Eigen::Matrix2Xd getCentres(ByteReader& bytes) {
+    const auto halves = bytes.getAll<std::int16_t>();
+    Eigen::Matrix2Xd centres(2, static_cast<Eigen::Index>(halves.size() / 2));
+    for (Eigen::Index i = 0; i < centres.cols(); ++i)
+        for (Eigen::Index k = 0; k < 2; ++k)
+            centres(k, i) = kCell_m / 2 * halves[static_cast<std::size_t>(2 * i + k)];
+    return centres;
+}
+
+void put(ByteWriter& bytes, const places::Descriptor& descriptor) {
+    const Eigen::VectorXf weights = descriptor.walls.weights().cast<float>();
+    bytes.putAll(weights.data(), static_cast<std::size_t>(weights.size()));
+    putCentres(bytes, descriptor.image.cells());
+    bytes.putAll(descriptor.image.bands().data(), descriptor.image.bands().size());
+    putCentres(bytes, descriptor.image.grounds());
+    const auto& heights = descriptor.image.heights();
+    bytes.putAll(heights.data(), heights.size());
+}
+places::Descriptor getSketch(ByteReader& bytes) {
+    const auto weights = bytes.getAll<float>();
+    const Eigen::VectorXd azimuths =
+        Eigen::Map<const Eigen::VectorXf>(weights.data(), static_cast<Eigen::Index>(weights.size()))
+            .cast<double>();
+    const auto cells = getCentres(bytes);
+    auto bands = bytes.getAll<std::uint8_t>();
+    auto grounds = getCentres(bytes);
+    auto heights = bytes.getAll<double>();
+    if (azimuths.size() != places::WallOrientations::kBins ||
+        bands.size() != static_cast<std::size_t>(cells.cols()) ||
+        heights.size() != static_cast<std::size_t>(grounds.cols()))
+        throw std::out_of_range("descriptor");
+    return {places::WallOrientations::ofWeights(azimuths),
+            places::HeightImage(cells, std::move(bands), std::move(grounds), std::move(heights))};
+}
+}  // namespace
+
+/** Packs parts one behind the other. */
+class StoredMap::Writer {
+ public:
+    Writer(std::ostream& out, std::uint64_t offset) : out_(out), end_(offset) {}
+
+    Part add(const ByteWriter& bytes) {
+        const auto& plain = bytes.bytes();
+        uLongf size = compressBound(plain.size());
+        std::vector<std::uint8_t> packed(size);
+        if (compress2(packed.data(), &size, plain.data(), plain.size(), Z_DEFAULT_COMPRESSION) !=
+            Z_OK)
+            throw Error("a part of a stored map cannot be packed");
+        const Part part{end_, size, plain.size(), checksumOf(packed.data(), size)};
+        out_.write(reinterpret_cast<const char*>(packed.data()),
+                   static_cast<std::streamsize>(size));
+        end_ += size;
+        return part;
+    }
+    std::uint64_t end() const { return end_; }
+
+    static void put(ByteWriter& bytes, const Part& part) {
+        bytes.put(part.offset);
+        bytes.put(part.bytes);
+        bytes.put(part.unpacked);
+        bytes.put(part.checksum);
+    }
+    static Part get(ByteReader& bytes) {
+        Part part;
+        part.offset = bytes.get<std::uint64_t>();
+        part.bytes = bytes.get<std::uint64_t>();
+        part.unpacked = bytes.get<std::uint64_t>();
+        part.checksum = bytes.get<std::uint32_t>();
+        return part;
+    }
+
+ private:
+    std::ostream& out_;
+    std::uint64_t end_;
+};
+
+void StoredMap::save(const MapContent& content, const std::string& path) {
+    io::replaceFile(path, [&](const std::string& temporary) {
+        std::ofstream out(temporary, std::ios::binary);
+        if (!out) throw Error("cannot write '" + path + "': " + std::strerror(errno));
+        out.seekp(kHead);
+        Writer writer(out, kHead);
+        ByteWriter index;
+        put(index, content.graph);
+        index.put<std::uint64_t>(content.drives.size());
+        for (const auto& drive : content.drives) {
+            index.put(drive.name);
+            index.put<std::uint64_t>(drive.firstNode);
+            index.putAll(drive.stamps_s.data(), drive.stamps_s.size());
+        }
+        index.put<std::uint64_t>(content.submaps.size());
+        for (std::size_t i = 0; i < content.submaps.size() && out; ++i) {
+            put(index, content.submaps[i]);
+            ByteWriter descriptor, points;
+            put(descriptor, content.descriptor(i));
+            put(points, content.points(i));
+            Writer::put(index, writer.add(descriptor));
+            Writer::put(index, writer.add(points));
+        }
+        const Part part = writer.add(index);
+        ByteWriter head;
+        for (const char letter : kMagic) head.put(letter);
+        head.put(kVersion);
+        Writer::put(head, part);
+        head.put(writer.end());
+        head.put(checksumOf(head.bytes().data(), head.bytes().size()));
+        out.seekp(0);
+        out.write(reinterpret_cast<const char*>(head.bytes().data()), kHead);
+        out.close();
+        return static_cast<bool>(out);
+    });
+}
+
+StoredMap::StoredMap(const std::string& path) : path_(path) {
+    file_ = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // no waiting for a pipe
+    struct stat status {};
+    std::vector<std::uint8_t> head(kHead);
+    if (file_ < 0) throw Error("cannot read '" + path + "': " + std::strerror(errno));
+    try {
+        const bool whole = fstat(file_, &status) == 0 &&
+                           pread(file_, head.data(), kHead, 0) == static_cast<ssize_t>(kHead);
+        if (!whole || !std::equal(kMagic.begin(), kMagic.end(), head.begin()))
+            throw Error("'" + path + "' is no stored map");
+        size_ = static_cast<std::uint64_t>(status.st_size);
+        ByteReader reader(head);
+        for (std::size_t i = 0; i < kMagic.size(); ++i) reader.get<char>();
+        const auto version = reader.get<std::uint32_t>();
+        if (version != kVersion)
+            throw Error("'" + path + "' is a stored map of version " + std::to_string(version) +
+                        "; this program reads version " + std::to_string(kVersion));
+        const Part index = Writer::get(reader);
+        const auto size = reader.get<std::uint64_t>();
+        if (reader.get<std::uint32_t>() != checksumOf(head.data(), kHead - 4))
+            damaged("its head is not what was written");
+        if (size > size_) damaged("it is cut off");
+        readIndex(index);
+    } catch (...) {
+        close(file_);
+        throw;
+    }
+}
+
+StoredMap::~StoredMap() { close(file_); }
+
+void StoredMap::damaged(const std::string& how) const {
+    throw Error("the stored map '" + path_ + "' is damaged: " + how);
+}
+
+std::vector<std::uint8_t> StoredMap::read(const Part& part) const {
+    if (part.offset > size_ || part.bytes > size_ - part.offset) damaged("it is cut off");
+    if (part.unpacked > std::min(io::kMostBytes, 2000 * part.bytes + 100))
+        damaged("a part is too large");
+    std::vector<std::uint8_t> packed(part.bytes), plain(part.unpacked);
+    for (std::size_t done = 0; done < packed.size();) {
+        const auto count = pread(file_, packed.data() + done, packed.size() - done,
+                                 static_cast<off_t>(part.offset + done));
+        if (count <= 0) damaged("it cannot be read");
+        done += static_cast<std::size_t>(count);
+    }
+    if (checksumOf(packed.data(), packed.size()) != part.checksum)
+        damaged("a part is not what was written");
+    uLongf size = plain.size();
+    if (uncompress(plain.data(), &size, packed.data(), packed.size()) != Z_OK ||
+        size != plain.size())
+        damaged("a part cannot be unpacked");
+    return plain;
+}
+
+void StoredMap::readIndex(const Part& index) {
+    const auto bytes = read(index);
+    ByteReader reader(bytes);
+    try {
+        graph_ = getGraph(reader);
+        for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
+            StoredDrive drive;
+            drive.name = reader.getText();
+            // Files and folders are called after it.
+            if (!io::isFileName(drive.name)) throw std::out_of_range("name");
+            drive.firstNode = reader.get<std::uint64_t>();
+            drive.stamps_s = reader.getAll<double>();
+            const auto nodes = graph_.poses().size();
+            if (drive.firstNode > nodes || drive.stamps_s.size() > nodes - drive.firstNode)
+                throw std::out_of_range("drive");
+            drives_.push_back(std::move(drive));
+        }
+        for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
+            submaps_.push_back(getSubmap(reader, graph_.poses().size()));
+            descriptors_.push_back(Writer::get(reader));
+            clouds_.push_back(Writer::get(reader));
+        }
+    } catch (const std::exception&) {
+        damaged("its index cannot be understood");
+    }
+    level_ = places::levelFrames(submaps_, graph_.poses());
+}
+
+io::Trajectory StoredMap::trajectory(const StoredDrive& drive) const {
+    const auto first = graph_.poses().begin() + static_cast<std::ptrdiff_t>(drive.firstNode);
+    return {{first, first + static_cast<std::ptrdiff_t>(drive.stamps_s.size())}, drive.stamps_s};
+}
+
+places::Descriptor StoredMap::descriptor(std::size_t submap) const {
+    const auto bytes = read(descriptors_[submap]);
+    ByteReader reader(bytes);
+    try {
+        return getSketch(reader);
+    } catch (const std::out_of_range&) {
+        damaged("a descriptor cannot be understood");
+    }
+}
+
+Eigen::Matrix3Xf StoredMap::points(std::size_t submap) const {
+    const auto bytes = read(clouds_[submap]);
+    ByteReader reader(bytes);
+    try {
+        return getPoints(reader);
+    } catch (const std::out_of_range&) {
+        damaged("points cannot be understood");
+    }
+}
+
+Eigen::Matrix3Xf StoredMap::cloud(double spacing) const {
+    std::vector<Eigen::Matrix3Xf> parts;
+    Eigen::Index count = 0;
+    for (std::size_t i = 0; i < submaps_.size(); ++i) {
+        parts.emplace_back(level_[i].cast<float>() * points(i));
+        count += parts.back().cols();
+    }
+    Eigen::Matrix3Xf all(3, count);
+    count = 0;
+    for (const auto& part : parts) {
+        all.middleCols(count, part.cols()) = part;
+        count += part.cols();
+    }
+    return firstOfVoxels(all, spacing);
+}
+
+MapContent StoredMap::content() const {
+    return {graph_, drives_, submaps_, [this](std::size_t i) { return descriptor(i); },
+            [this](std::size_t i) { return points(i); }};
+}
+}  // namespace delio

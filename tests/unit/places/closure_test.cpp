@@ -1,0 +1,74 @@
+#include "places/closure.h"
+
+#include <gtest/gtest.h>
+
+#include "town.h"
+
+namespace {
+using namespace delio;
+using namespace delio::places_test;
+using places::RegistrableSubmap;
+using test::poseAt;
+using test::poseAtDeg;
+
+/** A submap of three scans along x from `start` on. */
+places::Submap seenFrom(const test::Scene& scene, const Eigen::Isometry3d& start) {
+    Poses poses{start};
+    for (int i = 0; i < 4; ++i) poses.push_back(poses.back() * poseAt(3, 0, 0));
+    return submapsOf(scene, poses, poses).at(0);
+}
+
+places::Closure closed(const places::Submap& from, const places::Submap& to,
+                       const Eigen::Isometry3d& guess) {
+    const RegistrableSubmap fromMap(from.points), toMap(to.points);
+    const places::ClosureEnd a{from, fromMap}, b{to, toMap};
+    auto closure = closureOf(a, b, guess, {});
+    if (closure.reason.empty()) confirm(closure, a, b, {});
+    return closure;
+}
+
+/** The middle one of the poses is the key. */
+Eigen::Isometry3d keyOf(const Eigen::Isometry3d& start) { return start * poseAt(6, 0, 0); }
+
+class ClosureFrom : public testing::TestWithParam<double> {};
+
+TEST_P(ClosureFrom, EitherDirectionIsRight) {
+    const Eigen::Isometry3d a = poseAt(0, 0, 0), b = poseAtDeg(4, 0.7, 0, GetParam());
+    const auto from = seenFrom(town(), a), to = seenFrom(town(), b);
+    const Eigen::Isometry3d truth = keyOf(a).inverse() * keyOf(b);
+    const auto closure = closed(from, to, truth * poseAtDeg(0.5, -0.4, 0.3, 1));
+    ASSERT_EQ(closure.reason, "");
+    EXPECT_LT(test::metresBetween(closure.increment.pose, truth), 0.02);
+    EXPECT_LT(test::degreesBetween(closure.increment.pose, truth), 0.1);
+    EXPECT_GT(closure.overlap, 0.4);
+    EXPECT_EQ(closure.increment.covariance.llt().info(), Eigen::Success);
+    EXPECT_LT(closure.increment.covariance.diagonal().head<3>().maxCoeff(), 0.01 * 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Directions, ClosureFrom, testing::Values(0, 12, 180));
+
+TEST(Closure, OfOtherPlacesIsNone) {
+    const auto from = seenFrom(town(), poseAt(0, 0, 0)),
+               to = seenFrom(test::yard(), poseAt(-3, 1, 0));
+    EXPECT_NE(closed(from, to, poseAt(0, 0, 0)).reason, "");
+}
+
+TEST(Closure, OfNothingIsNone) {
+    const auto from = seenFrom(town(), poseAt(0, 0, 0));
+    places::Submap nothing = from;
+    nothing.points.resize(3, 0);
+    EXPECT_EQ(closed(from, nothing, poseAt(0, 0, 0)).reason, "not registered");
+    EXPECT_EQ(closed(nothing, from, poseAt(0, 0, 0)).reason, "not registered");
+}
+
+// Between two walls without an end nothing tells how far along them it is.
+TEST(Closure, OfACorridorHoldsAcrossItOnly) {
+    const auto from = seenFrom(test::corridor(), poseAt(0, 0, 0)),
+               to = seenFrom(test::corridor(), poseAt(1, 0.3, 0));
+    const auto closure = closed(from, to, poseAt(1, 0, 0));
+    const Eigen::Vector3d sigma = closure.increment.covariance.diagonal().head<3>().cwiseSqrt();
+    EXPECT_GT(sigma.x(), 5);
+    EXPECT_LT(sigma.y(), 0.05);
+    EXPECT_NEAR(closure.increment.pose.translation().y(), 0.3, 0.02);
+}
+}  // namespace

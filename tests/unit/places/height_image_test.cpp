@@ -1,0 +1,78 @@
+#include "places/descriptor.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "poses.h"
+#include "ring_scan.h"
+
+namespace {
+using namespace delio;
+using places::HeightImage;
+using test::poseAtDeg;
+
+/** A yard, seen from its middle by many beams. */
+const Eigen::Matrix3Xf& yard() {
+    static const Eigen::Matrix3Xf points = [] {
+        test::Noise noise;
+        return test::ringScan(test::yard(), poseAtDeg(0, 0, 0, 20), {64, 900, -40, 15, 0.01}, noise)
+            .points;
+    }();
+    return points;
+}
+
+TEST(HeightImage, LeavesOutTheGround) {
+    Eigen::Matrix3Xf points(3, 1600);
+    for (int i = 0; i < 40; ++i)
+        for (int k = 0; k < 40; ++k)
+            points.col(40 * i + k) << 0.25F * static_cast<float>(k), 0.25F * static_cast<float>(i),
+                2;
+    EXPECT_EQ(HeightImage(points).cells().cols(), 0);
+    EXPECT_NEAR(HeightImage(points).groundAt(5, 5), 2, 1e-6);
+    EXPECT_TRUE(std::isnan(HeightImage(points).groundAt(50, 5)));
+    points.col(820).z() = 3.5F;  // a post, at 5, 5
+    const HeightImage post(points);
+    ASSERT_EQ(post.cells().cols(), 1);
+    EXPECT_LT((post.cells().col(0) - Eigen::Vector2d(5, 5)).norm(), 0.5);
+    EXPECT_EQ(post.bands()[0], 2);  // 1 to 2 m above the ground
+}
+
+TEST(HeightImage, IsFoundWhereItLies) {
+    const Eigen::Isometry3d moved = poseAtDeg(6, -4.3, 2.5, 8);
+    const HeightImage here(moved.cast<float>() * yard()), there(yard());
+    const auto shifts = shiftsOf(here, there, 8 * M_PI / 180, {0, 0}, 10, 2, 3);
+    ASSERT_EQ(shifts.size(), 3U);
+    EXPECT_LT((shifts[0].translation - moved.translation()).head<2>().norm(), 0.5);
+    EXPECT_NEAR(shifts[0].translation.z(), 2.5, 0.1);
+    EXPECT_GT(shifts[0].overlap, 1.3 * shifts[1].overlap);
+    EXPECT_LE(shifts[0].overlap, 1);
+}
+
+// What meets, counted cell by cell.
+TEST(HeightImage, SharesAreTrue) {
+    const HeightImage here(yard()), there(yard().leftCols(yard().cols() / 2));
+    const auto shift = shiftsOf(here, there, 0, {0.6, 0.2}, 3, 2, 1).at(0);
+    const auto keyOf = [](const Eigen::Vector2d& cell) {
+        return std::make_pair(std::lround(std::floor(cell.x() / 0.5)),
+                              std::lround(std::floor(cell.y() / 0.5)));
+    };
+    unsigned met = 0, all = 0;
+    for (Eigen::Index i = 0; i < there.cells().cols(); ++i) {
+        const auto mine = there.bands()[static_cast<std::size_t>(i)];
+        all += static_cast<unsigned>(__builtin_popcount(mine));
+        const Eigen::Vector2d moved = there.cells().col(i) + shift.translation.head<2>();
+        for (Eigen::Index k = 0; k < here.cells().cols(); ++k)
+            if (keyOf(here.cells().col(k)) == keyOf(moved))
+                met += static_cast<unsigned>(
+                    __builtin_popcount(mine & here.bands()[static_cast<std::size_t>(k)]));
+    }
+    EXPECT_NEAR(shift.overlap, static_cast<double>(met) / all, 1e-12);
+}
+
+TEST(HeightImage, OfNothingIsNowhere) {
+    const HeightImage nothing(Eigen::Matrix3Xf(3, 0)), here(yard());
+    EXPECT_TRUE(shiftsOf(here, nothing, 0, {0, 0}, 5, 2, 3).empty());
+    EXPECT_TRUE(shiftsOf(nothing, here, 0, {0, 0}, 5, 2, 3).empty());
+}
+}  // namespace
