@@ -85,4 +85,9 @@ void requireOrder(const std::string& lowName, double low, const std::string& hig
         throw Error("option " + lowName + " (" + digitsOf(low) + ") has to be at most " + highName +
                     " (" + digitsOf(high) + ")");
 }
+
+void StageOptions::scaleBy(double factor) {
+    for (const auto& field : fields())
+        if (field.scales) this->*std::get<double StageOptions::*>(field.member) *= factor;
+}
 }  // namespace delio

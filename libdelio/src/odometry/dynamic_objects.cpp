@@ -112,7 +112,7 @@ struct Chains {
 };
 
 Chains chainsOf(const Eigen::Matrix3Xf& points, const std::vector<float>& above, const Grid& grid,
-                const SegmentOptions& options) {
+                const SegmentTuning& options) {
     Chains chains{std::vector<std::int32_t>(grid.size(), kNone),
                   std::vector<std::int32_t>(above.size(), kNone),
                   {}};
@@ -135,7 +135,7 @@ Chains chainsOf(const Eigen::Matrix3Xf& points, const std::vector<float>& above,
 }
 }  // namespace
 
-std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentOptions& options) {
+std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentTuning& options) {
     const auto above = heights(points, options.radius);
     const Grid grid(options.cell, options.radius);
     const Chains cells = chainsOf(points, above, grid, options);
@@ -176,12 +176,13 @@ bool DynamicObjects::isFree(const Object& object, const View& seen, const View& 
     Eigen::Index free = 0, taken = 0;
     for (Eigen::Index i = 0, left = asked - 1; i < object.points.cols(); i += stride, --left) {
         const Place place = by.image.at(toSensor * Eigen::Vector3f(object.points.col(i)),
-                                        static_cast<float>(options_.margin));
+                                        static_cast<float>(dynamic_tuning::kMargin_m));
         free += place == Place::kFree;
         taken += place == Place::kTaken;
         // Mostly few points tell that all those that are left cannot make it free.
         const auto most = static_cast<double>(free + left), known = most + double(taken);
-        if (most == 0 || most < options_.min_share * known || known < minKnown * double(asked))
+        if (most == 0 || most < dynamic_tuning::kMinFreeRatio * known ||
+            known < minKnown * double(asked))
             return false;
     }
     return asked > 0;
@@ -192,7 +193,7 @@ bool DynamicObjects::came(const Object& object) const {
     constexpr std::size_t kWitnesses = 2;
     std::size_t witnesses = 0;
     for (const auto& view : views_) {
-        witnesses += isFree(object, latest_, view, options_.min_known);
+        witnesses += isFree(object, latest_, view, dynamic_tuning::kMinKnownRatio);
         if (witnesses == kWitnesses) return true;
     }
     return witnesses > 0 && witnesses == views_.size();
@@ -273,7 +274,8 @@ std::optional<DynamicObjects::Track> DynamicObjects::trackOf(const Object& objec
         for (const std::size_t there : alikes) {
             const Eigen::Vector3f step = object.place - view.outlines.place(there);
             const float length = step.norm();
-            if (length < static_cast<float>(options_.margin) || length > farthest) continue;
+            if (length < static_cast<float>(dynamic_tuning::kMargin_m) || length > farthest)
+                continue;
             const Left then{i, there};
             // It goes on as it did.
             const auto& velocity = view.objects[there].velocity;
@@ -309,7 +311,7 @@ DynamicObjects::Sight DynamicObjects::see(const Eigen::Matrix3Xf& points,
     const Eigen::Matrix3Xf level = upright * points;
     sight.points_ = static_cast<std::size_t>(points.cols());
     tbb::parallel_invoke([&] { sight.image_ = RangeImage(all, options_.cell_deg, upright); },
-                         [&] { sight.segments_ = segmentsOf(level, segmentOptions_); });
+                         [&] { sight.segments_ = segmentsOf(level, SegmentTuning()); });
     for (const auto& segment : sight.segments_) {
         Object object;
         object.points.resize(3, static_cast<Eigen::Index>(segment.points.size()));
@@ -324,7 +326,7 @@ DynamicObjects::Sight DynamicObjects::see(const Eigen::Matrix3Xf& points,
 
 std::vector<std::uint8_t> DynamicObjects::detect(Sight sight, const Eigen::Isometry3d& pose,
                                                  double stamp_s) {
-    while (!views_.empty() && stamp_s - views_.back().stamp_s > options_.memory_s)
+    while (!views_.empty() && stamp_s - views_.back().stamp_s > dynamic_tuning::kMemory_s)
         views_.pop_back();
     latest_ = {stamp_s, pose.cast<float>(), std::move(sight.image_), std::move(sight.objects_), {},
                {}};
@@ -351,7 +353,8 @@ std::vector<std::uint8_t> DynamicObjects::detect(Sight sight, const Eigen::Isome
 
 void DynamicObjects::remember(const Eigen::Isometry3d& pose) {
     // A little less: stamps are rounded.
-    if (!views_.empty() && latest_.stamp_s - views_.front().stamp_s < 0.99 * options_.interval_s)
+    if (!views_.empty() &&
+        latest_.stamp_s - views_.front().stamp_s < 0.99 * dynamic_tuning::kInterval_s)
         return;
     latest_.toMap = pose.cast<float>();
     for (auto& object : latest_.objects) object.place = latest_.toMap * object.centre;

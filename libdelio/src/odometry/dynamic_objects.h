@@ -11,6 +11,7 @@
 
 #include "delio/core/odometry_options.h"
 #include "odometry/range_image.h"
+#include "odometry/tuning.h"
 
 namespace delio::odometry {
 /** As alike as two views of one thing from about the same side, by its size (metres). */
@@ -55,7 +56,7 @@ struct Segment {
  *  above the lowest ones about them than `above_ground`, connected over cells of the ground plane
  *  that touch. What is longer than `max_length` (walls, hedges) or has fewer than `min_points` is
  *  left out. */
-std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentOptions& options);
+std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentTuning& options);
 
 /** Finds dynamic objects by free space: what moves. A segment of a scan is one where
  *  - earlier scans saw through most of the place that it takes (it came from elsewhere), or
@@ -65,8 +66,8 @@ std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentOpt
 class DynamicObjects {
  public:
     /** Of no scan yet. */
-    DynamicObjects(const DynamicObjectsOptions& options, const SegmentOptions& segments)
-        : options_(options), segmentOptions_(segments) {}
+    explicit DynamicObjects(const DynamicObjectsOptions& options)
+        : options_(options) {}
 
     /** What a scan shows while its pose is not known. */
     class Sight;
@@ -133,7 +134,6 @@ class DynamicObjects {
     bool isFree(const Object& object, const View& seen, const View& by, double minKnown) const;
 
     DynamicObjectsOptions options_;
-    SegmentOptions segmentOptions_;
     View latest_;
     std::deque<View> views_;  //!< earlier scans, latest first
     Eigen::Matrix3Xf unmasked_;

@@ -84,16 +84,17 @@ PlaneEstimate relocalise(const PlaneMap& map, const paper::SurfaceNormals& refer
 namespace {
 /** Where the prediction is off by metres: found by surfaces, then placed by points. */
 PointEstimate relocalised(const LocalMap& map, const ScanView& view, const Expectation& expected,
-                          const PlaneOdometryOptions& options) {
+                          const ScaledOptions& options) {
     const auto surfacesOf = [&](const Eigen::Matrix3Xf& points) {
-        return paper::surfacesOf(points, options.normals, options.bilateral);
+        return paper::surfacesOf(points, NormalsOptions(), BilateralFilterOptions());
     };
     const auto& registration = options.registration;
     const Eigen::Matrix3Xd thinned =
-        voxelCentroids(view.fine, options.tracker.scan_spacing).cast<double>();
-    const auto found = relocalise(map.planes(), surfacesOf(expected.reference.points),
-                                  expected.reference.pose, thinned, surfacesOf(view.points),
-                                  expected.pose, expected.reach_m, registration, options.pattern);
+        voxelCentroids(view.fine, options.spacing.scan_spacing).cast<double>();
+    const auto found =
+        relocalise(map.planes(), surfacesOf(expected.reference.points), expected.reference.pose,
+                   thinned, surfacesOf(view.points), expected.pose, expected.reach_m, registration,
+                   PatternRegistrationOptions());
     return map.place(view.coarse, found.pose(), registration.search_step);
 }
 
@@ -110,7 +111,7 @@ class Best {
 }  // namespace
 
 Placement placeScan(const LocalMap& map, const ScanView& view, const Expectation& expected,
-                    const PlaneOdometryOptions& options) {
+                    const ScaledOptions& options) {
     const auto& points = view.coarse;
     constexpr double kUsual = 0.75, kUsualAtFirst = 0.25;
     const double usual = expected.usualShare, likely = usual > 0 ? kUsual * usual : kUsualAtFirst;

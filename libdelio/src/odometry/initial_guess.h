@@ -3,6 +3,7 @@
 #include "delio/core/odometry_options.h"
 #include "odometry/local_map.h"
 #include "odometry/register_planes.h"
+#include "odometry/tuning.h"
 #include "paper/normals.h"
 #include "paper/pattern_registration.h"
 
@@ -62,5 +63,5 @@ struct Placement {
 /** By points, from the prediction; where that is not known, or fits worse than usual, from other
  *  starts too, and the one is taken where most points fit. */
 Placement placeScan(const LocalMap& map, const ScanView& view, const Expectation& expected,
-                    const PlaneOdometryOptions& options);
+                    const ScaledOptions& options);
 }  // namespace delio::odometry

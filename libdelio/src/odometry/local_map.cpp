@@ -207,8 +207,8 @@ void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& p
 
 bool LocalMap::believes(const PlaneEstimate& found, const PointEstimate& placed) const {
     const Eigen::Isometry3d off = placed.pose.inverse() * found.pose();
-    return found.valid && off.translation().norm() <= options_.believed &&
-           angleOf(off.linear()) <= options_.believed_deg * kDeg;
+    return found.valid && off.translation().norm() <= options_.max_deviation &&
+           angleOf(off.linear()) <= options_.max_deviation_deg * kDeg;
 }
 
 PlaneEstimate LocalMap::refine(const ScanView& view, const PointEstimate& placed,

@@ -9,6 +9,7 @@
 #include "odometry/point_map.h"
 #include "odometry/register_planes.h"
 #include "odometry/register_points.h"
+#include "odometry/tuning.h"
 #include "paper/normals.h"
 
 namespace delio::odometry {
@@ -19,7 +20,7 @@ namespace delio::odometry {
 class LocalMap {
  public:
     /** An empty map, z up. */
-    LocalMap(const ScanToMapOptions& options, const PlaneMapOptions& planeMap,
+    LocalMap(const LocalMapTuning& options, const PlaneMapOptions& planeMap,
              const PlaneRegistrationOptions& planes, const PointMapOptions& pointMap,
              const PointRegistrationOptions& points)
         : options_(options),
@@ -79,7 +80,7 @@ class LocalMap {
                           const std::optional<Eigen::Isometry3d>& latest,
                           PlaneEstimate& found) const;
 
-    ScanToMapOptions options_;
+    LocalMapTuning options_;
     PlaneRegistrationOptions planeOptions_;
     PointRegistrationOptions pointOptions_;
     PlaneMap planes_;

@@ -50,10 +50,10 @@ std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate&
 
 PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
     : given_(options),
-      options_(options),
+      options_(atScale(options, 1)),
       arrivals_(needsTimes(options.scan)),
-      map_(options.scanToMap, options.map, options.registration, options.pointMap, options.points),
-      dynamics_(options.dynamics, options.segments),
+      map_(LocalMapTuning(), options.map, options.registration, options.pointMap, options.points),
+      dynamics_(options.dynamics),
       prediction_(options.prediction) {}
 
 Step PlaneOdometry::process(const Scan& scan) {
@@ -157,7 +157,7 @@ Onward PlaneOdometry::predictMotion(double duration_s) {
 
 /** Thins the scan, while the one before it enters the map; says which points became which. */
 VoxelNumbers PlaneOdometry::thin(ScanView& view) {
-    const auto& spacings = options_.tracker;
+    const auto& spacings = options_.spacing;
     VoxelNumbers voxels;
     tbb::parallel_invoke([&] { insertWaiting(); },
                          [&] {
@@ -199,7 +199,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
                                               ScanView& view, Step& step) {
     const StageTimer timer(step, "planes");
     if (!placed.valid) return predictedEstimate(predicted);
-    view.thinned = voxelCentroids(view.fine, options_.tracker.scan_spacing).cast<double>();
+    view.thinned = voxelCentroids(view.fine, options_.spacing.scan_spacing).cast<double>();
     auto found = map_.refine(view, placed, predicted, reference_.pose);
     if (step.deskewed) deskewAgain(cloud, since_s, placed.share, view, found);
     return found;
@@ -219,7 +219,7 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
     // A degenerate scan may be at a wrong pose, and the next ones would confirm it: few of them
     // enter the map.
     const double moved_m = (pose_.translation() - reference_.pose.translation()).norm();
-    if (isDegenerate && moved_m <= options_.tracker.doubt_spacing) return;
+    if (isDegenerate && moved_m <= options_.spacing.doubt_spacing) return;
     if (!step.interrupted) learn(placed, predicted, since_s);
     if (hasSight) dynamics_.remember(pose_ * inverseOf(upright_));
     insertLater(view);
@@ -256,19 +256,19 @@ void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& 
 /** What is known of the next scan's pose, `since_s` after the latest registered scan. */
 Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, double since_s,
                                        bool believed) const {
-    const auto& tracker = options_.tracker;
+    const auto& spacing = options_.spacing;
     const auto& registration = options_.registration;
     // A longer way has to be found by surfaces.
     constexpr double kLongest_s = 0.5;
-    const double driven_m = tracker.first_speed * std::min(since_s, kLongest_s),
-                 gained_m = tracker.acceleration / 2 * since_s * since_s;
+    const double driven_m = spacing.first_speed * std::min(since_s, kLongest_s),
+                 gained_m = spacing.acceleration / 2 * since_s * since_s;
     Expectation expected{predicted, reference_, upright_};
     expected.motionIsKnown = prediction_.hasMotion();
     expected.isGuess =
         isLost(state_) || std::holds_alternative<Degenerate>(state_) || !expected.motionIsKnown;
     expected.start_m = expected.motionIsKnown ? std::min(gained_m, driven_m) : driven_m;
     expected.reach_m =
-        believed ? std::min(registration.search_speed * since_s, registration.search_radius)
+        believed ? std::min(plane_tuning::kSearchSpeed_mps * since_s, registration.search_radius)
                  : registration.search_radius;
     expected.kernel_m = kernel_m();
     expected.isShaken = kernel_.isKnown() && expected.kernel_m >= options_.points.first_kernel;
@@ -323,7 +323,7 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     // The second scan has this one alone to be registered against: it enters as dense as it came.
     constexpr double kDense = 0.2;
     ScanView view = undistorted(cloud, Motion{});
-    odometry::thin(view, kDense * options_.tracker.map_spacing, options_.tracker.scan_spacing);
+    odometry::thin(view, kDense * options_.spacing.map_spacing, options_.spacing.scan_spacing);
     map_.clear(upAt(pose_));
     waiting_.reset();
     dynamics_.clear();
@@ -356,7 +356,7 @@ void PlaneOdometry::takeScale(double scale) {
     scale_ = scale;
     otherScale_ = 0;
     options_ = atScale(given_, scale);
-    map_ = LocalMap(options_.scanToMap, options_.map, options_.registration, options_.pointMap,
+    map_ = LocalMap(options_.localMap, options_.map, options_.registration, options_.pointMap,
                     options_.points);
     waiting_.reset();
 }

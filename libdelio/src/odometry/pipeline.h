@@ -84,7 +84,7 @@ class PlaneOdometry : public Odometry {
     }
 
     const PlaneOdometryOptions given_;
-    PlaneOdometryOptions options_;                           //!< at the scale of the place
+    ScaledOptions options_;                                  //!< at the scale of the place
     Eigen::Matrix3f upright_ = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
     double scale_ = 1;
     double seenScale_ = 1;     //!< that the latest scan shows

@@ -11,7 +11,7 @@ Course PlaneOdometry::trajectoryOf(const KnownMotion& known, const PointCloud& c
 /** The scan that the map began with, which is all there is in it, as seen on this trajectory. */
 void PlaneOdometry::deskewFirst(const PointCloud& first, const Course& course) {
     ScanView view = undistorted(first, course);
-    odometry::thin(view, options_.tracker.map_spacing, options_.tracker.scan_spacing);
+    odometry::thin(view, options_.spacing.map_spacing, options_.spacing.scan_spacing);
     map_.clear(upAt(reference_.pose));
     map_.add(view.fine, reference_.pose);
     reference_.points = std::move(view.points);

@@ -1,4 +1,5 @@
 #include "odometry/preprocess.h"
+#include "odometry/tuning.h"
 
 #include <mrpt/core/format.h>
 #include <algorithm>
@@ -115,16 +116,17 @@ double scaleOf(const Scan& scan) {
     return std::clamp(static_cast<double>(*most) / kStreet_m, kLeast, 1.0);
 }
 
-PlaneOdometryOptions atScale(PlaneOdometryOptions options, double scale) {
+ScaledOptions atScale(const PlaneOdometryOptions& options, double scale) {
+    ScaledOptions scaled;
+    static_cast<PlaneOdometryOptions&>(scaled) = options;
+    for (const auto& [section, stage] : stagesOf(static_cast<PlaneOdometryOptions&>(scaled)))
+        stage->scaleBy(scale);
     for (double* length :
-         {&options.scan.min_range, &options.tracker.map_spacing, &options.tracker.scan_spacing,
-          &options.tracker.point_spacing, &options.tracker.first_speed,
-          &options.tracker.doubt_spacing, &options.scanToMap.probe, &options.pointMap.voxel_size,
-          &options.pointMap.spacing, &options.points.first_kernel, &options.points.least_kernel,
-          &options.points.last_kernel, &options.points.converged_m, &options.map.voxel_size,
-          &options.map.max_thickness, &options.registration.last_kernel,
-          &options.registration.search_step})
+         {&scaled.spacing.map_spacing, &scaled.spacing.scan_spacing, &scaled.spacing.point_spacing,
+          &scaled.spacing.first_speed, &scaled.spacing.doubt_spacing, &scaled.localMap.probe,
+          &scaled.points.first_kernel, &scaled.points.least_kernel, &scaled.points.converged_m,
+          &scaled.map.max_thickness})
         *length *= scale;
-    return options;
+    return scaled;
 }
 }  // namespace delio::odometry

@@ -37,7 +37,4 @@ std::vector<std::uint16_t> neighbouringRings(
  *  are within 16 m times this. Not below 0.25. */
 double scaleOf(const Scan& scan);
 
-/** The options with all lengths that depend on the place, which are given for streets, times
- *  `scale`. */
-PlaneOdometryOptions atScale(PlaneOdometryOptions options, double scale);
 }  // namespace delio::odometry

@@ -1,4 +1,5 @@
 #include "odometry/register_planes.h"
+#include "odometry/tuning.h"
 
 #include <tbb/parallel_for.h>
 #include <Eigen/Dense>
@@ -182,8 +183,7 @@ constexpr double kDeg = M_PI / 180;
 
 /** Variance factor of the weights, as it turned out. Points of one surface err together, so that
  *  only a share of them counts. */
-double varianceFactor(const Correspondences& matches, const Eigen::Isometry3d& pose,
-                      double independent_share) {
+double varianceFactor(const Correspondences& matches, const Eigen::Isometry3d& pose) {
     const Eigen::Matrix3d R = pose.linear();
     const Eigen::Vector3d t = pose.translation();
     const double weighted = sumOver<double>(matches, [&](const Correspondence& match, double& sum) {
@@ -191,7 +191,8 @@ double varianceFactor(const Correspondences& matches, const Eigen::Isometry3d& p
         sum += match.weight * r * r;
     });
     constexpr double kLeast = 0.01;  // of simulated scans without any noise
-    return std::max(weighted / static_cast<double>(matches.size()), kLeast) / independent_share;
+    return std::max(weighted / static_cast<double>(matches.size()), kLeast) /
+           plane_tuning::kIndependentRatio;
 }
 
 /** What an iteration has come to. */
@@ -208,7 +209,7 @@ bool isAmong(const std::vector<Eigen::Isometry3d>& poses, const Eigen::Isometry3
     return std::any_of(poses.begin(), poses.end(), [&](const Eigen::Isometry3d& other) {
         const Eigen::Isometry3d off = other.inverse() * pose;
         return off.translation().norm() < options.converged_m &&
-               angleOf(off.linear()) < options.converged_rad;
+               angleOf(off.linear()) < plane_tuning::kConverged_rad;
     });
 }
 
@@ -221,12 +222,12 @@ bool iterate(Matcher& matcher, const Prior& known, double kernel,
         ++iterations;
         matches = matcher.at(pose, kernel);
         if (matches.size() < options.min_matches) return false;
-        const Prior prior = known.times(varianceFactor(matches, pose, options.independent_share));
+        const Prior prior = known.times(varianceFactor(matches, pose));
         const auto turn = rotationFromPlanes(matches, pose, prior);
         pose.linear() = normalised(Eigen::Matrix3d(pose.linear() * rotationExp(turn.step)));
         const Eigen::Vector3d move = stepFromPlanes(matches, pose, prior);
         pose.translation() += move;
-        if (turn.step.norm() < options.converged_rad && move.norm() < options.converged_m)
+        if (turn.step.norm() < plane_tuning::kConverged_rad && move.norm() < options.converged_m)
             return true;
         if (isAmong(passed, pose, options)) return false;
         passed.push_back(pose);
@@ -267,9 +268,9 @@ Eigen::Matrix3d lostToRotation(const PlaneRotation& turn, const PlaneTranslation
 
 /** Covariances and diagnostics of where the iteration ended. */
 void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const Prior& known,
-            const PlaneRegistrationOptions& options, PlaneEstimate& estimate) {
+            PlaneEstimate& estimate) {
     const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity(), R = pose.linear();
-    const double noise = varianceFactor(matches, pose, options.independent_share);
+    const double noise = varianceFactor(matches, pose);
     const Prior prior = known.times(noise);
     const auto turn = rotationFromPlanes(matches, pose, prior);
     const auto move = translationFromPlanes(matches, pose, prior);
@@ -289,7 +290,7 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
     const Eigen::Matrix3d priorHere = prior.translation * identity,
                           alone = move.information + kPriorShare * priorHere,
                           clear = move.information -
-                                  kEdges / options.independent_share * move.pretended;
+                                  kEdges / plane_tuning::kIndependentRatio * move.pretended;
     const auto unseen = unobservedAxes(clear, priorHere);
     translation.unobservedAxes =
         unobservedAxes(clear - lostToRotation(turn, move, prior, alone), priorHere);
@@ -331,7 +332,7 @@ Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions
 PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
                                const Prior& prior, double kernel,
                                const PlaneRegistrationOptions& options) {
-    Matcher matcher(map, points, options.point_sigma);
+    Matcher matcher(map, points, plane_tuning::kPointSigma_m);
     Iterate now{prior.pose, {}};
     bool converged = false;
     for (double width = std::max(kernel, options.last_kernel);;
@@ -341,7 +342,7 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
     }
     if (now.matches.size() < options.min_matches) return predictedEstimate(prior.pose, options);
     PlaneEstimate estimate;
-    settle(now.matches, now.pose, prior, options, estimate);
+    settle(now.matches, now.pose, prior, estimate);
     estimate.rotation.iterations = now.iterations;
     estimate.rotation.converged = converged;
     estimate.share = matcher.shareAt(now.pose, options.last_kernel);

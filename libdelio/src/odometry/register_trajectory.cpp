@@ -87,7 +87,7 @@ Course registerCourse(const PlaneMap& map, const TimedPoints& scan, const Course
     const auto [least, most] = std::minmax_element(scan.times_s.begin(), scan.times_s.end());
     const Coefficients known = informationOf(prior);
     Eigen::Matrix3Xd placed(3, scan.points.cols());
-    Matcher matcher(map, placed, options.point_sigma);
+    Matcher matcher(map, placed, plane_tuning::kPointSigma_m);
     Course now = course;
     Coefficients sinceStart = Coefficients::Zero();
     for (double width = std::max(kernel, options.last_kernel);;
@@ -101,7 +101,7 @@ Course registerCourse(const PlaneMap& map, const TimedPoints& scan, const Course
             // As in registerToPlanes(): points of one surface err together.
             const double factor =
                 std::max(equations.cost / static_cast<double>(matches.size()), kLeastFactor) /
-                options.independent_share;
+                plane_tuning::kIndependentRatio;
             equations.information.diagonal() += factor * known;
             equations.gradient += factor * known.cwiseProduct(sinceStart);
             const Coefficients step = -equations.information.ldlt().solve(equations.gradient);
@@ -148,20 +148,20 @@ Course evenCourse(const KnownMotion& known, const PointCloud& cloud) {
 
 Course findCourse(const PlaneMap& map, const KnownMotion& known, const PointCloud& cloud,
                   const ScanView& view, const Unevenness& unevenness, double kernel,
-                  const PlaneOdometryOptions& options) {
-    const double most_m = options.tracker.acceleration * known.since_s * known.since_s;
-    return registerCourse(map, pickedOf(cloud, view, options.tracker.scan_spacing),
+                  const ScaledOptions& options) {
+    const double most_m = options.spacing.acceleration * known.since_s * known.since_s;
+    return registerCourse(map, pickedOf(cloud, view, options.spacing.scan_spacing),
                           evenCourse(known, cloud), known.since_s, unevenness.prior(most_m), kernel,
                           options.registration);
 }
 
 std::optional<ScanOnCourse> registerOn(const Course& course, const KnownMotion& known,
                                        const LocalMap& map, const PointCloud& cloud,
-                                       const ScanView& view, const PlaneOdometryOptions& options) {
+                                       const ScanView& view, const ScaledOptions& options) {
     ScanView again = undistorted(cloud, course.seenFrom(0));
     again.dynamic = view.dynamic;
-    thin(again, options.tracker.map_spacing, options.tracker.scan_spacing);
-    again.coarse = firstOfVoxels(again.fine, options.tracker.point_spacing).cast<double>();
+    thin(again, options.spacing.map_spacing, options.spacing.scan_spacing);
+    again.coarse = firstOfVoxels(again.fine, options.spacing.point_spacing).cast<double>();
     const auto placed = map.place(again.coarse, course.at(0), options.points.least_kernel);
     if (!placed.valid) return {};
     auto estimate = map.refine(again, placed, known.pose, known.reference);

@@ -11,6 +11,7 @@
 #include "odometry/motion_model.h"
 #include "odometry/plane_map.h"
 #include "odometry/register_planes.h"
+#include "odometry/tuning.h"
 
 namespace delio::odometry {
 /** Points as a moving sensor saw them, one after the other. */
@@ -44,7 +45,7 @@ Course evenCourse(const KnownMotion& known, const PointCloud& cloud);
  *  of, lie on the planes of `map`. `kernel` (metres): how far they may be off. */
 Course findCourse(const PlaneMap& map, const KnownMotion& known, const PointCloud& cloud,
                   const ScanView& view, const Unevenness& unevenness, double kernel,
-                  const PlaneOdometryOptions& options);
+                  const ScaledOptions& options);
 
 /** A scan as it was seen on a course, and where it is then. */
 struct ScanOnCourse {
@@ -58,7 +59,7 @@ struct ScanOnCourse {
  *  it is not found in the map. */
 std::optional<ScanOnCourse> registerOn(const Course& course, const KnownMotion& known,
                                        const LocalMap& map, const PointCloud& cloud,
-                                       const ScanView& view, const PlaneOdometryOptions& options);
+                                       const ScanView& view, const ScaledOptions& options);
 
 /** How the sensor moved when a scan ended, and moves on. */
 class Onward {

@@ -18,7 +18,7 @@ PlaneMapOptions denseMap() {
 }
 }  // namespace
 
-LoadedMap::LocalMap(std::shared_ptr<const StoredMap> map)
+LoadedMap::LoadedMap(std::shared_ptr<const StoredMap> map)
     : stored_(std::move(map)),
       isNear_(stored_->submaps().size(), false),
       map_({}, denseMap(), {}, {}, {}) {}

@@ -30,26 +30,8 @@ struct PredictionOptions : public StageOptions {
 
 /** What PlaneOdometry itself decides by. */
 struct PlaneTrackerOptions : public StageOptions {
-    double map_spacing = 0.25;
-    double scan_spacing = 0.5;
-    double point_spacing = 1.0;
-    double first_speed = 40;
-    double acceleration = 15;
-    double doubt_spacing = 10;
     double scale = 0;
     double lost_share = 0.5;
-
- protected:
-    std::vector<OptionField> fields() const override;
-};
-
-/** How points and planes are weighed against each other. */
-struct ScanToMapOptions : public StageOptions {
-    double point_sigma = 0.05;
-    double point_sigma_deg = 1.0;
-    double believed = 0.1;
-    double believed_deg = 3.0;
-    double probe = 0.5;
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -67,13 +49,15 @@ struct PointMapOptions : public StageOptions {
 
 /** How a scan is registered to points. */
 struct PointRegistrationOptions : public StageOptions {
-    double first_kernel = 2.0;
-    double least_kernel = 0.3;
     double last_kernel = 0.2;
-    unsigned max_iterations = 100;
-    double converged_m = 5e-3;
     unsigned min_matches = 50;
-    double min_share = 0.1;
+
+    // No keys of an .ini file:
+    double first_kernel = 2.0;      //!< m; widest kernel, where the motion is not known
+    double least_kernel = 0.3;      //!< m; narrowest first kernel, where it is known
+    unsigned max_iterations = 100;  //!< with one kernel
+    double converged_m = 5e-3;      //!< a smaller step ends the iteration
+    double min_share = 0.1;         //!< inlier ratio of a valid registration
 
     void check(const std::string& section) const override;
 
@@ -87,11 +71,13 @@ struct PlaneMapOptions : public StageOptions {
     unsigned levels = 2;
     unsigned ground_levels = 3;
     unsigned min_points = 8;
-    double max_thickness = 0.1;
     double max_flatness = 0.05;
     double min_breadth = 0.25;
     unsigned max_points = 300;
     double radius = 120;
+
+    // No key of an .ini file:
+    double max_thickness = 0.1;  //!< m; standard deviation of a plane's points across it
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -100,17 +86,15 @@ struct PlaneMapOptions : public StageOptions {
 /** How a scan is registered to planes. */
 struct PlaneRegistrationOptions : public StageOptions {
     double last_kernel = 0.1;
-    double point_sigma = 0.01;
-    unsigned max_iterations = 60;
-    double converged_rad = 2e-5;
-    double converged_m = 5e-4;
     unsigned min_matches = 100;
-    double independent_share = 0.16;
     double prior_sigma = 0.5;
     double prior_sigma_deg = 1.0;
-    double search_speed = 40;
     double search_radius = 30;
     double search_step = 1;
+
+    // No keys of an .ini file:
+    unsigned max_iterations = 60;  //!< with one kernel
+    double converged_m = 5e-4;     //!< smaller translation steps end the iteration
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -120,24 +104,6 @@ struct PlaneRegistrationOptions : public StageOptions {
 struct DynamicObjectsOptions : public StageOptions {
     bool enabled = true;
     double cell_deg = 0.5;
-    double margin = 0.4;
-    double interval_s = 0.1;
-    double memory_s = 0.8;
-    double min_share = 0.5;
-    double min_known = 0.3;
-
- protected:
-    std::vector<OptionField> fields() const override;
-};
-
-/** Which points are one segment. */
-struct SegmentOptions : public StageOptions {
-    double cell = 0.4;
-    double radius = 60;
-    double above_ground = 0.3;
-    double height = 2.8;
-    double max_length = 12;
-    unsigned min_points = 5;
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -152,6 +118,8 @@ struct NormalsOptions : public StageOptions {
     unsigned neighbours = 10;
     double max_radius = 1.5;
     double min_breadth = 0.1;
+
+    // No keys of an .ini file:
     double max_thickness = 0.15;
 
  protected:
@@ -162,8 +130,10 @@ struct NormalsOptions : public StageOptions {
  *  numbers. */
 struct BilateralFilterOptions : public StageOptions {
     unsigned neighbours = 6;
-    double distance_sigma = 0.5;
     double angle_sigma_deg = 10;
+
+    // No keys of an .ini file:
+    double distance_sigma = 0.5;
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -189,16 +159,18 @@ struct OutlierRemovalOptions : public StageOptions {
 /** Section III-C: where too little of the pattern is left, the modes of the normals' density are
  *  sought, so that small structures are kept beside the ground. The paper gives no numbers. */
 struct MeanShiftOptions : public StageOptions {
+    double window_deg = 20;
+    unsigned max_iterations = 50;
+    unsigned min_support = 10;
+    double cell_deg = 1;
+
+    // No keys of an .ini file:
     unsigned min_pattern = 500;
     double min_observability = 0.01;
     double seed_spacing_deg = 10;
-    double window_deg = 20;
-    unsigned max_iterations = 50;
     double converged_deg = 0.01;
     double merge_deg = 5;
-    unsigned min_support = 10;
     double ball_deg = 6;
-    double cell_deg = 1;
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -214,13 +186,15 @@ struct PatternRegistrationOptions : public StageOptions {
     double last_kernel_deg = 0.7;
     double cell_deg = 0.5;
     unsigned max_iterations = 60;
+    double max_correction_deg = 30;
+    double prior_sigma_deg = 1.0;
+
+    // No keys of an .ini file:
     double converged_deg = 0.001;
     unsigned min_normals = 50;
     double min_observability = 0.01;
-    double max_correction_deg = 30;
     double independent_share = 0.05;
     double view_distance = 2;
-    double prior_sigma_deg = 1.0;
 
     void check(const std::string& section) const override;
 
@@ -234,11 +208,13 @@ struct PatternRegistrationOptions : public StageOptions {
  *  other scan that were found at its place; they are of one surface. */
 struct RotationInPlaceOptions : public StageOptions {
     unsigned rounds = 1;
-    double place_sigma = 0.5;
     double kernel_deg = 3;
     double last_kernel_deg = 0.7;
-    unsigned min_pairs = 500;
     unsigned max_iterations = 30;
+
+    // No keys of an .ini file:
+    double place_sigma = 0.5;
+    unsigned min_pairs = 500;
     double converged_deg = 0.001;
 
     void check(const std::string& section) const override;
@@ -270,19 +246,21 @@ struct LineCloudOptions : public StageOptions {
  * common normal (`short_length`). */
 struct LineRegistrationOptions : public StageOptions {
     bool centroids = false;
-    double min_angle_deg = 15;
-    double short_length = 0.06;
-    double max_distance = 5;
     unsigned max_iterations = 40;
     double converged = 0.001;
     unsigned min_matches = 100;
+    double prior_sigma = 0.5;
+    double search_radius = 8;
+    double search_step = 1;
+
+    // No keys of an .ini file:
+    double min_angle_deg = 15;
+    double short_length = 0.06;
+    double max_distance = 5;
     double min_observability = 0.03;
     double independent_share = 0.25;
     double overlap_distance = 0.5;
-    double prior_sigma = 0.5;
     double search_speed = 30;
-    double search_radius = 8;
-    double search_step = 1;
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -292,13 +270,15 @@ struct LineRegistrationOptions : public StageOptions {
 struct PointCheckOptions : public StageOptions {
     bool enabled = true;
     double believed = 0.1;
+    double rest = 0.3;
+    double reach = 4;
+
+    // No keys of an .ini file:
     double believed_deg = 0.5;
     double map_spacing = 0.1;
     double point_spacing = 1.0;
-    double rest = 0.3;
     double min_moved = 0.3;
     double min_share = 0.15;
-    double reach = 4;
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -309,17 +289,11 @@ struct PlaneOdometryOptions {
     PreprocessOptions scan;                 //!< [scan]
     PredictionOptions prediction;           //!< [prediction]
     PlaneTrackerOptions tracker;            //!< [plane_tracker]
-    ScanToMapOptions scanToMap;             //!< [scan_to_map]
     PointMapOptions pointMap;               //!< [point_map]
     PointRegistrationOptions points;        //!< [point_registration]
     PlaneMapOptions map;                    //!< [plane_map]
     PlaneRegistrationOptions registration;  //!< [plane_registration]
     DynamicObjectsOptions dynamics;         //!< [moving_objects]
-    SegmentOptions segments;                //!< [segments]
-    /** [normals]: of the surfaces by which a scan is relocalised. */
-    NormalsOptions normals;
-    BilateralFilterOptions bilateral;    //!< [bilateral_filter], likewise
-    PatternRegistrationOptions pattern;  //!< [pattern_registration], likewise
 };
 
 /** The options of each stage of PaperOdometry. */

@@ -31,6 +31,12 @@ struct OptionField {
           meaning(std::move(meaning_)),
           words(std::move(words_)) {}
 
+    /** The same, scaled by StageOptions::scaleBy(). */
+    OptionField scaled() && {
+        scales = true;
+        return std::move(*this);
+    }
+
     std::string key;  //!< in its section
     /** Where its value is. */
     std::variant<double StageOptions::*, unsigned StageOptions::*, bool StageOptions::*,
@@ -40,6 +46,7 @@ struct OptionField {
     double min = 0;                  //!< smallest allowed number
     double max = 0;                  //!< largest allowed number
     std::vector<std::string> words;  //!< of a text: what it may be
+    bool scales = false;             //!< a length, given for streets, that follows the place's size
 };
 
 /** Base of each stage's options. A stage names every option once, in fields(); reading is strict:
@@ -57,6 +64,9 @@ class StageOptions : public mrpt::config::CLoadableOptions {
     /** Writes `[section]` with each key under its meaning, numbers with as many digits as give
      *  the same value when they are read again. */
     void write(std::ostream& out, const std::string& section) const;
+
+    /** Multiplies every option that scales with the size of the place. */
+    void scaleBy(double factor);
 
     /** Throws Error, naming both, where two options do not go together. Not asked while loading:
      *  of two that change, one comes first. */
