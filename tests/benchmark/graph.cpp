@@ -29,6 +29,7 @@
 #include "delio/slam/listeners.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"
+#include "graph/residual.h"
 
 namespace {
 using namespace delio;

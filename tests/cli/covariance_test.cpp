@@ -6,6 +6,7 @@
 #include <string>
 
 #include "command.h"
+#include "delio/core/geometry.h"
 #include "delio/io/g2o.h"
 #include "delio/io/trajectory.h"
 #include "test_data.h"
@@ -25,11 +26,11 @@ Normalised normalisedErrors(const graph::PoseGraph& graph,
     Normalised sum;
     for (const auto& edge : graph.edges()) {
         if (edge.to - edge.from != span) continue;
-        const auto e = graph::residualOf(edge.increment.pose, Eigen::Isometry3d::Identity(),
-                                         truth[edge.from].inverse() * truth[edge.to])
-                           .error;
+        // The true increment as the measured one's error: exp(w), t after it.
+        const Eigen::Isometry3d error =
+            edge.increment.pose.inverse() * (truth[edge.from].inverse() * truth[edge.to]);
         const Matrix6& covariance = edge.increment.covariance;
-        const Eigen::Vector3d t = e.head<3>(), w = e.tail<3>();
+        const Eigen::Vector3d t = error.translation(), w = rotationLog(error.linear());
         sum.translation += t.dot(covariance.topLeftCorner<3, 3>().ldlt().solve(t));
         sum.rotation += w.dot(covariance.bottomRightCorner<3, 3>().ldlt().solve(w));
         ++sum.edges;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
@@ -31,6 +33,17 @@ Eigen::Matrix3Xf staticPoints(const SlamScan& scan) {
 }
 
 namespace {
+/** Stands in for a listener that threw, so that every scan has the same columns in scans.csv. */
+class SwitchedOff : public SlamListener {
+ public:
+    explicit SwitchedOff(std::string name) : name_(std::move(name)) {}
+    const char* name() const override { return name_.c_str(); }
+    void add(const SlamScan& /*scan*/) override {}
+
+ private:
+    std::string name_;
+};
+
 /** All poses after it would be what it is. */
 void requireFinite(const Increment& increment, const Scan& scan) {
     if (!increment.pose.matrix().allFinite() || !increment.covariance.allFinite())
@@ -48,14 +61,13 @@ void Slam::requireOpen() const {
 }
 
 void Slam::tell(const SlamScan& scan, ScanReport& report) {
-    for (auto it = listeners_.begin(); it != listeners_.end();) {
-        report.listeners_ms.emplace_back((*it)->name(), 0);
+    for (auto& listener : listeners_) {
+        report.listeners_ms.emplace_back(listener->name(), 0);
         try {
-            timed(report.listeners_ms.back().second, [&] { (*it)->add(scan); });
-            ++it;
+            timed(report.listeners_ms.back().second, [&] { listener->add(scan); });
         } catch (const std::exception& e) {
-            report.failed.push_back({*it, plainMessage(e)});
-            it = listeners_.erase(it);
+            report.failed.push_back({listener, plainMessage(e)});
+            listener = std::make_shared<SwitchedOff>(listener->name());
         }
     }
 }

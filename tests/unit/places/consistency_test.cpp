@@ -6,9 +6,9 @@
 
 namespace {
 using namespace delio;
-using loops_test::Poses;
 using places::LoopCandidate;
 using places::Submap;
+using places_test::Poses;
 using test::poseAt;
 
 /** There and back again along x, 400 m each way, a submap every 20 m. */

@@ -10,6 +10,7 @@
 
 #include "../places/town_map.h"
 #include "delio/core/error.h"
+#include "slam/place_listeners.h"
 #include "test_data.h"
 
 namespace {
