@@ -13,9 +13,9 @@
 #include <string_view>
 
 #include "delio/core/error.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/rawlog_reader.h"
+#include "delio/formats/drive_meta.h"
 #include "delio/odometry/make_odometry.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "delio/slam/options.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "delio/io/scan_table.h"
+#include "delio/formats/scan_table.h"
 #include "delio/run/localisation_table.h"
 #include "delio/run/loop_table.h"
 #include "delio/run/summary.h"

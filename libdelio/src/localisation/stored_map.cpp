@@ -14,10 +14,10 @@
 
 #include "bytes.h"
 #include "delio/core/error.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
 #include "delio/scan/voxel_grid.h"
-#include "io/most_bytes.h"
-#include "io/names.h"
+#include "files/input_file.h"
+#include "files/names.h"
 #include "packed_points.h"
 
 namespace delio {

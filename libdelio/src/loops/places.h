@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "../io/spool.h"
 #include "delio/loops/grounds.h"
 #include "delio/loops/sketch.h"
+#include "files/spool.h"
 
 namespace delio::loops {
 /** The submaps of a drive, by number: their sketches in memory, their points on the disk, and of

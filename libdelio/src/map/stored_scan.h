@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 
-#include "../io/spool.h"
 #include "delio/scan/range_image.h"
+#include "files/spool.h"
 
 namespace delio::map {
 /** A scan that was put aside on the disk. */

@@ -6,7 +6,7 @@
 
 #include "core/checkpoint.h"
 #include "delio/core/error.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
 #include "delio/run/run_folder.h"
 #include "row_files.h"
 

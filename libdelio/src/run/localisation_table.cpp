@@ -4,10 +4,10 @@
 #include <fstream>
 #include <ostream>
 
-#include "../io/table_cells.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
+#include "formats/table_cells.h"
 
 namespace delio::run {
 namespace {

@@ -8,12 +8,12 @@
 #include "core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
-#include "delio/io/drive_meta.h"
+#include "delio/formats/drive_meta.h"
 #include "delio/localisation/join_maps.h"
 #include "delio/run/doubts.h"
 #include "delio/run/run_folder.h"
 #include "delio/scan/preprocess.h"
-#include "io/side_file.h"
+#include "files/input_file.h"
 
 namespace delio::run {
 namespace {

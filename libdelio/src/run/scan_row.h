@@ -1,5 +1,5 @@
 #pragma once
-#include "delio/io/scan_table.h"
+#include "delio/formats/scan_table.h"
 #include "delio/run/run_record.h"
 
 namespace delio::run {

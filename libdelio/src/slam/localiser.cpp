@@ -3,7 +3,7 @@
 #include "../core/checkpoint.h"
 #include "delio/core/error.h"
 #include "delio/graph/pose_pdf.h"
-#include "delio/io/decode_observation.h"
+#include "recordings/decode_observation.h"
 
 namespace delio {
 Localiser::Localiser(std::shared_ptr<const StoredMap> map, const OdometryOptions& options,

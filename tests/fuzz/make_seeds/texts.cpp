@@ -1,8 +1,8 @@
 #include <sstream>
 
-#include "delio/io/drive_meta.h"
-#include "delio/io/g2o.h"
-#include "delio/io/scan_table.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/formats/g2o.h"
+#include "delio/formats/scan_table.h"
 #include "delio/run/localisation_table.h"
 #include "delio/run/loop_table.h"
 #include "delio/run/summary.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "delio/formats/trajectory.h"
 #include "delio/graph/pose_graph.h"
-#include "delio/io/trajectory.h"
 #include "delio/loops/sketch.h"
 #include "delio/loops/submap.h"
 

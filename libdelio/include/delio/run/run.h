@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/io/scan_reader.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/run/run_maps.h"
 #include "delio/run/run_record.h"
 #include "delio/slam/graph_builder.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/io/scan_table.h"
+#include "delio/formats/scan_table.h"
 #include "delio/run/localisation_table.h"
 #include "delio/run/loop_table.h"
 #include "delio/run/run_maps.h"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "delio/evaluation/comparison.h"
+#include "delio/formats/trajectory.h"
 #include "delio/graph/pose_graph.h"
-#include "delio/io/trajectory.h"
 #include "delio/localisation/anchored_graph.h"
 #include "delio/loops/loop_search.h"
 #include "delio/run/run_rows.h"

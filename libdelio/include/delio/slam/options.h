@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "delio/formats/drive_meta.h"
 #include "delio/graph/pose_graph.h"
-#include "delio/io/drive_meta.h"
 #include "delio/localisation/map_tracker.h"
 #include "delio/loops/loop_search.h"
 #include "delio/map/map_builder.h"
