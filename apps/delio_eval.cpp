@@ -13,7 +13,7 @@
 #include "delio/evaluation/relative_error.h"
 #include "delio/evaluation/report/report.h"
 #include "delio/evaluation/report/report_folder.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio/version.h"
 #include "eval_inputs.h"
 #include "overlap.h"

@@ -3,9 +3,8 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/io/partial_folder.h"
-#include "delio/io/scan_reader.h"
-#include "delio/io/target_folder.h"
+#include "delio/files/output_folder.h"
+#include "delio/recordings/scan_reader.h"
 #include "odometry/paper_odometry.h"
 #include "delio/picture/figures.h"
 #include "delio/picture/render.h"

@@ -9,8 +9,8 @@
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/core/printable.h"
-#include "delio/io/scan_table.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/scan_table.h"
+#include "delio/formats/trajectory.h"
 #include "delio/run/run_folder.h"
 
 namespace delio {

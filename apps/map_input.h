@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio/map/map_point.h"
 #include "delio/picture/scene.h"
 

@@ -10,10 +10,10 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/io/output_file.h"
-#include "delio/io/partial_folder.h"
-#include "delio/io/scan_reader.h"
-#include "delio/io/trajectory.h"
+#include "delio/files/output_file.h"
+#include "delio/files/output_folder.h"
+#include "delio/recordings/scan_reader.h"
+#include "delio/formats/trajectory.h"
 #include "delio/run/run_folder.h"
 
 namespace delio {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/scan_reader.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/run/run.h"
 #include "delio/version.h"
 #include "option_sections.h"

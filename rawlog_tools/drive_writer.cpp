@@ -6,7 +6,7 @@
 #include "cam0_pose.h"
 #include "cli.h"
 #include "delio/core/geometry.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio/version.h"
 
 namespace delio::synth {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "delio/io/rawlog_writer.h"
+#include "delio/mrpt/rawlog_writer.h"
 #include "drive.h"
 #include "faults.h"
 #include "mount.h"

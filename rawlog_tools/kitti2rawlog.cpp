@@ -7,8 +7,8 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/io/kitti_drive.h"
-#include "delio/io/rawlog_writer.h"
+#include "delio/mrpt/rawlog_writer.h"
+#include "delio/recordings/kitti_drive.h"
 #include "delio/version.h"
 #include "overlap.h"
 

@@ -11,12 +11,11 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/partial_folder.h"
-#include "delio/io/rawlog_reader.h"
-#include "delio/io/rawlog_writer.h"
-#include "delio/io/target_folder.h"
-#include "delio/io/trajectory.h"
+#include "delio/files/output_folder.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/formats/trajectory.h"
+#include "delio/mrpt/rawlog_writer.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "delio/version.h"
 #include "overlap.h"
 

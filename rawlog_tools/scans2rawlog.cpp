@@ -9,8 +9,8 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/io/rawlog_writer.h"
-#include "delio/io/scan_reader.h"
+#include "delio/mrpt/rawlog_writer.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/version.h"
 #include "overlap.h"
 

@@ -6,7 +6,7 @@
 
 #include "cam0_pose.h"
 #include "delio/core/error.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "drive.h"
 
 namespace delio::synth {

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "delio/core/error.h"
-#include "delio/io/partial_folder.h"
-#include "delio/io/rawlog_writer.h"
+#include "delio/files/output_folder.h"
+#include "delio/mrpt/rawlog_writer.h"
 
 namespace delio::cli {
 namespace fs = std::filesystem;

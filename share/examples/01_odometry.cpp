@@ -2,7 +2,7 @@
 // recording that delio-slam reads; leaves what delio-slam leaves, but for the pictures.
 //   01_odometry RECORDING OUTDIR
 #include <delio/core/error.h>
-#include <delio/io/scan_reader.h>
+#include <delio/recordings/scan_reader.h>
 #include <delio/run/run.h>
 #include <delio/run/run_folder.h>
 

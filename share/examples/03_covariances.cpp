@@ -3,7 +3,7 @@
 //   03_covariances DRIVE OUT.graph
 #include <delio/core/increment.h>
 #include <delio/graph/pose_pdf.h>
-#include <delio/io/scan_reader.h>
+#include <delio/recordings/scan_reader.h>
 #include <delio/slam/options.h>
 #include <mrpt/graphs/CNetworkOfPoses.h>
 

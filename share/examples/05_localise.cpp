@@ -1,7 +1,7 @@
 // Where a vehicle is in the map of another drive (the folder of a delio-slam run, or of
 // 01_odometry): found without a guess, then followed scan by scan.
 //   05_localise MAP_FOLDER|MAP.delio DRIVE
-#include <delio/io/scan_reader.h>
+#include <delio/recordings/scan_reader.h>
 #include <delio/run/run_folder.h>
 #include <delio/slam/localiser.h>
 

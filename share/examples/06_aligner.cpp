@@ -2,8 +2,8 @@
 // that only the line that makes it changes. Aligns two scans of a drive.
 //   06_aligner DRIVE FIRST SECOND
 #include <delio/core/error.h>
-#include <delio/io/scan_reader.h>
 #include <delio/odometry/aligner.h>
+#include <delio/recordings/scan_reader.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
 #include <cmath>

@@ -20,9 +20,9 @@
 #include "baseline.h"
 #include "delio/core/error.h"
 #include "delio/evaluation/report/report.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/scan_reader.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/formats/trajectory.h"
+#include "delio/recordings/scan_reader.h"
 
 namespace {
 using namespace delio;

@@ -18,9 +18,9 @@
 
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/scan_reader.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/formats/trajectory.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/run/summary.h"
 #include "delio/slam/localiser.h"
 #include "delio/slam/options.h"

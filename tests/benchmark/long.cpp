@@ -13,8 +13,8 @@
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/rawlog_writer.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/mrpt/rawlog_writer.h"
 #include "delio/run/run.h"
 #include "drive.h"
 #include "make_scene.h"

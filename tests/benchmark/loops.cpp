@@ -16,9 +16,9 @@
 #include "delio/core/stopwatch.h"
 #include "delio/evaluation/absolute_error.h"
 #include "delio/evaluation/kitti_metric.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/scan_reader.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/formats/trajectory.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/run/summary.h"
 #include "slam/place_listeners.h"
 

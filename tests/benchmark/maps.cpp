@@ -13,8 +13,8 @@
 #include <unordered_map>
 
 #include "delio/core/error.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/rawlog_reader.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "delio/run/run.h"
 
 namespace {

@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "delio/core/error.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/rawlog_reader.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "delio/odometry/odometry.h"
 #include "delio/slam/options.h"
 

@@ -15,8 +15,8 @@
 #include "bag_writers.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
-#include "delio/io/rawlog_writer.h"
-#include "delio/io/scan_reader.h"
+#include "delio/mrpt/rawlog_writer.h"
+#include "delio/recordings/scan_reader.h"
 #include "toy_drive.h"
 
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "delio/core/error.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/rawlog_reader.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/formats/trajectory.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "drive_measures.h"
 
 namespace {

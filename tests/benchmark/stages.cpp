@@ -11,9 +11,9 @@
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/evaluation/relative_error.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/scan_reader.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/recordings/scan_reader.h"
+#include "delio/formats/trajectory.h"
 #include "paper/coupled_registration.h"
 #include "delio/slam/options.h"
 

@@ -1,5 +1,5 @@
 // What a tool reads is not what it writes, whatever the names.
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "drive_state.h"
 #include "kitti_tools.h"
 #include "poses.h"

@@ -7,8 +7,8 @@
 
 #include "command.h"
 #include "delio/core/geometry.h"
-#include "delio/io/g2o.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/g2o.h"
+#include "delio/formats/trajectory.h"
 #include "test_data.h"
 
 namespace {

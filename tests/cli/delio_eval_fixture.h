@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "command.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "poses.h"
 #include "test_data.h"
 

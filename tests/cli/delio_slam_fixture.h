@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "command.h"
-#include "delio/io/rawlog_writer.h"
+#include "delio/mrpt/rawlog_writer.h"
 #include "scan_columns.h"
 #include "test_data.h"
 #include "toy_drive.h"

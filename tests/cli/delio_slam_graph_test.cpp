@@ -1,7 +1,7 @@
 // delio-slam: a pose graph is optimised once more.
 #include <gtest/gtest.h>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio_slam_fixture.h"
 
 namespace {

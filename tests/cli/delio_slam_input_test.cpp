@@ -9,7 +9,7 @@
 
 #include <limits>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio_slam_fixture.h"
 
 namespace {

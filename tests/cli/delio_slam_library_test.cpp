@@ -1,8 +1,8 @@
 // Whoever calls the library gets what delio-slam leaves.
 #include <gtest/gtest.h>
 
-#include "delio/io/scan_reader.h"
 #include "delio/picture/illustrate.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/run/run.h"
 #include "delio/run/run_folder.h"
 #include "delio_slam_fixture.h"

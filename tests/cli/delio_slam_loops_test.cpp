@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "delio/core/numbers.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio_slam_fixture.h"
 #include "poses.h"
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio/run/run_folder.h"
 #include "delio_slam_fixture.h"
 #include "poses.h"

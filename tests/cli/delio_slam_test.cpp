@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio/version.h"
 #include "delio_slam_fixture.h"
 

@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "delio/io/rawlog_reader.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "kitti_tools.h"
 #include "same_scans.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "kitti_tools.h"
 #include "poses.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "command.h"
-#include "delio/io/drive_meta.h"
+#include "delio/formats/drive_meta.h"
 #include "test_data.h"
 #include "toy_drive.h"
 

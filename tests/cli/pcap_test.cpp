@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "command.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "scan_columns.h"
 #include "test_data.h"
 

@@ -1,7 +1,7 @@
 // There and back: rawlog2kitti on what kitti2rawlog wrote, and bad inputs.
 #include <limits>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "kitti_tools.h"
 
 namespace {

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "bag_writers.h"
-#include "delio/io/rawlog_reader.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "delio_slam_fixture.h"
 #include "pcap_writer.h"
 

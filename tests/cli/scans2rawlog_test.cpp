@@ -4,8 +4,8 @@
 #include <fstream>
 #include <string>
 
-#include "delio/io/drive_meta.h"
-#include "delio/io/rawlog_reader.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "delio_slam_fixture.h"
 
 namespace {

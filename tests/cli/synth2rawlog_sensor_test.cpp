@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "command.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/rawlog_reader.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/formats/trajectory.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "poses.h"
 #include "test_data.h"
 

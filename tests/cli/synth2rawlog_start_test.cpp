@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "command.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "test_data.h"
 
 // synth2rawlog's --start and --mount.

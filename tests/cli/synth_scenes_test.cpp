@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "command.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "test_data.h"
 
 namespace {

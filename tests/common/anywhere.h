@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 
 namespace delio::test {
 /** A drive of share/doc/accuracy.md's table "Anywhere". */

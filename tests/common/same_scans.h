@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "delio/io/scan_reader.h"
+#include "delio/recordings/scan_reader.h"
 
 namespace delio::test {
 /** True where two runs of numbers are the same to the bit, NaN included. */

@@ -8,7 +8,7 @@
 #include <random>
 #include <sstream>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "poses.h"
 #include "test_data.h"
 

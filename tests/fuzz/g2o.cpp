@@ -1,4 +1,4 @@
-#include "delio/io/g2o.h"
+#include "delio/formats/g2o.h"
 #include "target.h"
 
 /** A pose graph. */

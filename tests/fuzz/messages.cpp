@@ -1,6 +1,6 @@
 #include <array>
 
-#include "io/bags/scan_maker.h"
+#include "recordings/scan_maker.h"
 #include "target.h"
 
 using namespace delio;

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "io/packets/ouster_info.h"
-#include "io/packets/packet_decoder.h"
+#include "recordings/ouster.h"
+#include "recordings/packet_decoder.h"
 #include "target.h"
 
 /** An Ouster's json, a zero byte, and packets of the size that it says; the last one may be cut

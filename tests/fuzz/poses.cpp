@@ -1,6 +1,6 @@
 #include "delio/evaluation/comparison.h"
-#include "delio/io/drive_meta.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/formats/trajectory.h"
 #include "target.h"
 
 /** The texts beside a drive: poses (KITTI and TUM), times, calibration, meta.yaml. Two pose files,

@@ -1,6 +1,6 @@
 #pragma once
-#include "delio/io/scan_reader.h"
-#include "io/file_kind.h"
+#include "delio/recordings/scan_reader.h"
+#include "recordings/sources.h"
 #include "target.h"
 
 namespace delio::fuzz {

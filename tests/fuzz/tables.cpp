@@ -1,5 +1,6 @@
-#include "run/tables.h"
-#include "delio/io/scan_table.h"
+#include "delio/formats/scan_table.h"
+#include "delio/run/localisation_table.h"
+#include "delio/run/loop_table.h"
 #include "delio/run/summary.h"
 #include "target.h"
 

@@ -1,4 +1,4 @@
-#include "io/packets/packet_decoder.h"
+#include "recordings/packet_decoder.h"
 #include "target.h"
 
 /** A Velodyne's calibration, a zero byte, and its packets: each a byte that says how long after the

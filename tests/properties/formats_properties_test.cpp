@@ -8,9 +8,9 @@
 
 #include "delio/core/numbers.h"
 #include "delio/core/printable.h"
+#include "delio/formats/g2o.h"
+#include "delio/formats/trajectory.h"
 #include "delio/graph/pose_graph.h"
-#include "delio/io/g2o.h"
-#include "delio/io/trajectory.h"
 #include "delio/map/pcd.h"
 #include "delio/map/ply.h"
 #include "generators.h"

@@ -10,7 +10,7 @@
 
 #include "delio/core/geometry.h"
 #include "delio/evaluation/rotation_angle.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "odometry/preprocess.h"
 #include "test_data.h"
 

@@ -4,8 +4,8 @@
 #include <chrono>
 
 #include "delio/core/error.h"
-#include "delio/io/rawlog_reader.h"
 #include "delio/picture/scene.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "memory_limit.h"
 #include "test_data.h"
 

@@ -9,7 +9,7 @@
 #include "command.h"
 #include "delio/evaluation/relative_error.h"
 #include "delio/evaluation/rotation_angle.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "poses.h"
 #include "test_data.h"
 

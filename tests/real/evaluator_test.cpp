@@ -6,7 +6,7 @@
 #include "delio/evaluation/comparison.h"
 #include "delio/evaluation/frame_check.h"
 #include "delio/evaluation/kitti_metric.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "test_data.h"
 
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "command.h"
-#include "delio/io/rawlog_reader.h"
-#include "io/folders/folder_reader.h"
+#include "delio/recordings/rawlog_reader.h"
+#include "recordings/sources.h"
 #include "same_scans.h"
 #include "test_data.h"
 

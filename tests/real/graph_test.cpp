@@ -4,7 +4,7 @@
 
 #include <iostream>
 
-#include "delio/io/g2o.h"
+#include "delio/formats/g2o.h"
 #include "gauss_newton.h"
 #include "test_data.h"
 

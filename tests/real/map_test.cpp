@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "command.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio/map/map_builder.h"
 #include "delio/map/ply.h"
 #include "delio/picture/render.h"

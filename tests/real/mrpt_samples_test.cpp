@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "delio/io/rawlog_reader.h"
-#include "delio/io/scan_reader.h"
+#include "delio/recordings/rawlog_reader.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/run/run.h"
 #include "test_data.h"
 

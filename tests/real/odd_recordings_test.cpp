@@ -9,8 +9,8 @@
 
 #include "command.h"
 #include "delio/core/error.h"
-#include "delio/io/scan_reader.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
+#include "delio/recordings/scan_reader.h"
 #include "poses.h"
 #include "test_data.h"
 

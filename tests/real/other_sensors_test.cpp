@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "command.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "poses.h"
 #include "test_data.h"
 

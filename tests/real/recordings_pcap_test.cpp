@@ -6,11 +6,11 @@
 #include <fstream>
 
 #include "delio/core/error.h"
-#include "delio/io/scan_reader.h"
-#include "io/packets/ouster_frame.h"
-#include "io/packets/pcap_reader.h"
-#include "io/packets/udp_stream.h"
+#include "delio/recordings/scan_reader.h"
 #include "pcap_writer.h"
+#include "recordings/ouster.h"
+#include "recordings/sources.h"
+#include "recordings/udp_stream.h"
 #include "test_data.h"
 
 namespace {

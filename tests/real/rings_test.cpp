@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-#include "delio/io/rawlog_reader.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "odometry/preprocess.h"
 #include "test_data.h"
 

@@ -7,7 +7,7 @@
 
 #include "delio/core/geometry.h"
 #include "delio/core/numbers.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
 #include "ground_plane.h"
 
 namespace delio::map {

@@ -1,11 +1,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../io/gz_object.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
 #include "delio/map/occupancy.h"
+#include "mrpt/object_file.h"
 
 namespace delio::map {
 namespace fs = std::filesystem;

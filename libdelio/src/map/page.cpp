@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "delio/core/error.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
 #include "page_cloud.h"
 #include "page_texts.h"
 

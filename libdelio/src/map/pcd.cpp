@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "io/folders/pcd_header.h"
+#include "formats/pcd.h"
 #include "point_file.h"
 
 namespace delio::map {

@@ -1,6 +1,6 @@
 #include "delio/map/ply.h"
 
-#include "io/folders/ply_header.h"
+#include "formats/ply.h"
 #include "point_file.h"
 
 namespace delio::map {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "delio/core/numbers.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
 
 namespace delio::map {
 namespace {

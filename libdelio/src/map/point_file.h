@@ -6,7 +6,7 @@
 
 #include "delio/map/colouring.h"
 #include "delio/map/map_point.h"
-#include "io/folders/record_file.h"
+#include "formats/point_records.h"
 
 namespace delio::map {
 using io::Column;

@@ -6,10 +6,10 @@
 
 #include <filesystem>
 
-#include "../io/external_files.h"
-#include "../io/gz_object.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
+#include "mrpt/external_files.h"
+#include "mrpt/object_file.h"
 
 namespace delio::map {
 using mrpt::maps::CPointsMapXYZI;

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 
-#include "../io/spool.h"
+#include "files/spool.h"
 #include "odometry/range_image.h"
 
 namespace delio::map {

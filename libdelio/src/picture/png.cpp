@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "delio/core/error.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
 
 namespace delio::picture {
 void checkPngName(const std::string& path) {

@@ -9,13 +9,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../io/gz_object.h"
 #include "../map/ground_height.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "drawable.h"
 #include "legend.h"
 #include "marks.h"
+#include "mrpt/object_file.h"
 #include "round_length.h"
 #include "wide_line.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/portable_math.h"
 #include "delio/core/geometry.h"
-#include "io/spool.h"
+#include "files/spool.h"
 #include "places/closure.h"
 
 namespace delio::places {

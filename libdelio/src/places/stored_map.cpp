@@ -12,10 +12,10 @@
 #include <fstream>
 
 #include "delio/core/error.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
 #include "core/voxel_grid.h"
-#include "io/most_bytes.h"
-#include "io/names.h"
+#include "files/input_file.h"
+#include "files/names.h"
 #include "places/bytes.h"
 #include "places/descriptor.h"
 

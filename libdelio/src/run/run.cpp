@@ -6,11 +6,10 @@
 
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
-#include "delio/io/drive_meta.h"
+#include "delio/formats/drive_meta.h"
 #include "delio/run/doubts.h"
 #include "delio/run/run_folder.h"
 #include "odometry/preprocess.h"
-#include "io/side_file.h"
 #include "places/join_maps.h"
 #include "run/tables.h"
 #include "slam/place_listeners.h"

@@ -7,9 +7,9 @@
 
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
-#include "delio/io/g2o.h"
-#include "delio/io/output_file.h"
-#include "delio/io/partial_folder.h"
+#include "delio/files/output_file.h"
+#include "delio/files/output_folder.h"
+#include "delio/formats/g2o.h"
 #include "delio/map/page.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"

@@ -11,7 +11,7 @@
 #include "core/percentile.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
 #include "delio/run/doubts.h"
 #include "delio/version.h"
 

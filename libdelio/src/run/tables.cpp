@@ -11,8 +11,8 @@
 #include "core/portable_math.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
-#include "delio/io/output_file.h"
-#include "io/table_cells.h"
+#include "delio/files/output_file.h"
+#include "formats/table_cells.h"
 
 namespace delio::run {
 namespace {

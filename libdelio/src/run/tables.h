@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/io/scan_table.h"
+#include "delio/formats/scan_table.h"
 #include "delio/run/run_folder.h"
 #include "delio/run/run_record.h"
 

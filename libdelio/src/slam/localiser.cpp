@@ -2,7 +2,7 @@
 
 #include "delio/core/error.h"
 #include "delio/graph/pose_pdf.h"
-#include "delio/io/decode_observation.h"
+#include "recordings/decode_observation.h"
 #include "slam/place_listeners.h"
 
 namespace delio {

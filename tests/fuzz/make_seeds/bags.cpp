@@ -1,4 +1,4 @@
-#include "../../unit/io/bag_files.h"
+#include "bag_files.h"
 #include "fast_spinner.h"
 #include "ouster_packets.h"
 #include "seeds.h"

@@ -1,6 +1,6 @@
 #pragma once
-#include "../../unit/io/spinner.h"
 #include "pcap_writer.h"
+#include "spinner.h"
 
 namespace delio::fuzz {
 /** A turn of a Velodyne in a packet. */

@@ -2,9 +2,9 @@
 #include <mrpt/obs/CObservationRotatingScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
-#include "../../unit/io/spinner.h"
 #include "fast_spinner.h"
 #include "seeds.h"
+#include "spinner.h"
 
 namespace delio::fuzz {
 namespace {

@@ -1,11 +1,12 @@
 #include <sstream>
 
-#include "delio/io/drive_meta.h"
-#include "delio/io/g2o.h"
-#include "delio/io/scan_table.h"
+#include "delio/formats/drive_meta.h"
+#include "delio/formats/g2o.h"
+#include "delio/formats/scan_table.h"
+#include "delio/run/localisation_table.h"
+#include "delio/run/loop_table.h"
 #include "delio/run/summary.h"
 #include "delio/slam/options.h"
-#include "run/tables.h"
 #include "seeds.h"
 
 namespace delio::fuzz {
@@ -49,10 +50,10 @@ void tables() {
             1, [&](std::size_t) { return row; }, file.string());
     });
     behind("1", seed("tables", "loops"), [](const fs::path& file) {
-        run::writeLoopTable({places::LoopCandidate{}}, file.string());
+        run::writeLoopTable({loops::LoopCandidate{}}, file.string());
     });
     behind("2", seed("tables", "localisation"), [](const fs::path& file) {
-        std::vector<run::RunRow> rows;
+        run::RunRows rows;
         rows.push_back({});
         run::writeLocalisationTable(rows, {MapFix{}}, file.string());
     });

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "delio/core/geometry.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "poses.h"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "delio/core/error.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "drive.h"
 #include "poses.h"
 #include "ray_caster.h"

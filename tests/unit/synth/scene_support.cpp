@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "delio/core/geometry.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "poses.h"
 #include "random.h"
 #include "test_data.h"

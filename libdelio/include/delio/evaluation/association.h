@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 
 namespace delio::evaluation {
 /** Two trajectories pose by pose: `reference[i]` and `estimate[i]` belong together. */

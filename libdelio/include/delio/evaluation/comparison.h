@@ -9,8 +9,8 @@
 #include "delio/evaluation/frame_check.h"
 #include "delio/evaluation/relative_error.h"
 #include "delio/evaluation/score.h"
-#include "delio/io/scan_table.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/scan_table.h"
+#include "delio/formats/trajectory.h"
 
 namespace delio::evaluation {
 /** One estimate on one sequence, pose by pose: `reference[i]`, `estimate[i]`, `times_s[i]` and

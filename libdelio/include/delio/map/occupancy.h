@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio/map/map_point.h"
 
 namespace delio::map {

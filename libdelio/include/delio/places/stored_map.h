@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "delio/graph/pose_graph.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio/places/submap.h"
 
 namespace delio::places {

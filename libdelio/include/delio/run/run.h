@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/io/scan_reader.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/run/run_record.h"
 #include "delio/slam/listeners.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/io/scan_table.h"
+#include "delio/formats/scan_table.h"
 #include "delio/places/localisation.h"
 #include "delio/places/stored_map.h"
 #include "delio/run/run_record.h"

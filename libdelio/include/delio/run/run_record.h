@@ -9,7 +9,7 @@
 
 #include "delio/evaluation/comparison.h"
 #include "delio/graph/pose_graph.h"
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio/map/map_builder.h"
 #include "delio/places/localisation.h"
 #include "delio/places/loops.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "delio/graph/pose_graph.h"
-#include "delio/io/drive_meta.h"
+#include "delio/formats/drive_meta.h"
 #include "delio/map/map_builder.h"
 #include "delio/odometry/odometry.h"
 #include "delio/places/localisation.h"

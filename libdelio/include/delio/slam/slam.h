@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/io/trajectory.h"
+#include "delio/formats/trajectory.h"
 #include "delio/odometry/odometry.h"
 #include "delio/odometry/step.h"
 #include "delio/odometry/scan.h"

@@ -17,7 +17,7 @@
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/core/printable.h"
-#include "delio/io/output_file.h"
+#include "delio/files/output_file.h"
 
 namespace delio::evaluation {
 namespace fs = std::filesystem;

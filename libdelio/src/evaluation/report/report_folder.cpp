@@ -9,9 +9,8 @@
 
 #include "delio/core/error.h"
 #include "delio/evaluation/report/report.h"
-#include "delio/io/output_file.h"
-#include "delio/io/partial_folder.h"
-#include "delio/io/target_folder.h"
+#include "delio/files/output_file.h"
+#include "delio/files/output_folder.h"
 #include "html_report.h"
 #include "report_charts.h"
 

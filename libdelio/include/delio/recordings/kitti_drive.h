@@ -1,0 +1,34 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "delio/formats/drive_meta.h"
+
+namespace delio::io {
+/** A drive in one of KITTI's two layouts, as it lies on the disk. */
+struct KittiDrive {
+    DriveMeta meta;                            //!< with the correction that KITTI's sensor needs
+    std::vector<std::filesystem::path> scans;  //!< in order of their numbers
+    std::vector<double> times_s;               //!< one per scan, since meta.epoch_s
+    std::vector<std::string> timeRows;  //!< one per scan, as they stand in times.txt; or none
+    std::vector<std::string> poseRows;  //!< one per scan, in the cam0 frame; or none
+    std::string calibText;              //!< of calib.txt; empty where there is no calibration
+    std::string posesName;              //!< file of the poses, also where there is none
+    std::string calibName;              //!< file of the calibration, likewise
+    bool nominalTimes = false;          //!< there are none: 0.1 s apart
+    std::vector<std::string> warnings;  //!< what is missing but not needed
+};
+
+/** The folder of the drive where `folder` is its velodyne/ (beside calib.txt, times.txt or
+ *  poses.txt), velodyne_points/ or velodyne_points/data/; otherwise `folder`. */
+std::filesystem::path kittiFolderOf(const std::filesystem::path& folder);
+
+/** Reads everything but the scans of `count` scans from the `start`-th on (0: to the end).
+ *  `folder` is a KITTI odometry sequence (velodyne/, and where they are there calib.txt, times.txt,
+ *  poses.txt; also dataset/poses/NN.txt as KITTI ships them) or a KITTI raw drive
+ *  (velodyne_points/; calibration in the date folder above it; OXTS readings become poses).
+ *  Throws Error with one line for anything that cannot be used. */
+KittiDrive openKittiDrive(const std::filesystem::path& folder, std::size_t start,
+                          std::size_t count);
+}  // namespace delio::io

@@ -1,0 +1,104 @@
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "delio/formats/drive_meta.h"
+#include "delio/odometry/scan.h"
+
+namespace delio::io {
+/** What a source of scans says of itself. */
+struct Recording {
+    std::string kind;                       //!< e.g. "ROS 1 bag, topic /points"
+    std::string sensor;                     //!< e.g. "Velodyne VLP-16"; empty: not known
+    std::optional<double> rate_hz;          //!< scans a second, where two were seen
+    bool startsEmpty = false;               //!< the first scans have no points
+    bool pointTimes = false;                //!< points come with the times they were measured at
+    std::optional<bool> motionCompensated;  //!< by the recorder; nothing: it does not say
+    bool compensationMeasured = false;      //!< from the points: the source does not say it
+    bool compensationAssumed = false;       //!< because most recordings of that kind are so
+    /** A scan whose points tell that they were de-skewed, although the first ones, of a vehicle
+     *  that stood, did not. */
+    std::optional<std::size_t> compensatedAfterAll;
+    std::optional<std::size_t> scans;   //!< where they are counted without reading them
+    std::vector<std::string> warnings;  //!< what is missing but not needed
+    /** What the reader left out, or took in another way than it was written, a line each with how
+     *  often: complete when the last scan was read. */
+    std::vector<std::string> findings;
+};
+
+/** In one line: "Velodyne VLP-16, 10 Hz, points with times, not de-skewed by the recorder, 3213
+ *  scans (pcap)". */
+std::string describe(const Recording& recording);
+
+/** Gives the scans of one LiDAR of a drive, one at a time and in order, whatever they are stored
+ *  in. Memory does not grow with the length of the drive. */
+class ScanReader {
+ public:
+    ScanReader() = default;
+    virtual ~ScanReader() = default;
+    ScanReader(const ScanReader&) = delete;
+    ScanReader& operator=(const ScanReader&) = delete;
+
+    /** The next scan, or nothing at the end. Scans are counted from 0, those that were skipped
+     *  included; `stamp_s` counts from second 0 of the drive, which meta() names (Unix time where
+     *  it does not). Throws Error, which names the file, where it is cut off or damaged or a scan
+     *  cannot be decoded; after that the reader is at its end. */
+    virtual std::optional<Scan> next() = 0;
+
+    /** Passes over the next scan without reading its points; false at the end. Throws as next(). */
+    virtual bool skip() = 0;
+
+    /** Name of the sensor that is read (of a ROS bag: the topic); empty until its first scan was
+     *  met. */
+    virtual const std::string& label() const = 0;
+    /** Other LiDARs met so far; a caller may want to say that they were not used. */
+    virtual const std::set<std::string>& otherLabels() const = 0;
+
+    /** Part of the drive read so far, 0 to 1; nothing where that is not known. */
+    virtual std::optional<double> fraction() const = 0;
+
+    /** What is known of the drive; nothing where the source does not say. */
+    virtual const std::optional<DriveMeta>& meta() const = 0;
+
+    /** What was recognised so far; all of it once the first scan was read. */
+    virtual Recording recording() const = 0;
+
+    /** KITTI's calib.txt: `Tr`. */
+    virtual SideFile calibration() const { return {}; }
+    /** KITTI's poses.txt: a row a scan, skipped ones included, of cam0. */
+    virtual SideFile truth() const { return {}; }
+};
+
+/** Where scans are, and what a source may need to be told. */
+struct ScanSource {
+    /** A rawlog (see RawlogReader), KITTI odometry or raw folder, folder of .pcd, .ply, .bin, .txt
+     *  or .csv, ROS 1 .bag, ROS 2 .db3, .mcap or the folder of either, pcap of a Velodyne or
+     *  Ouster; what it is is told by its content. "-": a rawlog or pcap from standard input. */
+    std::string path;
+    /** The sensor to read: a rawlog's sensorLabel, a bag's topic. Empty: that of the first scan of
+     *  a rawlog; of a bag its only one. */
+    std::string label;
+    /** Where the files lie that a rawlog keeps outside of itself; empty: beside it. */
+    std::string imagesFolder;
+    /** The sensor's description: an Ouster's json, a Velodyne's calibration (.xml, .yaml). Empty:
+     *  the .json beside the recording, what the recording holds, or the model's usual one. */
+    std::string sensorFile;
+};
+
+/** Opens `source` and reads its first three scans, so that all of recording() is known, and meta()
+ *  also where the points had to be looked at for it. Throws Error if there is nothing to read, what
+ *  it is is not known, or what is said about the drive cannot be understood; a fault in these scans
+ *  is thrown by next(). */
+std::unique_ptr<ScanReader> openScans(const ScanSource& source);
+/** The same of a source that needs no more to be told: members of ScanSource. */
+std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label = "",
+                                      const std::string& imagesFolder = "");
+
+/** What a drive is called by: its file's name without the extension, or its folder's, with '?' for
+ *  control characters. Throws Error where that is no name of a folder ("..", of `...rawlog`). */
+std::string nameOfDrive(const std::string& path);
+}  // namespace delio::io

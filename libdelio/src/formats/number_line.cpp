@@ -1,0 +1,93 @@
+#include "number_line.h"
+
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <limits>
+
+#include "delio/core/numbers.h"
+
+namespace delio::io {
+namespace {
+bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+bool isSeparator(char c) { return c == ',' || c == ';'; }
+
+/** Past blanks and, with them, one separator. */
+const char* pastGap(const char* at, const char* end) {
+    while (at != end && isBlank(*at)) ++at;
+    if (at == end || !isSeparator(*at)) return at;
+    ++at;
+    while (at != end && isBlank(*at)) ++at;
+    return at;
+}
+
+/** What a number is that a double does not reach: 0 where it is too small, NaN too large. */
+double beyondRange(std::string_view number) {
+    const auto exponent = number.find_first_of("eE");
+    const bool small = exponent == number.npos ? number.find('.') < 300
+                                               : number.find('-', exponent) != number.npos;
+    return small ? 0 : std::numeric_limits<double>::quiet_NaN();
+}
+}  // namespace
+
+std::optional<std::string_view> nextLine(std::string_view& rest, std::size_t* passed) {
+    while (!rest.empty()) {
+        const void* found = std::memchr(rest.data(), '\n', rest.size());
+        const std::size_t length =
+            found ? static_cast<std::size_t>(static_cast<const char*>(found) - rest.data())
+                  : rest.size();
+        const auto line = rest.substr(0, length);
+        rest.remove_prefix(found ? length + 1 : length);
+        if (passed) ++*passed;
+        if (line.find_first_not_of(" \t\r") != line.npos) return line;
+    }
+    return {};
+}
+
+std::size_t numbersIn(std::string_view line, std::vector<double>& values) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    while (at != end && isBlank(*at)) ++at;
+    std::size_t count = 0;
+    while (at != end) {
+        double value = 0;
+        if (*at == '+' && at + 1 != end && at[1] != '-') ++at;
+        const auto parsed = std::from_chars(at, end, value);
+        if (parsed.ec == std::errc::invalid_argument) return kNoNumbers;
+        if (parsed.ec == std::errc::result_out_of_range)
+            value = beyondRange({at, static_cast<std::size_t>(parsed.ptr - at)});
+        at = parsed.ptr;
+        if (at != end && !isBlank(*at) && !isSeparator(*at)) return kNoNumbers;
+        if (count < values.size()) values[count] = value;
+        ++count;
+        at = pastGap(at, end);
+    }
+    return count;
+}
+
+std::vector<std::string_view> wordsIn(std::string_view line) {
+    std::vector<std::string_view> words;
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    while (at != end && isBlank(*at)) ++at;
+    while (at != end) {
+        const char* const begin = at;
+        while (at != end && !isBlank(*at) && !isSeparator(*at)) ++at;
+        words.emplace_back(begin, static_cast<std::size_t>(at - begin));
+        at = pastGap(at, end);
+    }
+    return words;
+}
+
+std::optional<double> unixTimeOfDate(const std::string& text) {
+    std::tm date{};
+    char fraction[16] = "0";
+    if (std::sscanf(text.c_str(), "%d-%d-%d %d:%d:%d.%15[0-9]", &date.tm_year, &date.tm_mon,
+                    &date.tm_mday, &date.tm_hour, &date.tm_min, &date.tm_sec, fraction) < 6)
+        return {};
+    date.tm_year -= 1900;
+    date.tm_mon -= 1;
+    return static_cast<double>(timegm(&date)) + *numberIn<double>(std::string("0.") + fraction);
+}
+}  // namespace delio::io

@@ -1,0 +1,184 @@
+#include "delio/mrpt/rawlog_writer.h"
+
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "clock.h"
+#include "delio/core/error.h"
+#include "delio/core/geometry.h"
+
+namespace delio::io {
+namespace fs = std::filesystem;
+
+using mrpt::obs::CObservationPointCloud;
+
+namespace {
+constexpr const char* kImages = "_Images";
+constexpr const char* kSideFiles[] = {".meta.yaml", ".times.txt",  ".calib.txt",
+                                      ".poses.txt", ".faults.tsv", ".origin.txt"};
+
+/** `path`, if it can be a drive's. */
+const std::string& checked(const std::string& path) {
+    if (fs::path(path).extension() != ".rawlog")
+        throw Error("'" + path + "' does not end in .rawlog; name the output OUT.rawlog");
+    if (fs::is_directory(path))
+        throw Error("'" + path + "' is a folder; choose another name for the rawlog");
+    const fs::path folder = folderOf(path);
+    if (!fs::is_directory(folder))
+        throw Error("cannot write '" + path + "': there is no folder '" + folder.string() + "'");
+    return path;
+}
+
+/** The rawlog has the name of the file only. */
+void setExternal(CObservationPointCloud& observation, const std::string& file) {
+    observation.setAsExternalStorage(fs::path(file).filename().string(),
+                                     CObservationPointCloud::ExternalStorageFormat::KittiBinFile);
+}
+
+mrpt::maps::CPointsMapXYZI::Ptr cloudOf(const std::vector<float>& xyzi) {
+    auto cloud = mrpt::maps::CPointsMapXYZI::Create();
+    cloud->resize(xyzi.size() / 4);
+    for (std::size_t i = 0; i < xyzi.size() / 4; ++i) {
+        const float* p = &xyzi[4 * i];
+        cloud->setPointFast(i, p[0], p[1], p[2]);
+        cloud->setPointIntensity(i, p[3]);
+    }
+    return cloud;
+}
+}  // namespace
+
+std::vector<float> xyziOf(const mrpt::maps::CPointsMap& points) {
+    const auto* bright = dynamic_cast<const mrpt::maps::CPointsMapXYZI*>(&points);
+    const auto& x = points.getPointsBufferRef_x();
+    const auto& y = points.getPointsBufferRef_y();
+    const auto& z = points.getPointsBufferRef_z();
+    std::vector<float> xyzi(4 * x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        xyzi[4 * i] = x[i];
+        xyzi[4 * i + 1] = y[i];
+        xyzi[4 * i + 2] = z[i];
+        xyzi[4 * i + 3] = bright ? bright->getPointIntensity(i) : 0.0F;
+    }
+    return xyzi;
+}
+
+RawlogWriter::RawlogWriter(const std::string& path, std::string label, bool embed, bool force)
+    : path_(checked(path)),
+      label_(std::move(label)),
+      embed_(embed),
+      lock_(path),
+      partial_(folderOf(path), path),
+      partialRawlog_((partial_.path() / fs::path(path).filename()).string()),
+      partialImages_(sidecarPath(partialRawlog_, kImages)) {
+    if (!force)
+        for (const auto& output : outputsOf(path))
+            if (fs::exists(output))
+                throw Error("'" + output +
+                            "' exists; choose another name, or overwrite it with --force");
+    if (!embed_) makeImages();
+    if (!out_.open(partialRawlog_)) giveUp();
+}
+
+std::vector<std::string> RawlogWriter::outputsOf(const std::string& path) {
+    std::vector<std::string> outputs = {path, sidecarPath(path, kImages)};
+    for (const char* extension : kSideFiles) outputs.push_back(sidecarPath(path, extension));
+    return outputs;
+}
+
+void RawlogWriter::giveUp() const {
+    throw Error("cannot write '" + path_ +
+                "': the disk is full, or the folder is gone or not writable");
+}
+
+void RawlogWriter::makeImages() const {
+    std::error_code fault;
+    fs::create_directory(partialImages_, fault);
+    if (fault) giveUp();
+}
+
+void RawlogWriter::write(const std::string& file, const void* bytes, std::size_t count) const {
+    std::ofstream out(file, std::ios::binary);
+    out.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+    out.close();
+    if (!out) giveUp();
+}
+
+void RawlogWriter::add(double stamp_s, double epoch_s, const std::vector<float>& xyzi) {
+    CObservationPointCloud observation;
+    setPoints(observation, xyzi);
+    append(observation, stamp_s, epoch_s);
+}
+
+void RawlogWriter::add(const Scan& scan, double epoch_s) {
+    if (!scan.rings.empty()) addExtra(".ring", scan.rings);
+    if (!scan.times_s.empty()) addExtra(".time", scan.times_s);
+    CObservationPointCloud observation;
+    observation.setSensorPose(toMrpt(scan.sensorPose));
+    setPoints(observation, xyziOf(*scan.points));
+    append(observation, scan.stamp_s, epoch_s);
+}
+
+void RawlogWriter::addLinked(double stamp_s, double epoch_s, const std::string& file) {
+    const std::string link = extraFile(".bin");
+    std::error_code fault;
+    fs::create_symlink(fs::absolute(file), link, fault);
+    if (fault)
+        throw Error("cannot write '" + path_ + "': a link to '" + file +
+                    "' cannot be made: " + fault.message());
+    CObservationPointCloud observation;
+    setExternal(observation, link);
+    append(observation, stamp_s, epoch_s);
+}
+
+void RawlogWriter::setPoints(CObservationPointCloud& observation, const std::vector<float>& xyzi) {
+    if (embed_) {
+        observation.pointcloud = cloudOf(xyzi);
+        return;
+    }
+    addExtra(".bin", xyzi);
+    setExternal(observation, extraFile(".bin"));
+}
+
+void RawlogWriter::append(CObservationPointCloud& observation, double stamp_s, double epoch_s) {
+    observation.sensorLabel = label_;
+    observation.timestamp = timeOf(stamp_s, epoch_s);
+    try {
+        mrpt::serialization::archiveFrom(out_) << observation;
+    } catch (const std::exception&) {  // MRPT's words do not name the file
+        giveUp();
+    }
+    ++count_;
+}
+
+std::string RawlogWriter::extraFile(const std::string& extension) const {
+    char name[32];
+    std::snprintf(name, sizeof(name), "%06zu", count_);
+    return (fs::path(partialImages_) / (name + extension)).string();
+}
+
+void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
+                          const std::string& calibText, const std::string& posesText,
+                          const std::string& faultsText, const std::string& originText) {
+    // A full disk may show only now: everything that was handed over has to be in the file.
+    const auto written = out_.getPosition();
+    out_.close();
+    std::error_code fault;
+    if (fs::file_size(partialRawlog_, fault) != written || fault) giveUp();
+    const auto writeText = [&](const char* extension, const std::string& text) {
+        if (!text.empty()) write(sidecarPath(partialRawlog_, extension), text.data(), text.size());
+    };
+    writeText(".times.txt", timesText);
+    writeText(".calib.txt", calibText);
+    writeText(".poses.txt", posesText);
+    writeText(".faults.tsv", faultsText);
+    writeText(".origin.txt", originText);
+    writeText(".meta.yaml", textOf(meta));
+    std::vector<std::string> names;  // the rawlog's first: it marks the whole
+    for (const auto& output : outputsOf(path_)) names.push_back(fs::path(output).filename());
+    partial_.putInPlace(names);
+}
+}  // namespace delio::io

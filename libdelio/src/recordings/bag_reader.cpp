@@ -1,0 +1,266 @@
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "delio/core/error.h"
+#include "delio/recordings/scan_reader.h"
+#include "files/input_file.h"
+#include "message_source.h"
+#include "ouster.h"
+#include "scan_maker.h"
+#include "sources.h"
+
+namespace delio::io {
+namespace {
+std::string listed(const std::vector<Topic>& topics) {
+    std::string text;
+    for (const Topic& topic : topics)
+        text += (text.empty() ? "" : ", ") + topic.name + " (" + topic.type + ")";
+    return text;
+}
+
+bool endsIn(const std::string& text, const std::string& end) {
+    return text.size() >= end.size() &&
+           text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/** What the bag says of the sensor of `topic`; empty: it does not. */
+std::string recordedDescription(const std::string& topic, const OpenSource& open) {
+    const auto bag = open();
+    const Topic* found = nullptr;
+    for (const Topic& other : bag->topics()) {
+        const bool says = endsIn(other.name, "metadata") &&
+                          (other.type == "std_msgs/String" || other.type == "std_msgs/msg/String");
+        if (says && (!found || inCommon(other.name, topic) > inCommon(found->name, topic)))
+            found = &other;
+    }
+    if (!found) return "";
+    bag->only(std::string(found->name));
+    try {
+        const auto message = bag->next();
+        return message ? WireReader(*message).text() : "";
+    } catch (const Error&) {
+        return "";  // cut off before it came
+    }
+}
+/** The topic that is asked for, or the only one with scans. Throws Error, which does not name the
+ *  file, where there is none, there are several, or that one has no scans; it lists what there
+ *  is. */
+Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
+    if (topics.empty()) throw Error("holds no messages");
+    std::vector<Topic> scans;
+    for (const Topic& topic : topics)
+        if (scanTypeOf(topic) != ScanType::kNone) scans.push_back(topic);
+    if (scans.empty()) throw Error("holds no topic with scans, but " + listed(topics));
+    if (asked.empty() && scans.size() > 1)
+        throw Error("holds scans of several topics: choose one with --sensor-label: " +
+                    listed(scans));
+    if (asked.empty()) return scans.front();
+    const auto found = std::find_if(scans.begin(), scans.end(),
+                                    [&](const Topic& topic) { return topic.name == asked; });
+    if (found != scans.end()) return *found;
+    std::vector<Topic> ending;  // in what was asked for, as a whole name: /lidar/points in points
+    for (const Topic& topic : scans)
+        if (endsIn(topic.name, "/" + asked)) ending.push_back(topic);
+    if (ending.size() > 1)
+        throw Error("holds scans of several topics '" + asked + "': choose one of " +
+                    listed(ending));
+    if (ending.empty())
+        throw Error("holds no scans of the topic '" + asked + "', but of " + listed(scans));
+    return ending.front();
+}
+
+/** The json of the Ouster whose packets are in `topic`: the file `source.sensorFile`, what the
+ *  topic .../metadata of the bag says whose name has the most in common with it, or the .json
+ *  beside the bag. Throws Error where there is none of them. */
+SideFile ousterDescription(const ScanSource& source, const std::string& topic,
+                           const OpenSource& open) {
+    if (!source.sensorFile.empty()) {
+        SideFile file = sideFile(source.sensorFile);
+        if (file.text.empty())
+            throw Error("needs the sensor's description, but '" + source.sensorFile +
+                        "' is missing or empty");
+        return file;
+    }
+    if (std::string text = recordedDescription(topic, open); !text.empty())
+        return {source.path + ", topic metadata", text};
+    return ousterJsonBeside(source.path, nullptr, 0);
+}
+
+/** The scans of one topic of a bag, whatever it is stored in. */
+class BagReader : public ScanReader {
+ public:
+    BagReader(std::string container, const ScanSource& source, const OpenSource& open)
+        : container_(std::move(container)), bag_(open()) {
+        topic_ = chooseTopic(bag_->topics(), source.label);
+        type_ = scanTypeOf(topic_);
+        bag_->only(topic_.name);
+        if (type_ == ScanType::kCloud) {
+            maker_ = makeCloudMaker();
+            lookAhead(open);
+        } else if (type_ == ScanType::kVelodyne) {
+            maker_ = makePacketMaker(type_, velodyneDecoder(source.sensorFile));
+        } else {
+            const SideFile json = ousterDescription(source, topic_.name, open);
+            maker_ = makePacketMaker(type_, ousterDecoder(json.text, json.name));
+        }
+        describe();
+    }
+
+    std::optional<Scan> next() override {
+        return guarded([this] {
+            std::optional<Scan> scan = nextScan();
+            if (scan) scan->index = count_++;
+            return scan;
+        });
+    }
+
+    bool skip() override {
+        return guarded([this]() -> std::optional<bool> {
+                   // Where a turn ends is known from its packets only.
+                   const bool there = type_ == ScanType::kCloud ? bag_->next().has_value()
+                                                                : nextScan().has_value();
+                   if (!there) return std::nullopt;
+                   ++count_;
+                   return true;
+               })
+            .has_value();
+    }
+
+    const std::string& label() const override { return topic_.name; }
+    const std::set<std::string>& otherLabels() const override { return otherLabels_; }
+    std::optional<double> fraction() const override { return ended_ ? 1 : bag_->fraction(); }
+    const std::optional<DriveMeta>& meta() const override { return meta_; }
+
+    Recording recording() const override {
+        Recording recording;
+        recording.kind = container_ + ", topic " + topic_.name;
+        recording.sensor = maker_->sensor();
+        recording.findings = maker_->findings();
+        if (type_ == ScanType::kCloud)
+            recording.scans = topic_.messages;
+        else
+            recording.motionCompensated = false;
+        return recording;
+    }
+
+ private:
+    /** At the first messages. A fault is told when its scan is read. */
+    void lookAhead(const OpenSource& open) {
+        constexpr std::size_t kMessages = 8;  // some may be empty
+        try {
+            const auto bag = open();
+            bag->only(topic_.name);
+            for (std::size_t i = 0; i < kMessages; ++i) {
+                const auto message = bag->next();
+                if (!message || !maker_->look(*message)) return;
+            }
+        } catch (const std::exception&) {
+        }
+    }
+
+    std::optional<Scan> nextScan() {
+        while (true) {
+            if (auto scan = maker_->take()) {
+                describe();
+                return scan;
+            }
+            if (finished_) return std::nullopt;
+            const auto message = bag_->next();
+            if (!message) {
+                finish();
+            } else {
+                decode(*message);
+            }
+        }
+    }
+
+    void decode(const Message& message) {
+        try {
+            maker_->add(message, count_);
+        } catch (const Error& e) {
+            const std::string scan = "scan " + std::to_string(count_) + " of '" + bag_->path();
+            fail(scan + "' (topic " + topic_.name + "): " + e.what());
+        }
+    }
+
+    void finish() {
+        finished_ = true;
+        try {
+            maker_->finish();
+        } catch (const Error& e) {
+            fail("'" + bag_->path() + "' (topic " + topic_.name + "): " + e.what());
+        }
+    }
+
+    /** After an error, and after nothing, the reader is at its end. */
+    template <typename Read>
+    auto guarded(const Read& read) -> decltype(read()) {
+        if (ended_) return std::nullopt;
+        try {
+            auto result = read();
+            ended_ = !result.has_value();
+            return result;
+        } catch (const std::exception& e) {
+            ended_ = true;
+            if (named_) throw Error(plainMessage(e));
+            throw Error("'" + bag_->path() + "' " + plainMessage(e) + ", after " +
+                        std::to_string(count_) + " scans");
+        }
+    }
+
+    [[noreturn]] void fail(const std::string& what) {
+        named_ = true;
+        throw Error(what);
+    }
+
+    void describe() {
+        if (type_ == ScanType::kCloud) return;
+        if (!meta_) meta_.emplace();
+        meta_->source = "bag";
+        meta_->motionCompensated = false;
+        // The model without its maker.
+        const std::string sensor = maker_->sensor();
+        if (!sensor.empty()) meta_->sensorModel = sensor.substr(sensor.find(' ') + 1);
+    }
+
+    std::string container_;
+    std::unique_ptr<MessageSource> bag_;
+    Topic topic_;
+    ScanType type_ = ScanType::kNone;
+    std::unique_ptr<ScanMaker> maker_;
+    std::optional<DriveMeta> meta_;
+    std::set<std::string> otherLabels_;
+    std::size_t count_ = 0;
+    bool finished_ = false, ended_ = false, named_ = false;
+};
+
+std::unique_ptr<ScanReader> openBag(
+    const std::string& container, const ScanSource& source,
+    std::unique_ptr<MessageSource> (*openPath)(const std::string&)) {
+    const OpenSource open = [&] { return openPath(source.path); };
+    try {
+        return std::make_unique<BagReader>(container, source, open);
+    } catch (const std::exception& e) {
+        throw Error("'" + source.path + "' " + plainMessage(e));
+    }
+}
+}  // namespace
+
+std::unique_ptr<ScanReader> openRos1Bag(const ScanSource& source) {
+    return openBag("ROS 1 bag", source, ros1Source);
+}
+
+std::unique_ptr<ScanReader> openRos2Database(const ScanSource& source) {
+    return openBag("ROS 2 bag", source, ros2DatabaseSource);
+}
+
+std::unique_ptr<ScanReader> openMcap(const ScanSource& source) {
+    return openBag("MCAP", source, mcapSource);
+}
+
+std::unique_ptr<ScanReader> openRos2Folder(const ScanSource& source) {
+    return openBag("ROS 2 bag", source, ros2FolderSource);
+}
+}  // namespace delio::io

@@ -1,0 +1,37 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "files_reader.h"
+#include "formats/point_records.h"
+#include "point_table.h"
+
+namespace delio::io {
+/** Reads a folder of .pcd, .ply, .bin, .txt or .csv files, a scan each (see ScanTimes). Nothing is
+ *  known of the drive itself, so meta() is none; `stamp_s` is as the source has it. */
+class CloudFolder : public FilesReader {
+ public:
+    /** Throws Error where there are none or several kinds of them, and as timesOf(). */
+    explicit CloudFolder(const std::filesystem::path& folder);
+
+    const std::optional<DriveMeta>& meta() const override { return meta_; }
+    Recording recording() const override;
+
+ protected:
+    const std::vector<std::filesystem::path>& files() const override { return files_; }
+    Scan read(std::size_t index) override;
+
+ private:
+    void lookAtTimes();
+
+    std::vector<std::filesystem::path> files_;
+    std::string extension_;
+    ScanTimes times_;
+    std::function<CloudRecords(const std::filesystem::path&)> readRecords_;
+    PointTable table_;
+    bool pointTimes_ = false;
+    std::optional<DriveMeta> meta_;
+};
+}  // namespace delio::io

@@ -1,0 +1,158 @@
+#include "files_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
+#include "delio/mrpt/rawlog_writer.h"
+#include "files/input_file.h"
+#include "formats/number_line.h"
+
+namespace delio::io {
+namespace fs = std::filesystem;
+
+namespace {
+const char* const kTimesFiles[] = {"times.txt", "timestamps.txt", "times.csv"};
+constexpr double kFirstUnix_s = 5e8, kLastUnix_s = 5e9;  // 1985 to 2128
+
+/** Ticks a second of times that are Unix times: as many as make them one of our days. */
+double ticksOfUnix(double time) {
+    for (const double ticks : {1.0, 1e3, 1e6, 1e9})
+        if (time >= kFirstUnix_s * ticks && time <= kLastUnix_s * ticks) return ticks;
+    return 0;
+}
+
+/** Ticks a second of times that start anywhere: scans are 10 ms to 10 s apart. */
+double ticksOf(const std::vector<double>& times) {
+    if (times.empty()) return 1;
+    const double unix = ticksOfUnix(times.front());
+    if (unix > 0) return unix;
+    if (times.size() < 2) return 1;
+    const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    for (const double ticks : {1.0, 1e3, 1e6})
+        if (step < 10 * ticks) return ticks;
+    return 1e9;
+}
+
+/** Seconds of a whole number of ticks, to the last digit that a double has. */
+double secondsOf(std::string_view text, double ticks) {
+    const auto whole = numberIn<std::uint64_t>(text);
+    if (!whole || ticks == 1) return *numberIn<double>(text) / ticks;
+    const auto unit = static_cast<std::uint64_t>(ticks);
+    const std::uint64_t seconds = *whole / unit;
+    return static_cast<double>(seconds) + static_cast<double>(*whole % unit) / ticks;
+}
+
+std::vector<double> readTimesFile(const fs::path& file) {
+    const auto bytes = bytesOfFile(file);
+    std::string_view rest(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    std::vector<double> dates, numbers;
+    std::vector<std::string_view> words;
+    std::size_t row = 0;
+    while (const auto line = nextLine(rest, &row)) {
+        if (line->front() == '#') continue;
+        const auto found = wordsIn(*line);
+        const auto number = found.size() == 1 ? numberIn<double>(found[0]) : std::nullopt;
+        if (number && std::isfinite(*number) && dates.empty()) {
+            words.push_back(found[0]);
+            numbers.push_back(*number);
+            continue;
+        }
+        const auto date = number ? std::nullopt : unixTimeOfDate(std::string(*line));
+        if (!date || !words.empty())
+            throw Error("'" + file.string() + "', line " + std::to_string(row) +
+                        ": it has to be a time, in seconds or as a date and time like the others");
+        dates.push_back(*date);
+    }
+    if (!dates.empty()) return dates;
+    const double ticks = ticksOf(numbers);
+    for (std::size_t i = 0; i < words.size(); ++i) numbers[i] = secondsOf(words[i], ticks);
+    return numbers;
+}
+
+std::optional<fs::path> timesFileOf(const fs::path& folder) {
+    for (const auto& place : {folder, fs::absolute(folder / "").parent_path().parent_path()})
+        for (const char* name : kTimesFiles)
+            if (fs::is_regular_file(place / name)) return place / name;
+    return {};
+}
+
+/** The Unix time that a file is named after. */
+std::optional<double> unixTimeOfName(const fs::path& file) {
+    std::string stem = file.stem().string();
+    // 1616513421.123456.pcd.bin, as nuScenes names its scans.
+    if (fs::path(stem).extension() == ".pcd") stem = fs::path(stem).stem().string();
+    const auto digits = stem.find_first_not_of("0123456789");
+    if (digits != stem.npos && stem[digits] == '_') stem[digits] = '.';
+    if (stem.find_first_not_of("0123456789.") != stem.npos) return {};
+    const auto number = numberIn<double>(stem);
+    const double ticks = number ? ticksOfUnix(*number) : 0;
+    if (ticks == 0 || (ticks != 1 && digits != stem.npos)) return {};
+    return secondsOf(stem, ticks);
+}
+
+/** Sorts `scans` by the times of their names; empty where not all have one. */
+std::vector<double> timesOfNames(std::vector<fs::path>& scans) {
+    std::vector<std::pair<double, fs::path>> timed;
+    for (const auto& scan : scans) {
+        const auto time = unixTimeOfName(scan);
+        if (!time) return {};
+        timed.emplace_back(*time, scan);
+    }
+    std::sort(timed.begin(), timed.end());
+    std::vector<double> times;
+    for (std::size_t i = 0; i < timed.size(); ++i) {
+        times.push_back(timed[i].first);
+        scans[i] = timed[i].second;
+    }
+    return times;
+}
+}  // namespace
+
+bool isTimesFile(const fs::path& file) {
+    return std::find(std::begin(kTimesFiles), std::end(kTimesFiles), file.filename().string()) !=
+           std::end(kTimesFiles);
+}
+
+ScanTimes timesOf(const fs::path& folder, std::vector<fs::path>& scans) {
+    ScanTimes times;
+    if (const auto file = timesFileOf(folder)) {
+        times.stamps_s = readTimesFile(*file);
+        if (times.stamps_s.size() != scans.size())
+            throw Error("'" + file->string() + "' has " + std::to_string(times.stamps_s.size()) +
+                        " times, but there are " + std::to_string(scans.size()) + " scans in '" +
+                        folder.string() + "'; complete or remove it");
+    } else {
+        times.stamps_s = timesOfNames(scans);
+        times.nominal = times.stamps_s.empty();
+        if (times.nominal)
+            for (std::size_t i = 0; i < scans.size(); ++i)
+                times.stamps_s.push_back(0.1 * static_cast<double>(i));
+    }
+    if (times.stamps_s.front() < kFirstUnix_s) times.epoch_s = kDriveEpoch_s;
+    return times;
+}
+
+std::optional<Scan> FilesReader::next() {
+    if (count_ >= files().size()) return {};
+    const std::size_t index = count_;
+    count_ = files().size();  // should it fail
+    Scan scan = read(index);
+    scan.index = index;
+    count_ = index + 1;
+    return scan;
+}
+
+bool FilesReader::skip() {
+    if (count_ >= files().size()) return false;
+    ++count_;
+    return true;
+}
+
+std::optional<double> FilesReader::fraction() const {
+    return static_cast<double>(count_) / static_cast<double>(files().size());
+}
+}  // namespace delio::io

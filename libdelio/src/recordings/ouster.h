@@ -1,0 +1,148 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "delio/recordings/scan_reader.h"
+
+namespace delio::io {
+/** Where the fields of an Ouster's packets lie, in bytes; numbers are little-endian. */
+struct OusterLayout {
+    std::size_t header = 0, footer = 0;  //!< of a packet
+    std::size_t columnHeader = 0, columnFooter = 0;
+    std::size_t pixel = 0;
+    bool legacy = false;          //!< frame and status stand in each column, not in the header
+    std::size_t rangeBytes = 4;   //!< of the pixel's first field
+    std::uint32_t rangeMask = 0;  //!< of that
+    std::uint32_t rangeUnit_mm = 1;
+    std::size_t reflectivityAt = 0;
+    std::size_t reflectivityBytes = 1;
+};
+
+/** Which sensor it is, and which of its starts or changes of configuration; 0: not known. */
+struct OusterIds {
+    std::uint64_t serial = 0;          //!< prod_sn
+    std::uint32_t initialization = 0;  //!< initialization_id
+
+    /** No id that both know differs, as Ouster's SDK has it. */
+    bool fit(const OusterIds& other) const {
+        const auto same = [](auto one, auto two) { return one == 0 || two == 0 || one == two; };
+        return same(serial, other.serial) && same(initialization, other.initialization);
+    }
+};
+
+/** What an Ouster's json says of the sensor. Metres and radians. */
+struct OusterInfo {
+    std::string product;  //!< e.g. "OS-1-128"; empty: it does not say
+    OusterIds ids;
+    std::size_t rows = 0, columns = 0, columnsPerPacket = 16;
+    std::size_t columnsUsed = 0;               //!< of a turn: the others are not sent
+    std::vector<double> elevations, azimuths;  //!< one a row
+    double beamOut_m = 0, beamUp_m = 0;        //!< beam's origin from that of the lidar frame
+    Eigen::Matrix4d lidarToSensor = Eigen::Matrix4d::Identity();
+    OusterLayout layout;
+
+    std::size_t columnBytes() const {
+        return layout.columnHeader + rows * layout.pixel + layout.columnFooter;
+    }
+    std::size_t packetBytes() const {
+        return layout.header + columnsPerPacket * columnBytes() + layout.footer;
+    }
+};
+
+/** Understands the flat description of firmware 1 and 2 and the nested one of later firmware. Keys
+ *  that old firmware leaves out have its defaults; a gen-1 sensor's beams begin 12.163 mm out.
+ *  Throws Error, which names `name` and the key, where one is missing or not what it should be. */
+OusterInfo readOusterInfo(const std::string& json, const std::string& name);
+
+/** Whether packets of so many bytes may be an Ouster's, whichever it is. */
+bool isOusterPacketSize(std::size_t bytes);
+
+/** One turn of an Ouster as it was sent: `columns` columns of `rows` pixels, staggered (pixels of a
+ *  column were measured at once). What was not received is 0. */
+struct OusterFrame {
+    explicit OusterFrame(const OusterInfo& info)
+        : ranges_mm(info.rows * info.columns),
+          reflectivities(info.rows * info.columns),
+          times_ns(info.columns),
+          received(info.columns) {}
+
+    std::uint16_t number = 0;
+    double received_s = 0;                     //!< Unix time at which its first packet was recorded
+    std::vector<std::uint32_t> ranges_mm;      //!< column by column; of the first return
+    std::vector<std::uint8_t> reflectivities;  //!< likewise, 255 at most
+    std::vector<std::uint64_t> times_ns;       //!< of the sensor's clock, a column
+    std::vector<bool> received;                //!< a column
+    std::size_t count = 0;                     //!< of columns that were received
+};
+
+/** When the columns of a turn were measured. */
+struct OusterTimes {
+    std::uint64_t start_ns = 0;   //!< of the sensor's clock, at the first column
+    std::vector<double> since_s;  //!< from there, one for each column that was received
+    std::size_t mended = 0;       //!< columns whose own times cannot be right
+};
+
+/** Nothing where no column was received, or the times make no sense. */
+std::optional<OusterTimes> timesOf(const OusterFrame& frame);
+
+/** Reads the columns of an Ouster's packets. */
+class OusterPacket {
+ public:
+    /** `bytes`: info.packetBytes() of them. */
+    OusterPacket(const OusterInfo& info, const std::uint8_t* bytes) : info_(info), bytes_(bytes) {}
+
+    /** Of the sensor that sent it; none in the profile LEGACY. */
+    OusterIds ids() const;
+    std::uint16_t frameOf(std::size_t column) const;
+    /** Its status says that it was measured. */
+    bool valid(std::size_t column) const;
+    /** When it was measured, by the sensor's clock. */
+    std::uint64_t time_ns(std::size_t column) const;
+    /** Where in the turn: 0 to before info.columns, unless the packet is damaged. */
+    std::size_t place(std::size_t column) const;
+    /** Copies a valid column to its place. */
+    void copyTo(OusterFrame& frame, std::size_t column) const;
+
+ private:
+    const std::uint8_t* at(std::size_t column) const {
+        return bytes_ + info_.layout.header + column * info_.columnBytes();
+    }
+
+    const OusterInfo& info_;
+    const std::uint8_t* bytes_;
+};
+
+/** Where every pixel of an Ouster's turn looks: tables that make points of ranges, in the sensor's
+ *  frame (x forward, away from the connector). */
+class OusterBeams {
+ public:
+    explicit OusterBeams(const OusterInfo& info);
+
+    /** Metres; `pixel` counts column by column. */
+    Eigen::Vector3f point(std::size_t pixel, std::uint32_t range_mm) const {
+        const float along = 1e-3F * static_cast<float>(range_mm) - beamOrigin_m_;
+        return along * directions_[pixel] + origins_[pixel / rows_];
+    }
+
+ private:
+    std::size_t rows_;
+    float beamOrigin_m_;                       //!< ranges count from the lidar's origin
+    std::vector<Eigen::Vector3f> directions_;  //!< a pixel
+    std::vector<Eigen::Vector3f> origins_;     //!< a column
+};
+
+/** The json beside `recording` (a file or folder) that describes its Ouster: that of the same name,
+ *  or else, of all jsons that name beams and fit `packet`, the one whose name has the most in
+ * common with the recording's from the beginning on (as Ouster's SDK has it). `packet`: one of its
+ * data packets, of `bytes`; none: all fit. Throws Error, which does not name the recording, where
+ * there are several such (it lists them) or none. */
+SideFile ousterJsonBeside(const std::string& recording, const std::uint8_t* packet,
+                          std::size_t bytes);
+
+/** How many characters two names share from the beginning on. */
+std::size_t inCommon(const std::string& one, const std::string& other);
+}  // namespace delio::io

@@ -1,0 +1,305 @@
+#include <mrpt/maps/CPointsMapXYZI.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <optional>
+
+#include "core/portable_math.h"
+#include "delio/core/error.h"
+#include "findings.h"
+#include "mrpt/clock.h"
+#include "ouster.h"
+#include "packet_decoder.h"
+#include "turn_times.h"
+
+namespace delio::io {
+namespace {
+/** Takes the first return, the strongest. Points come column by column, so in the order of time,
+ *  and upper rows first; their intensity is the reflectivity, 255 being 1. Columns that the sensor
+ *  calls invalid and pixels without a return are left out, and so is what comes of a turn after the
+ *  next one began, and the packets of another sensor than the json describes. */
+class OusterDecoder : public PacketDecoder {
+ public:
+    OusterDecoder(const std::string& json, const std::string& name)
+        : info_(readOusterInfo(json, name)), name_(name), beams_(info_) {}
+
+    bool takes(std::size_t bytes) const override { return bytes == info_.packetBytes(); }
+    bool add(const std::uint8_t* payload, std::size_t bytes, double received_s) override;
+    void finish() override;
+    std::optional<Scan> take() override;
+    std::string sensor() const override {
+        return info_.product.empty() ? "Ouster" : "Ouster " + info_.product;
+    }
+    std::vector<std::string> findings() const override;
+
+ private:
+    void leaveOut(const OusterIds& ids);
+    Error foreign() const;
+    /** Unix time at which the turn began. */
+    double stampOf(const OusterFrame& frame, const std::optional<OusterTimes>& times);
+    void endFrame(bool partial);
+    Scan scanOf(const OusterFrame& frame);
+
+    OusterInfo info_;
+    std::string name_;
+    OusterBeams beams_;
+    std::optional<OusterFrame> frame_;
+    std::optional<double> clockOffset_s_;  //!< to Unix time, from a clock that does not keep it
+    double delay_s_ = 0;                   //!< from a turn's begin to its recording
+    bool first_ = true;                    //!< the recording may begin within this frame
+    std::size_t packets_ = 0, made_ = 0;   //!< of this sensor; scans
+    OusterIds foreignIds_;                 //!< of the first packet of another sensor
+    Happened foreign_, mended_, untimed_;
+    std::deque<Scan> scans_;
+};
+
+std::string textOf(const OusterIds& ids) {
+    return "serial number " + std::to_string(ids.serial) + " (initialization_id " +
+           std::to_string(ids.initialization) + ")";
+}
+
+Error OusterDecoder::foreign() const {
+    std::string text = "the packets are of the Ouster with " + textOf(foreignIds_) + ", '" + name_ +
+                       "' describes that with " + textOf(info_.ids) +
+                       "; give the json that was recorded with them (--sensor-info)";
+    if (foreignIds_.serial == info_.ids.serial)
+        text += ", or take initialization_id out of it if the sensor was only restarted in between";
+    return Error(text);
+}
+
+/** Few packets of another sensor may come first: then it is not known yet that all of them are. */
+void OusterDecoder::leaveOut(const OusterIds& ids) {
+    constexpr std::size_t kMost = 1000;
+    if (foreign_.count == 0) foreignIds_ = ids;
+    foreign_.add(1, made_);
+    if (packets_ == 0 && foreign_.count >= kMost) throw foreign();
+}
+
+std::vector<std::string> OusterDecoder::findings() const {
+    std::vector<std::string> findings;
+    if (packets_ > 0 && foreign_.count > 0)
+        findings.push_back("left out " + foreign_.of("packet") + " of the Ouster with " +
+                           textOf(foreignIds_) + ", which '" + name_ + "' does not describe");
+    if (mended_.count > 0) findings.push_back(interpolatedTimes(mended_.of("column")));
+    if (untimed_.count > 0) findings.push_back(noTimes(untimed_.of("turn")));
+    return findings;
+}
+
+bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double received_s) {
+    if (!takes(bytes))
+        throw Error("an Ouster's packet of " + std::to_string(bytes) + " bytes; '" + name_ +
+                    "' describes one of " + std::to_string(info_.packetBytes()));
+    const OusterPacket packet(info_, payload);
+    if (const OusterIds ids = packet.ids(); !info_.ids.fit(ids)) {
+        leaveOut(ids);
+        return false;
+    }
+    ++packets_;
+    for (std::size_t column = 0; column < info_.columnsPerPacket; ++column) {
+        if (!packet.valid(column)) continue;
+        if (packet.place(column) >= info_.columns)
+            throw Error("an Ouster's packet has column " + std::to_string(packet.place(column)) +
+                        "; '" + name_ + "' has " + std::to_string(info_.columns));
+        const std::uint16_t number = packet.frameOf(column);
+        if (frame_ && number != frame_->number) {
+            // Numbers begin anew after 65535. An older one is late, a much older one a restart.
+            constexpr int kLate = 16;
+            const auto ahead =
+                static_cast<std::int16_t>(static_cast<std::uint16_t>(number - frame_->number));
+            if (ahead < 0 && ahead > -kLate) continue;
+            endFrame(first_);
+            first_ = false;
+        }
+        if (!frame_) {
+            frame_.emplace(info_);
+            frame_->number = number;
+            frame_->received_s = received_s;
+        }
+        packet.copyTo(*frame_, column);
+    }
+    return true;
+}
+
+void OusterDecoder::finish() {
+    endFrame(true);
+    if (packets_ == 0 && foreign_.count > 0) throw foreign();
+    if (packets_ == 0 || made_ > 0) return;
+    const std::size_t turn =
+        (info_.columnsUsed + info_.columnsPerPacket - 1) / info_.columnsPerPacket;
+    if (packets_ < turn)
+        throw Error("only " + std::to_string(packets_) + " of the " + std::to_string(turn) +
+                    " packets of a turn: there is no scan in less than half a turn");
+    throw Error("no scan in " + std::to_string(packets_) +
+                " packets of an Ouster: their columns are marked as not measured");
+}
+
+double OusterDecoder::stampOf(const OusterFrame& frame, const std::optional<OusterTimes>& times) {
+    constexpr std::uint64_t kUnix_ns = 1000000000ULL * 1000000000ULL;
+    if (!times) return frame.received_s - delay_s_;
+    double stamp_s = 1e-9 * static_cast<double>(times->start_ns);
+    if (times->start_ns < kUnix_ns) {
+        if (!clockOffset_s_) clockOffset_s_ = frame.received_s - stamp_s;
+        stamp_s += *clockOffset_s_;
+    }
+    delay_s_ = frame.received_s - stamp_s;
+    return stamp_s;
+}
+
+void OusterDecoder::endFrame(bool partial) {
+    if (frame_ && (!partial || 2 * frame_->count >= info_.columnsUsed))
+        scans_.push_back(scanOf(*frame_));
+    frame_.reset();
+}
+
+Scan OusterDecoder::scanOf(const OusterFrame& frame) {
+    const auto times = timesOf(frame);
+    if (!times) untimed_.add(1, made_);
+    if (times && times->mended > 0) mended_.add(times->mended, made_);
+    ++made_;
+    std::size_t count = 0;
+    for (const std::uint32_t range_mm : frame.ranges_mm) count += range_mm > 0;
+    auto points = mrpt::maps::CPointsMapXYZI::Create();
+    points->resize(count);
+    Scan scan;
+    scan.rings.reserve(count);
+    if (times) scan.times_s.reserve(count);
+    std::size_t i = 0, received = 0;
+    for (std::size_t column = 0; column < info_.columns; ++column) {
+        if (!frame.received[column]) continue;
+        const auto since_s = static_cast<float>(times ? times->since_s[received++] : 0);
+        for (std::size_t row = 0; row < info_.rows; ++row) {
+            const std::size_t pixel = column * info_.rows + row;
+            if (frame.ranges_mm[pixel] == 0) continue;
+            const Eigen::Vector3f point = beams_.point(pixel, frame.ranges_mm[pixel]);
+            points->setPointFast(i, point.x(), point.y(), point.z());
+            points->setPointIntensity(i++,
+                                      static_cast<float>(frame.reflectivities[pixel]) / 255.0F);
+            scan.rings.push_back(static_cast<std::uint16_t>(row));
+            if (times) scan.times_s.push_back(since_s);
+        }
+    }
+    points->mark_as_modified();
+    scan.points = points;
+    scan.stamp_s = stampOf(frame, times);
+    scan.time = timeOf(scan.stamp_s);
+    return scan;
+}
+
+std::optional<Scan> OusterDecoder::take() {
+    if (scans_.empty()) return {};
+    Scan scan = std::move(scans_.front());
+    scans_.pop_front();
+    return scan;
+}
+}  // namespace
+
+std::unique_ptr<PacketDecoder> ousterDecoder(const std::string& json, const std::string& name) {
+    return std::make_unique<OusterDecoder>(json, name);
+}
+
+namespace {
+template <typename Number>
+Number numberAt(const std::uint8_t* bytes) {
+    Number number;
+    std::memcpy(&number, bytes, sizeof(number));
+    return number;
+}
+}  // namespace
+
+std::optional<OusterTimes> timesOf(const OusterFrame& frame) {
+    constexpr double kTolerance = 0.02;  // real columns are within 0.0005 turns of an even course
+    std::vector<double> places, times_s;
+    std::vector<std::uint64_t> told_ns;
+    for (std::size_t column = 0; column < frame.received.size(); ++column) {
+        if (!frame.received[column]) continue;
+        places.push_back(static_cast<double>(column) / static_cast<double>(frame.received.size()));
+        told_ns.push_back(frame.times_ns[column]);
+    }
+    if (told_ns.empty()) return {};
+    auto sorted = told_ns;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    for (const std::uint64_t time_ns : told_ns)
+        times_s.push_back(1e-9 * static_cast<double>(static_cast<std::int64_t>(time_ns - *middle)));
+    const auto mended = mendTurnTimes(places, kTolerance, times_s);
+    if (!mended) return {};
+    const std::int64_t first_ns = std::llround(1e9 * times_s.front());
+    OusterTimes times;
+    times.start_ns = *middle + static_cast<std::uint64_t>(first_ns);
+    for (const double time_s : times_s)
+        times.since_s.push_back(1e-9 * static_cast<double>(std::llround(1e9 * time_s) - first_ns));
+    times.mended = *mended;
+    return times;
+}
+
+OusterIds OusterPacket::ids() const {
+    if (info_.layout.legacy) return {};
+    constexpr std::uint64_t k24Bits = 0xFFFFFF, k40Bits = 0xFFFFFFFFFF;
+    const auto bits = numberAt<std::uint64_t>(bytes_ + 4);
+    return {numberAt<std::uint64_t>(bytes_ + 7) & k40Bits,
+            static_cast<std::uint32_t>(bits & k24Bits)};
+}
+
+std::uint64_t OusterPacket::time_ns(std::size_t column) const {
+    return numberAt<std::uint64_t>(at(column));
+}
+
+std::size_t OusterPacket::place(std::size_t column) const {
+    return numberAt<std::uint16_t>(at(column) + 8);
+}
+
+std::uint16_t OusterPacket::frameOf(std::size_t column) const {
+    return numberAt<std::uint16_t>(info_.layout.legacy ? at(column) + 10 : bytes_ + 2);
+}
+
+bool OusterPacket::valid(std::size_t column) const {
+    const OusterLayout& layout = info_.layout;
+    if (layout.legacy)
+        return numberAt<std::uint32_t>(at(column) + info_.columnBytes() - layout.columnFooter) ==
+               0xFFFFFFFF;
+    return numberAt<std::uint16_t>(at(column) + 10) & 1U;
+}
+
+void OusterPacket::copyTo(OusterFrame& frame, std::size_t column) const {
+    const OusterLayout& layout = info_.layout;
+    const std::size_t to = place(column);
+    if (!frame.received[to]) ++frame.count;
+    frame.received[to] = true;
+    frame.times_ns[to] = time_ns(column);
+    const std::uint8_t* pixel = at(column) + layout.columnHeader;
+    for (std::size_t i = to * info_.rows; i < (to + 1) * info_.rows; ++i, pixel += layout.pixel) {
+        const std::uint32_t range = layout.rangeBytes == 2 ? numberAt<std::uint16_t>(pixel)
+                                                           : numberAt<std::uint32_t>(pixel);
+        frame.ranges_mm[i] = (range & layout.rangeMask) * layout.rangeUnit_mm;
+        const std::uint8_t* const reflectivity = pixel + layout.reflectivityAt;
+        frame.reflectivities[i] = layout.reflectivityBytes == 1
+                                      ? *reflectivity
+                                      : static_cast<std::uint8_t>(std::min<std::uint16_t>(
+                                            255, numberAt<std::uint16_t>(reflectivity)));
+    }
+}
+
+OusterBeams::OusterBeams(const OusterInfo& info)
+    : rows_(info.rows),
+      beamOrigin_m_(static_cast<float>(std::hypot(info.beamOut_m, info.beamUp_m))) {
+    const Eigen::Matrix3d rotation = info.lidarToSensor.topLeftCorner<3, 3>();
+    const Eigen::Vector3d translation = info.lidarToSensor.topRightCorner<3, 1>();
+    for (std::size_t column = 0; column < info.columns; ++column) {
+        // It turns clockwise, angles count counter-clockwise.
+        const double turned =
+            2 * M_PI * (1 - static_cast<double>(column) / static_cast<double>(info.columns));
+        const Eigen::Vector3d origin(info.beamOut_m * portable::cos(turned),
+                                     info.beamOut_m * portable::sin(turned), info.beamUp_m);
+        origins_.emplace_back((rotation * origin + translation).cast<float>());
+        for (std::size_t row = 0; row < info.rows; ++row) {
+            const double angle = turned - info.azimuths[row], up = info.elevations[row];
+            const Eigen::Vector3d direction(portable::cos(angle) * portable::cos(up),
+                                            portable::sin(angle) * portable::cos(up),
+                                            portable::sin(up));
+            directions_.emplace_back((rotation * direction).cast<float>());
+        }
+    }
+}
+}  // namespace delio::io

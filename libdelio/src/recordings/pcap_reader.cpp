@@ -1,0 +1,223 @@
+#include "sources.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "delio/core/error.h"
+#include "ouster.h"
+#include "packet_decoder.h"
+#include "udp_stream.h"
+
+namespace delio::io {
+namespace fs = std::filesystem;
+
+namespace {
+constexpr std::size_t kVelodyneBytes = 1206;
+
+std::string textOf(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw Error("'" + file.string() + "' cannot be opened");
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string addressText(std::uint32_t address) {
+    std::string text;
+    for (int shift = 24; shift >= 0; shift -= 8)
+        text += std::to_string(address >> shift & 255U) + (shift > 0 ? "." : "");
+    return text;
+}
+
+/** What tells a sensor from others of its kind: where its packets go to and come from. */
+struct Sender {
+    std::string kind;
+    std::uint16_t port = 0;
+    std::uint32_t address = 0;
+
+    bool operator==(const Sender& other) const {
+        return kind == other.kind && port == other.port && address == other.address;
+    }
+    std::string withPort() const { return kind + ":" + std::to_string(port); }
+    std::string inFull() const { return withPort() + "@" + addressText(address); }
+    bool matches(const std::string& label) const {
+        return label.empty() || label == std::to_string(port) || label == kind ||
+               label == withPort() || label == inFull() || label == addressText(address);
+    }
+};
+
+class PcapReader : public ScanReader {
+ public:
+    explicit PcapReader(const ScanSource& source);
+
+    std::optional<Scan> next() override;
+    bool skip() override { return next().has_value(); }
+    const std::string& label() const override { return label_; }
+    const std::set<std::string>& otherLabels() const override { return others_; }
+    std::optional<double> fraction() const override { return stream_.fraction(); }
+    const std::optional<DriveMeta>& meta() const override { return meta_; }
+    Recording recording() const override;
+
+ private:
+    std::string named() const {
+        return source_.path == "-" ? "standard input" : "'" + source_.path + "'";
+    }
+    /** Whose packet it is, if a LiDAR's. */
+    std::optional<Sender> senderOf(const UdpPacket& packet) const;
+    /** `packet`: its first one; none: not read yet. */
+    void makeDecoder(const std::string& kind, const UdpPacket& packet);
+    /** Reads on until the decoder was given a packet of its sensor; false at the end. */
+    bool feed();
+    bool give(const UdpPacket& packet);
+    void finish();
+
+    ScanSource source_;
+    UdpStream stream_;
+    std::unique_ptr<PacketDecoder> decoder_;
+    std::optional<Sender> sender_;
+    std::string label_;
+    std::set<std::string> others_;
+    std::optional<DriveMeta> meta_;
+    std::string foundJson_;  //!< beside the recording, under another name
+    std::size_t count_ = 0;
+    bool pointTimes_ = false, ended_ = false;
+    std::string fault_;  //!< what ended the recording, told after the scans before
+};
+
+PcapReader::PcapReader(const ScanSource& source) : source_(source), stream_(source.path) {
+    // A json can be of nothing but an Ouster, and says how long its packets are.
+    if (fs::path(source_.sensorFile).extension() == ".json") makeDecoder("ouster", {});
+    const bool any = feed();
+    if (any) return;
+    if (!fault_.empty()) throw Error(fault_);
+    std::string seen;
+    for (const std::string& other : others_) seen += (seen.empty() ? "" : ", ") + other;
+    throw Error(
+        named() + " has no packets of " +
+        (source_.label.empty() ? "a Velodyne or an Ouster" : "the sensor '" + source_.label + "'") +
+        (decoder_ ? " that fit '" + source_.sensorFile + "'" : "") +
+        (seen.empty() ? "" : "; there are those of " + seen));
+}
+
+std::optional<Sender> PcapReader::senderOf(const UdpPacket& packet) const {
+    if (packet.bytes == kVelodyneBytes) return Sender{"velodyne", packet.toPort, packet.from};
+    if (decoder_ ? decoder_->takes(packet.bytes) : isOusterPacketSize(packet.bytes))
+        return Sender{"ouster", packet.toPort, packet.from};
+    return {};
+}
+
+void PcapReader::makeDecoder(const std::string& kind, const UdpPacket& packet) {
+    if (kind == "velodyne") {
+        decoder_ = velodyneDecoder(source_.sensorFile);
+        return;
+    }
+    if (source_.sensorFile.empty()) {
+        if (source_.path == "-")
+            throw Error(
+                "an Ouster's pcap from standard input needs the sensor's json: --sensor-info");
+        try {
+            source_.sensorFile = ousterJsonBeside(source_.path, packet.payload, packet.bytes).name;
+        } catch (const Error& e) {
+            throw Error(named() + " " + e.what());
+        }
+        const fs::path json = source_.sensorFile;
+        if (json.stem() != fs::path(source_.path).stem()) foundJson_ = json.filename().string();
+    }
+    decoder_ = ousterDecoder(textOf(source_.sensorFile), source_.sensorFile);
+}
+
+void PcapReader::finish() {
+    try {
+        if (decoder_) decoder_->finish();
+    } catch (const Error& e) {
+        if (fault_.empty()) fault_ = named() + ": " + e.what();
+    }
+}
+
+/** False where it is of another sensor. */
+bool PcapReader::give(const UdpPacket& packet) {
+    bool taken = false;
+    try {
+        taken = decoder_->add(packet.payload, packet.bytes, packet.time_s);
+    } catch (const Error& e) {
+        throw Error(named() + ": " + e.what());
+    }
+    if (!taken || meta_ || decoder_->sensor().empty()) return taken;
+    meta_.emplace();
+    const std::string sensor = decoder_->sensor();
+    const auto space = sensor.find(' ');
+    meta_->sensorModel = space == std::string::npos ? sensor : sensor.substr(space + 1);
+    meta_->source = "pcap";
+    meta_->motionCompensated = false;
+    return taken;
+}
+
+bool PcapReader::feed() {
+    while (!ended_) {
+        std::optional<UdpPacket> packet;
+        try {
+            packet = stream_.next();
+            const auto sender = packet ? senderOf(*packet) : std::nullopt;
+            if (packet && !sender) continue;
+            const bool wanted =
+                sender && (sender_ ? *sender == *sender_
+                                   : sender->matches(source_.label) &&
+                                         (!decoder_ || decoder_->takes(packet->bytes)));
+            if (packet && !wanted) {
+                others_.insert(sender_ && sender->withPort() == sender_->withPort()
+                                   ? sender->inFull()
+                                   : sender->withPort());
+                continue;
+            }
+            if (packet) {
+                if (!decoder_) makeDecoder(sender->kind, *packet);
+                if (!give(*packet)) continue;
+                if (!sender_) label_ = source_.label.empty() ? sender->kind : sender->withPort();
+                sender_ = sender;
+                return true;
+            }
+        } catch (const Error& e) {
+            fault_ = e.what();
+        }
+        ended_ = true;
+        finish();
+    }
+    return false;
+}
+
+std::optional<Scan> PcapReader::next() {
+    while (true) {
+        if (auto scan = decoder_->take()) {
+            scan->index = count_++;
+            pointTimes_ = pointTimes_ || !scan->times_s.empty();
+            return scan;
+        }
+        if (!fault_.empty()) {
+            const Error fault(fault_);
+            fault_.clear();
+            throw fault;
+        }
+        if (ended_) return {};
+        feed();
+    }
+}
+
+Recording PcapReader::recording() const {
+    Recording recording;
+    recording.kind = "pcap" + (foundJson_.empty() ? "" : ", described by '" + foundJson_ + "'");
+    recording.sensor = decoder_->sensor();
+    recording.pointTimes = pointTimes_;
+    recording.motionCompensated = false;
+    recording.findings = decoder_->findings();
+    return recording;
+}
+}  // namespace
+
+std::unique_ptr<ScanReader> openPcap(const ScanSource& source) {
+    return std::make_unique<PcapReader>(source);
+}
+}  // namespace delio::io

@@ -1,0 +1,193 @@
+#include "delio/recordings/rawlog_reader.h"
+
+#include <mrpt/obs/CSensoryFrame.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "decode_observation.h"
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
+#include "delio/odometry/scan.h"
+#include "files/gz.h"
+#include "files/input_file.h"
+#include "mrpt/clock.h"
+#include "mrpt/external_files.h"
+#include "mrpt/object_archive.h"
+
+namespace delio::io {
+namespace fs = std::filesystem;
+
+using mrpt::obs::CObservation;
+
+namespace {
+template <typename Value>
+void readValues(const std::string& file, std::size_t count, std::vector<Value>& values) {
+    if (!isFileThere(file)) return;
+    const auto bytes = fs::file_size(file);
+    if (bytes != count * sizeof(Value))
+        throw Error("'" + file + "' has " + std::to_string(bytes) + " bytes, but its scan has " +
+                    std::to_string(count) + " points of " + std::to_string(sizeof(Value)) +
+                    " bytes each");
+    values.resize(count);
+    std::ifstream in(file, std::ios::binary);
+    in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(bytes));
+    if (!in) throw Error("cannot read '" + file + "'");
+}
+/** Takes rings and times of the points from the files STEM.ring (uint16) and STEM.time (float32,
+ *  seconds from the stamp), one value a point, where they are there; NaN: the point has no time.
+ *  Throws Error where a file cannot be read or has not one value for each point, or a time is
+ *  beyond 1 s. */
+void readPointExtras(const std::string& stem, Scan& scan) {
+    const std::size_t count = scan.points->size();
+    readValues(stem + ".ring", count, scan.rings);
+    readValues(stem + ".time", count, scan.times_s);
+    constexpr float kLongest_s = 1;  // no LiDAR turns slower than so
+    for (const float time_s : scan.times_s)
+        if (std::abs(time_s) > kLongest_s)
+            throw Error("'" + stem + ".time' has a time of " + digitsOf(time_s) +
+                        " s from its scan's stamp");
+}
+
+/** MRPT's words for what another version or program registers; damaged bytes make no name. */
+bool isOfUnknownClass(const std::exception& e) {
+    static const std::regex words(
+        "Stored object has class '[A-Za-z_][A-Za-z0-9_:]*' which is not .*");
+    return std::regex_match(plainMessage(e), words);
+}
+}  // namespace
+
+RawlogReader::RawlogReader(const std::string& path, std::string label, std::string imagesFolder)
+    : path_(path),
+      label_(std::move(label)),
+      imagesFolder_(std::move(imagesFolder)),
+      chosen_(!label_.empty()),
+      meta_(readDriveMeta(path_)),
+      in_(std::make_unique<GzInput>(path_)) {
+    if (in_->getTotalBytesCount() == 0) throw Error("'" + path_ + "' is empty: not a rawlog");
+}
+
+RawlogReader::~RawlogReader() = default;
+
+std::optional<double> RawlogReader::fraction() const {
+    if (in_->compressed()) return {};
+    return static_cast<double>(in_->getPosition()) / static_cast<double>(in_->getTotalBytesCount());
+}
+
+Recording RawlogReader::recording() const {
+    Recording recording;
+    recording.kind = "rawlog";
+    if (meta_) {
+        if (meta_->sensorModel != "unknown") recording.sensor = meta_->sensorModel;
+        recording.motionCompensated = meta_->motionCompensated;
+    }
+    return recording;
+}
+
+SideFile RawlogReader::calibration() const { return sideFile(sidecarPath(path_, ".calib.txt")); }
+
+SideFile RawlogReader::truth() const { return sideFile(sidecarPath(path_, ".poses.txt")); }
+
+std::optional<Scan> RawlogReader::next() {
+    const auto observation = nextObservation();
+    if (!observation) return {};
+    Scan scan;
+    try {
+        const std::string file = loadExternal(*observation, imagesFolders());
+        scan = decodeObservation(*observation);
+        readPointExtras(
+            file.empty() ? embeddedStem(count_ - 1) : fs::path(file).replace_extension().string(),
+            scan);
+    } catch (const std::exception& e) {
+        ended_ = true;
+        throw Error("scan " + std::to_string(count_ - 1) + " of '" + path_ +
+                    "': " + plainMessage(e));
+    }
+    scan.index = count_ - 1;
+    scan.stamp_s = secondsSince(meta_ ? meta_->epoch_s : 0, observation->timestamp);
+    scan.time = observation->timestamp;
+    return scan;
+}
+
+bool RawlogReader::skip() { return nextObservation() != nullptr; }
+
+CObservation::Ptr RawlogReader::nextObservation() {
+    while (true) {
+        while (pending_.empty())
+            if (!readEntry()) return {};
+        auto observation = pending_.front();
+        pending_.pop_front();
+        const std::string name = nameOf(*observation);
+        if (!chosen_) label_ = name;
+        chosen_ = true;
+        if (name == label_) {
+            ++count_;
+            return observation;
+        }
+        otherLabels_.insert(name);
+    }
+}
+
+std::string RawlogReader::nameOf(const CObservation& observation) {
+    if (!observation.sensorLabel.empty()) return observation.sensorLabel;
+    Unlabelled sensor{observation.GetRuntimeClass()->className, {}};
+    observation.getSensorPose(sensor.pose);
+    const auto known = std::find_if(unlabelled_.begin(), unlabelled_.end(), [&](const auto& other) {
+        return other.className == sensor.className && other.pose == sensor.pose;
+    });
+    const auto number = static_cast<std::size_t>(known - unlabelled_.begin());
+    if (known == unlabelled_.end()) unlabelled_.push_back(sensor);
+    return number == 0 ? "" : "unlabelled-" + std::to_string(number + 1);
+}
+
+bool RawlogReader::readEntry() {
+    if (ended_) return false;
+    const auto before = in_->getPosition();
+    mrpt::serialization::CSerializable::Ptr object;
+    ObjectArchive archive(*in_, FileOf::Scans);
+    try {
+        object = archive.next();
+    } catch (const std::exception& e) {
+        ended_ = true;
+        // Nothing was left to read: the end of the rawlog. Otherwise something is only half there,
+        // or is damaged and perhaps claims more than there is memory for.
+        if (in_->getPosition() == before && before > 0 && in_->endedWell()) return false;
+        if (!archive.refused().empty())
+            throw Error("'" + path_ + "' holds '" + archive.refused() + "' (byte " +
+                        std::to_string(before) + "), which is not read from a rawlog");
+        throw Error("'" + path_ + "' " +
+                    (before == 0 ? "is not a rawlog, or damaged at its very beginning"
+                                 : "is cut off or damaged " +
+                                       (count_ == 0 ? "before its first scan"
+                                                    : "after scan " + std::to_string(count_ - 1)) +
+                                       " (byte " + std::to_string(before) + ")") +
+                    (isOfUnknownClass(e)
+                         ? ", or holds what this MRPT does not know: " + plainMessage(e)
+                         : ""));
+    }
+    const auto accept = [&](const CObservation::Ptr& observation) {
+        if (observation && isScan(*observation)) pending_.push_back(observation);
+    };
+    accept(std::dynamic_pointer_cast<CObservation>(object));
+    if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object))
+        for (const auto& observation : *frame) accept(observation);
+    return true;
+}
+
+std::vector<std::string> RawlogReader::imagesFolders() const {
+    if (!imagesFolder_.empty()) return {imagesFolder_};
+    return {sidecarPath(path_, "_Images"), (fs::path(path_).parent_path() / "Images").string()};
+}
+
+std::string RawlogReader::embeddedStem(std::size_t scan) const {
+    char name[32];
+    std::snprintf(name, sizeof(name), "%06zu", scan);
+    return (fs::path(imagesFolders().front()) / name).string();
+}
+}  // namespace delio::io

@@ -1,0 +1,49 @@
+#pragma once
+#include <deque>
+#include <exception>
+#include <memory>
+
+#include "delio/recordings/scan_reader.h"
+#include "stamp_order.h"
+
+namespace delio::io {
+/** A reader whose recording() and meta() are whole from the beginning, and whose stamps rise (see
+ *  StampOrder). It reads three scans with points ahead, and looks at these where the source does
+ * not say whether they were de-skewed. It looks again now and then: scans of a vehicle that stood
+ * first look as if they were not. */
+class RecognisedReader : public ScanReader {
+ public:
+    explicit RecognisedReader(std::unique_ptr<ScanReader> source);
+
+    std::optional<Scan> next() override;
+    bool skip() override;
+    const std::string& label() const override { return source_->label(); }
+    const std::set<std::string>& otherLabels() const override { return source_->otherLabels(); }
+    std::optional<double> fraction() const override { return fraction_; }
+    const std::optional<DriveMeta>& meta() const override { return meta_; }
+    Recording recording() const override;
+    SideFile calibration() const override { return source_->calibration(); }
+    SideFile truth() const override { return source_->truth(); }
+
+ private:
+    bool readOne();
+    void dropUnfitTimes(Scan& scan);
+    void readAhead();
+    void leaveOutFirst();
+    void passed();
+    void recognise();
+    void lookAgain(const Scan& scan);
+
+    std::unique_ptr<ScanReader> source_;
+    std::deque<Scan> ahead_;
+    std::deque<std::optional<double>> fractions_;  //!< of the drive, after each scan that is ahead
+    std::optional<double> fraction_;
+    std::exception_ptr fault_;  //!< comes after the scans that are ahead
+    bool ended_ = false;        //!< the source has no more scans
+    StampOrder order_;
+    bool began_ = false;  //!< next() was called
+    Findings findings_;
+    Recording recording_;
+    std::optional<DriveMeta> meta_;
+};
+}  // namespace delio::io

@@ -1,0 +1,182 @@
+#include "scan_maker.h"
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "delio/core/error.h"
+#include "message_source.h"
+#include "point_table.h"
+
+namespace delio::io {
+namespace {
+/** A PointCloud2 as it is written: `rows` of `columns` points, `rowStep` bytes from one to the
+ *  next. */
+struct Cloud {
+    double stamp_s = 0;
+    std::size_t rows = 0, columns = 0, rowStep = 0;
+    PointLayout layout;
+    Bytes data;
+};
+
+Cloud readCloud(const Message& message) {
+    constexpr std::size_t kLeastField = 13;  // an empty name, offset, kind and count
+    constexpr std::size_t kMostFields = 1000;
+    WireReader in(message);
+    Cloud cloud;
+    cloud.stamp_s = in.header();
+    if (cloud.stamp_s == 0) cloud.stamp_s = message.log_s;
+    cloud.rows = in.number<std::uint32_t>();
+    cloud.columns = in.number<std::uint32_t>();
+    const std::size_t fields = in.length(kLeastField);
+    if (fields > kMostFields) throw Error("its points have " + std::to_string(fields) + " fields");
+    cloud.layout.fields.resize(fields);
+    for (PointField& field : cloud.layout.fields) {
+        field.name = in.text();
+        field.offset = in.number<std::uint32_t>();
+        field.kind = static_cast<NumberKind>(in.number<std::uint8_t>());
+        in.number<std::uint32_t>();  // count: the first one is taken
+    }
+    cloud.layout.bigEndian = in.number<std::uint8_t>() != 0;
+    cloud.layout.step = in.number<std::uint32_t>();
+    cloud.rowStep = in.number<std::uint32_t>();
+    cloud.data = in.byteArray();
+    in.number<std::uint8_t>();  // is_dense: whether points are NaN is seen from them
+    return cloud;
+}
+
+class CloudMaker : public ScanMaker {
+ public:
+    bool look(const Message& message) override {
+        Cloud cloud = readCloud(message);
+        const std::size_t count = checkedCount(cloud);
+        compact(cloud);
+        return table_.look(cloud.layout, cloud.data.data, cloud.data.size, count, cloud.stamp_s);
+    }
+    void add(const Message& message, std::size_t scan) override {
+        Cloud cloud = readCloud(message);
+        const std::size_t count = checkedCount(cloud);
+        compact(cloud);
+        scan_ = table_.scan(cloud.layout, cloud.data.data, cloud.data.size, count, cloud.rows,
+                            {cloud.stamp_s, scan});
+        scan_->stamp_s = cloud.stamp_s;
+        scan_->time = mrpt::Clock::fromDouble(cloud.stamp_s);
+    }
+    void finish() override {}
+    std::optional<Scan> take() override {
+        auto scan = std::move(scan_);
+        scan_.reset();
+        return scan;
+    }
+    std::string sensor() const override { return ""; }
+    std::vector<std::string> findings() const override { return table_.findings(); }
+
+ private:
+    static std::size_t checkedCount(const Cloud& cloud) {
+        const std::size_t count = cloud.rows * cloud.columns;  // of 32 bits each
+        const std::size_t step = cloud.layout.step;
+        if (count > 0 && (step == 0 || count > cloud.data.size / step))
+            throw Error(std::to_string(cloud.rows) + " x " + std::to_string(cloud.columns) +
+                        " points of " + std::to_string(step) + " bytes are announced, there are " +
+                        std::to_string(cloud.data.size) + " bytes");
+        return count;
+    }
+
+    /** Takes out what rows are padded with. A row step that cannot be one is not believed: some
+     *  drivers leave it 0. */
+    void compact(Cloud& cloud) {
+        const std::size_t row = cloud.columns * cloud.layout.step;
+        if (cloud.rows < 2 || cloud.rowStep <= row) return;
+        if (cloud.rowStep > (cloud.data.size - row) / (cloud.rows - 1))
+            throw Error("its rows of " + std::to_string(cloud.rowStep) + " bytes are beyond its " +
+                        std::to_string(cloud.data.size) + " bytes");
+        rows_.resize(cloud.rows * row);
+        for (std::size_t i = 0; i < cloud.rows; ++i)
+            std::copy_n(cloud.data.data + i * cloud.rowStep, row, rows_.data() + i * row);
+        cloud.data = {rows_.data(), rows_.size()};
+    }
+
+    PointTable table_;
+    std::vector<std::uint8_t> rows_;
+    std::optional<Scan> scan_;
+};
+}  // namespace
+
+std::unique_ptr<ScanMaker> makeCloudMaker() { return std::make_unique<CloudMaker>(); }
+
+namespace {
+constexpr std::size_t kVelodynePacket = 1206;
+constexpr std::size_t kMostPackets = 20'000;  // of a message: all are decoded before one is taken
+
+class PacketMaker : public ScanMaker {
+ public:
+    PacketMaker(ScanType type, std::unique_ptr<PacketDecoder> decoder)
+        : type_(type), decoder_(std::move(decoder)) {}
+
+    void add(const Message& message, std::size_t /*scan*/) override {
+        WireReader in(message);
+        if (type_ == ScanType::kOuster)
+            addPacket(in.byteArray(), message.log_s);
+        else
+            addVelodyneScan(in, message.log_s);
+    }
+    void finish() override {
+        if (!anyTaken_ && otherBytes_ > 0)
+            throw Error("packets of " + std::to_string(otherBytes_) +
+                        " bytes, which the sensor's json does not describe; give the json that "
+                        "was recorded with them (--sensor-info)");
+        decoder_->finish();
+    }
+    std::optional<Scan> take() override { return decoder_->take(); }
+    std::string sensor() const override { return decoder_->sensor(); }
+    std::vector<std::string> findings() const override { return decoder_->findings(); }
+
+ private:
+    void addVelodyneScan(WireReader& in, double log_s) {
+        in.header();
+        const std::size_t packets = in.length(8 + kVelodynePacket);
+        if (packets > kMostPackets)
+            throw Error("the message has " + std::to_string(packets) +
+                        " packets: a turn has some hundred");
+        for (std::size_t i = 0; i < packets; ++i) {
+            const double stamp_s = in.time();
+            addPacket(in.bytes(kVelodynePacket), stamp_s == 0 ? log_s : stamp_s);
+        }
+    }
+    void addPacket(const Bytes& packet, double received_s) {
+        if (!decoder_->takes(packet.size)) {
+            otherBytes_ = packet.size;
+            return;
+        }
+        anyTaken_ = true;
+        decoder_->add(packet.data, packet.size, received_s);
+    }
+
+    ScanType type_;
+    std::unique_ptr<PacketDecoder> decoder_;
+    bool anyTaken_ = false;
+    std::size_t otherBytes_ = 0;  //!< of a packet that is of another size
+};
+}  // namespace
+
+std::unique_ptr<ScanMaker> makePacketMaker(ScanType type, std::unique_ptr<PacketDecoder> decoder) {
+    return std::make_unique<PacketMaker>(type, std::move(decoder));
+}
+
+ScanType scanTypeOf(const Topic& topic) {
+    static const std::map<std::string, ScanType> kTypes = {
+        {"sensor_msgs/PointCloud2", ScanType::kCloud},
+        {"velodyne_msgs/VelodyneScan", ScanType::kVelodyne},
+        {"ouster_msgs/PacketMsg", ScanType::kOuster},
+        {"ouster_ros/PacketMsg", ScanType::kOuster},
+        {"ouster_sensor_msgs/PacketMsg", ScanType::kOuster}};
+    std::string type = topic.type;
+    const std::string part = "/msg/";  // as ROS 2 has it
+    if (const auto at = type.find(part); at != std::string::npos)
+        type.replace(at, part.size(), "/");
+    const auto known = kTypes.find(type);
+    if (known == kTypes.end()) return ScanType::kNone;
+    const bool imu = topic.name.find("imu", topic.name.rfind('/') + 1) != std::string::npos;
+    return known->second == ScanType::kOuster && imu ? ScanType::kNone : known->second;
+}
+}  // namespace delio::io

@@ -1,0 +1,48 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "delio/odometry/scan.h"
+#include "message_source.h"
+#include "packet_decoder.h"
+
+namespace delio::io {
+/** What scans are made of: sensor_msgs/PointCloud2, velodyne_msgs/VelodyneScan, or Ouster's
+ *  PacketMsg. */
+enum class ScanType { kNone, kCloud, kVelodyne, kOuster };
+/** kNone: a topic's messages hold no scans (Ouster's packets of its IMU are of that kind, too). */
+ScanType scanTypeOf(const Topic& topic);
+
+/** Makes scans of one topic's messages. */
+class ScanMaker {
+ public:
+    ScanMaker() = default;
+    virtual ~ScanMaker() = default;
+    ScanMaker(const ScanMaker&) = delete;
+    ScanMaker& operator=(const ScanMaker&) = delete;
+
+    /** Looks at one of the first messages, before add(); several tell more than one. False: no
+     *  more are needed. Throws as add(). */
+    virtual bool look(const Message& /*message*/) { return false; }
+    /** `scan`: the index of the scan that is being made. Throws Error, which does not name the
+     *  file, for a message that cannot be decoded. */
+    virtual void add(const Message& message, std::size_t scan) = 0;
+    /** There are no more messages. */
+    virtual void finish() = 0;
+    /** The next scan, if there is one, stamped in Unix seconds; the index is the caller's. */
+    virtual std::optional<Scan> take() = 0;
+    /** e.g. "Velodyne VLP-16"; empty: not known. */
+    virtual std::string sensor() const = 0;
+    /** What was left out or taken in another way than it was written, a line each. */
+    virtual std::vector<std::string> findings() const { return {}; }
+};
+
+/** A scan a message, stamped as its header says, or with the time at which it was recorded where
+ *  that is zero. */
+std::unique_ptr<ScanMaker> makeCloudMaker();
+/** Of messages with packets, of Velodyne or of Ouster: a scan a turn, whatever a message holds.
+ *  finish() throws Error where no scan was made of the packets. */
+std::unique_ptr<ScanMaker> makePacketMaker(ScanType type, std::unique_ptr<PacketDecoder> decoder);
+}  // namespace delio::io

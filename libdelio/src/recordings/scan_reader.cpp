@@ -1,0 +1,157 @@
+#include "delio/recordings/scan_reader.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include "delio/core/error.h"
+#include "delio/core/numbers.h"
+#include "delio/core/printable.h"
+#include "delio/recordings/rawlog_reader.h"
+#include "files/names.h"
+#include "recognised_reader.h"
+#include "sources.h"
+
+namespace delio::io {
+namespace fs = std::filesystem;
+
+namespace {
+std::unique_ptr<ScanReader> openFolder(const ScanSource& source) {
+    if (isKittiFolder(source.path)) return openKittiFolder(source);
+    if (fs::exists(fs::path(source.path) / "metadata.yaml")) return openRos2Folder(source);
+    return openCloudFolder(source);
+}
+
+std::unique_ptr<ScanReader> openFile(const ScanSource& source) {
+    switch (kindOf(source.path)) {
+        case FileKind::kPcap:
+            return openPcap(source);
+        case FileKind::kRos1Bag:
+            return openRos1Bag(source);
+        case FileKind::kRos2Database:
+            return openRos2Database(source);
+        case FileKind::kMcap:
+            return openMcap(source);
+        case FileKind::kRawlog:
+            break;
+    }
+    return std::make_unique<RawlogReader>(source.path, source.label, source.imagesFolder);
+}
+}  // namespace
+
+std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
+    if (source.path != "-" && !fs::exists(source.path))
+        throw Error("cannot read '" + source.path + "': no such file or folder");
+    if (source.path != "-" && !fs::is_directory(source.path) && !fs::is_regular_file(source.path))
+        throw Error("'" + source.path +
+                    "' is neither a file nor a folder: a pipe is read from standard input, by the "
+                    "name -");
+    return std::make_unique<RecognisedReader>(fs::is_directory(source.path) ? openFolder(source)
+                                                                            : openFile(source));
+}
+
+std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label,
+                                      const std::string& imagesFolder) {
+    return openScans({path, label, imagesFolder, ""});
+}
+
+std::string nameOfDrive(const std::string& path) {
+    if (path == "-") return "stdin";
+    const fs::path whole = fs::absolute(fs::path(path) / "").lexically_normal().parent_path();
+    const std::string name =
+        printable(fs::is_directory(whole) ? whole.filename().string() : whole.stem().string());
+    if (!isFileName(name))
+        throw Error("a drive cannot be called '" + name + "', as '" + path +
+                    "' is: rename the recording");
+    return name;
+}
+
+namespace {
+constexpr std::size_t kBytes = 16;
+
+/** The first bytes of standard input, which stay there. */
+std::string beginOfInput() {
+    std::array<char, kBytes> bytes{};
+    ssize_t read = pread(STDIN_FILENO, bytes.data(), kBytes, 0);  // a file
+    if (read < 0) {
+        int ends[2];
+        if (pipe(ends) != 0) throw Error("cannot read standard input");
+        // A pipe gives what was written at once, of which the first bytes are enough.
+        read = tee(STDIN_FILENO, ends[1], kBytes, 0);
+        if (read > 0) read = ::read(ends[0], bytes.data(), kBytes);
+        close(ends[0]);
+        close(ends[1]);
+    }
+    if (read < 0) throw Error("cannot read standard input: it is neither a pipe nor a file");
+    if (read == 0) throw Error("standard input is empty");
+    return {bytes.data(), static_cast<std::size_t>(read)};
+}
+
+std::string beginOf(const std::string& path) {
+    if (path == "-") return beginOfInput();
+    std::ifstream in(path, std::ios::binary);
+    std::string bytes(kBytes, '\0');
+    in.read(bytes.data(), kBytes);
+    bytes.resize(static_cast<std::size_t>(in.gcount()));
+    if (bytes.empty() && (!in.is_open() || !in.eof()))
+        throw Error("cannot read '" + path + "': no such file, or not readable");
+    if (bytes.empty()) throw Error("'" + path + "' is empty");
+    return bytes;
+}
+
+bool begins(const std::string& bytes, std::string_view with) {
+    return std::string_view(bytes).substr(0, with.size()) == with;
+}
+
+bool isPcap(const std::string& bytes) {
+    using namespace std::string_view_literals;
+    for (const auto magic : {"\xd4\xc3\xb2\xa1"sv, "\xa1\xb2\xc3\xd4"sv, "\x4d\x3c\xb2\xa1"sv,
+                             "\xa1\xb2\x3c\x4d"sv, "\x0a\x0d\x0d\x0a"sv})
+        if (begins(bytes, magic)) return true;
+    return false;
+}
+}  // namespace
+
+FileKind kindOf(const std::string& path) {
+    const std::string bytes = beginOf(path);
+    if (isPcap(bytes)) return FileKind::kPcap;
+    if (begins(bytes, "#ROSBAG V2.0")) return FileKind::kRos1Bag;
+    if (begins(bytes, "SQLite format 3")) return FileKind::kRos2Database;
+    if (begins(bytes, "\x89MCAP")) return FileKind::kMcap;
+    const std::string extension = fs::path(path).extension().string();
+    for (const char* cloud : {".pcd", ".ply", ".bin", ".txt", ".csv"})
+        if (extension == cloud)
+            throw Error("'" + path + "' is one file of a drive: name the folder that holds all");
+    if (begins(bytes, "#ROSBAG"))
+        throw Error("'" + path + "' is a ROS bag of another version than 2.0: rosbag fix mends it");
+    for (const char* other : {".osf", ".zstd", ".las", ".laz"})
+        if (extension == other)
+            throw Error(
+                "'" + path + "': " + other +
+                " files are not read; inputs.md of DeLiO's documentation lists those that are");
+    return FileKind::kRawlog;
+}
+
+std::string describe(const Recording& recording) {
+    std::string text = recording.sensor.empty() ? "a LiDAR of unknown model" : recording.sensor;
+    if (recording.rate_hz) text += ", " + rounded(*recording.rate_hz, 3) + " Hz";
+    if (recording.startsEmpty)
+        text += ", no points in its first scans";
+    else
+        text += recording.pointTimes ? ", points with times" : ", points without times";
+    const std::string how = recording.compensationMeasured  ? " (measured)"
+                            : recording.compensationAssumed ? " (assumed)"
+                                                            : "";
+    if (recording.motionCompensated)
+        text += (*recording.motionCompensated ? ", de-skewed by the recorder"
+                                              : ", not de-skewed by the recorder") +
+                how;
+    if (recording.scans) text += ", " + std::to_string(*recording.scans) + " scans";
+    return text + " (" + recording.kind + ")";
+}
+}  // namespace delio::io

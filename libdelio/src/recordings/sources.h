@@ -1,0 +1,35 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "delio/recordings/scan_reader.h"
+
+namespace delio::io {
+enum class FileKind { kRawlog, kPcap, kRos1Bag, kRos2Database, kMcap };
+
+/** What a file is by its first bytes; "-": standard input, of which nothing is taken. What is none
+ *  of the others is taken for a rawlog, which has no mark of its own. Throws Error where it cannot
+ *  be read, or is a single cloud or another format that is known but not read. */
+FileKind kindOf(const std::string& path);
+
+/** Read the messages with scans of one topic. Throw as openScans(). */
+std::unique_ptr<ScanReader> openRos1Bag(const ScanSource& source);
+/** A .db3 file. */
+std::unique_ptr<ScanReader> openRos2Database(const ScanSource& source);
+std::unique_ptr<ScanReader> openMcap(const ScanSource& source);
+/** A folder with metadata.yaml and the .db3 or .mcap files that it names. */
+std::unique_ptr<ScanReader> openRos2Folder(const ScanSource& source);
+
+/** Reads a pcap or pcapng of a Velodyne or an Ouster (whose .json lies beside it, or is
+ *  `sensorFile`). Path "-": standard input. Throws as openScans(). */
+std::unique_ptr<ScanReader> openPcap(const ScanSource& source);
+
+/** True for a KITTI odometry sequence (velodyne/) or raw drive (velodyne_points/data/). */
+bool isKittiFolder(const std::filesystem::path& folder);
+/** The scans of a KITTI folder in place: the same, to the bit, as by way of kitti2rawlog. */
+std::unique_ptr<ScanReader> openKittiFolder(const ScanSource& source);
+/** A folder of .pcd, .ply, .bin, .txt or .csv files, a scan each, in the natural order of their
+ *  names. Throws as openScans(). */
+std::unique_ptr<ScanReader> openCloudFolder(const ScanSource& source);
+}  // namespace delio::io

@@ -1,0 +1,103 @@
+#include "recordings/stamp_order.h"
+
+#include <gtest/gtest.h>
+
+namespace delio::io {
+namespace {
+struct Given {
+    std::vector<std::size_t> scans;
+    std::vector<double> stamps_s;
+    std::string findings;
+};
+
+/** What is given of scans that are stamped so. */
+Given givenOf(const std::vector<double>& stamps_s) {
+    StampOrder order;
+    std::deque<Scan> ahead;
+    Given given;
+    std::size_t read = 0;
+    while (true) {
+        for (; read < stamps_s.size() && ahead.size() < StampOrder::kWindow; ++read) {
+            ahead.emplace_back();
+            ahead.back().index = read;
+            ahead.back().stamp_s = stamps_s[read];
+            ahead.back().time = mrpt::Clock::fromDouble(1e9 + stamps_s[read]);
+        }
+        if (ahead.empty()) break;
+        if (const auto scan = order.take(ahead)) {
+            given.scans.push_back(scan->index);
+            given.stamps_s.push_back(scan->stamp_s);
+            EXPECT_NEAR(mrpt::Clock::toDouble(scan->time), 1e9 + scan->stamp_s, 2e-6);
+        }
+    }
+    for (const auto& line : order.findings()) given.findings += line + "\n";
+    for (std::size_t i = 1; i < given.stamps_s.size(); ++i)
+        EXPECT_GT(given.stamps_s[i], given.stamps_s[i - 1]) << i;
+    return given;
+}
+
+std::vector<double> even(std::size_t count) {
+    std::vector<double> stamps_s;
+    for (std::size_t i = 0; i < count; ++i) stamps_s.push_back(0.1 * static_cast<double>(i));
+    return stamps_s;
+}
+using Scans = std::vector<std::size_t>;
+}  // namespace
+
+TEST(StampOrder, RisingStampsStayAsTheyAre) {
+    const std::vector<double> uneven{0, 0.1, 0.15, 0.151, 3, 3.1, 3.2};
+    const auto given = givenOf(uneven);
+    EXPECT_EQ(given.stamps_s, uneven);
+    EXPECT_EQ(given.findings, "");
+    EXPECT_TRUE(givenOf({}).scans.empty());
+    EXPECT_EQ(givenOf({5}).stamps_s, std::vector<double>{5});
+}
+
+TEST(StampOrder, SwappedScansAreSorted) {
+    auto stamps = even(8);
+    std::swap(stamps[4], stamps[5]);
+    EXPECT_EQ(givenOf(stamps).scans, (Scans{0, 1, 2, 3, 5, 4, 6, 7}));
+    EXPECT_EQ(givenOf(stamps).stamps_s, even(8));
+    EXPECT_EQ(givenOf(stamps).findings,
+              "scans that were recorded out of order are sorted by their stamps: 1 scan (first: "
+              "scan 5)\n");
+    EXPECT_EQ(givenOf({0.1, 0, 0.2, 0.3}).scans, (Scans{1, 0, 2, 3}));
+    EXPECT_EQ(givenOf({0, 0.1, 0.3, 0.4, 0.2, 0.5}).scans, (Scans{0, 1, 4, 2, 3, 5}));
+    EXPECT_EQ(givenOf({0, 0.1, 0.3, 0.2}).scans, (Scans{0, 1, 3, 2}));
+}
+
+TEST(StampOrder, OneWrongStampCostsOneScan) {
+    const auto with = [](std::size_t scan, double stamp_s) {
+        auto stamps = even(8);
+        stamps[scan] = stamp_s;
+        return givenOf(stamps);
+    };
+    for (const double stamp_s : {0.3, 0.15, 0.1, -5.0, 0.65, 1e9}) {
+        EXPECT_EQ(with(4, stamp_s).scans, (Scans{0, 1, 2, 3, 5, 6, 7})) << stamp_s;
+        EXPECT_NE(
+            with(4, stamp_s).findings.find("out of order are left out: 1 scan (first: scan 4)"),
+            std::string::npos)
+            << stamp_s;
+    }
+    EXPECT_EQ(with(7, 0.6).scans, (Scans{0, 1, 2, 3, 4, 5, 6}));
+    // Nothing tells that the first one is wrong: the clock is taken as set back.
+    EXPECT_EQ(with(0, 1e9).scans, (Scans{0, 1, 2, 3, 4, 5, 6, 7}));
+}
+
+TEST(StampOrder, AClockThatWasSetBack) {
+    auto stamps = even(8);
+    for (std::size_t i = 4; i < 8; ++i) stamps[i] -= 10;
+    const auto given = givenOf(stamps);
+    EXPECT_EQ(given.scans, (Scans{0, 1, 2, 3, 4, 5, 6, 7}));
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(given.stamps_s[i], even(8)[i], 1e-9);
+    EXPECT_NE(given.findings.find("1 scan (first: scan 4)"), std::string::npos) << given.findings;
+    EXPECT_EQ(givenOf({10, 10.1, 0.2, 0.3, 0.4}).scans, (Scans{0, 1, 2, 3, 4}));
+}
+
+TEST(StampOrder, AClockThatStands) {
+    const auto given = givenOf(std::vector<double>(6, 7));
+    EXPECT_EQ(given.scans, (Scans{0, 1, 2, 3, 4, 5}));
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(given.stamps_s[i], 7 + even(6)[i], 1e-9);
+    EXPECT_NE(given.findings.find("5 scans (first: scan 1)"), std::string::npos);
+}
+}  // namespace delio::io
