@@ -1,4 +1,4 @@
-#include "eye_dome.h"
+#include "picture/shading.h"
 
 #include <tbb/parallel_for.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "delio/core/error.h"
-#include "marks.h"
+#include "picture/view.h"
 
 namespace delio::picture {
 using mrpt::img::CImage;

@@ -1,4 +1,4 @@
-#include "picture/legend_layer.h"
+#include "picture/legend.h"
 
 #include <gtest/gtest.h>
 

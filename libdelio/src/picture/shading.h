@@ -2,11 +2,11 @@
 #include <mrpt/img/CImage.h>
 #include <mrpt/math/CMatrixDynamic.h>
 
-#include "delio/picture/view.h"
-#include "framing.h"
+#include "delio/picture/render.h"
+#include "picture/view.h"
 
 namespace delio::picture {
-/** What is behind everything: no part of the content. */
+/** Depth of the background. */
 constexpr float kNoDepth = 0;
 
 /** Turns the depth that MRPT renders into the binary logarithm of the distance from the camera,
@@ -24,10 +24,10 @@ struct EyeDome {
     double slope = 0.004;
 };
 
-/** Of a picture that is rendered `enlarged` times as large as wanted: of all sizes alike. */
+/** The shading of a picture that is rendered at `enlarged` times its size. */
 EyeDome eyeDomeOf(const SnapshotOptions& options, unsigned enlarged);
 
-/** How many rows away a pixel's neighbours are at most: an even number. */
+/** The largest distance of a pixel's neighbours in rows, rounded up to an even number. */
 unsigned reachOf(const EyeDome& shading);
 
 /** Eye-dome lighting (C. Boucheny, 2009): a pixel gets darker by how much nearer those around it

@@ -1,4 +1,4 @@
-#include "picture/framing.h"
+#include "picture/view.h"
 
 #include <gtest/gtest.h>
 

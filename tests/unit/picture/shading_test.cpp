@@ -1,4 +1,4 @@
-#include "picture/eye_dome.h"
+#include "picture/shading.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -9,7 +9,7 @@
 #include "delio/core/error.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
-#include "picture/framing.h"
+#include "picture/view.h"
 #include "picture_support.h"
 
 namespace {
