@@ -5,6 +5,11 @@
 #include <vector>
 
 namespace delio::evaluation {
+/** Angle of the rotation of `pose`, radians, 0 to pi: atan2(|skew part|, trace - 1) of the nearest
+ *  rotation. The usual acos((trace - 1) / 2) loses half of the digits near 0, where the errors of
+ *  an odometry lie. */
+double rotationAngle_rad(const Eigen::Isometry3d& pose);
+
 /** A stretch of the drive from pose `first` to pose `last`, and what the estimate got wrong on it.
  */
 struct Segment {
@@ -56,4 +61,48 @@ std::vector<double> suggestedLengths_m(double path_m);
 KittiErrors kittiErrors(const std::vector<Eigen::Isometry3d>& reference,
                         const std::vector<Eigen::Isometry3d>& estimate,
                         const std::vector<double>& lengths_m = kittiLengths_m());
+
+/** Distances between positions after alignment, metres; NaN where there are no poses. */
+struct AbsoluteError {
+    double rmse_m = 0;  //!< root mean square
+    double max_m = 0;   //!< largest
+};
+
+/** APE: the positions of the estimate are moved onto those of the reference by the best rigid
+ *  motion (Umeyama, no scale), whatever their fixed frames are. Same count of poses in both. */
+AbsoluteError absoluteError(const std::vector<Eigen::Isometry3d>& reference,
+                            const std::vector<Eigen::Isometry3d>& estimate);
+
+/** How a list of errors is spread; NaN where the list is empty. */
+struct Spread {
+    double rmse = 0;    //!< root mean square
+    double median = 0;  //!< half of the errors are at most this
+    double p95 = 0;     //!< 95 % of the errors are at most this
+    double max = 0;     //!< the largest
+};
+
+/** Of errors in any order, all finite. */
+Spread spreadOf(std::vector<double> errors);
+
+/** Errors of relative motions, and how they are spread. */
+struct RelativeError {
+    std::vector<double> translations_m;  //!< entry i: of the motion from pose i to pose i + delta
+    std::vector<double> rotations_deg;   //!< the same for its rotation
+    Spread translation_m;                //!< of `translations_m`
+    Spread rotation_deg;                 //!< of `rotations_deg`
+};
+
+/** RPE: errors of the relative motions over `delta` poses (1 or more). Same count of poses in
+ *  both, of the same moving frame; their fixed frames may differ. */
+RelativeError relativeError(const std::vector<Eigen::Isometry3d>& reference,
+                            const std::vector<Eigen::Isometry3d>& estimate, std::size_t delta = 1);
+
+/** Between poses of one fixed frame, such as a map's: nothing is aligned. Same count in both. */
+struct PoseError {
+    Spread translation_m;  //!< distances between the positions
+    Spread rotation_deg;   //!< angles between the orientations
+};
+/** Of each pose of `estimate` beside that of `reference`. */
+PoseError poseError(const std::vector<Eigen::Isometry3d>& reference,
+                    const std::vector<Eigen::Isometry3d>& estimate);
 }  // namespace delio::evaluation

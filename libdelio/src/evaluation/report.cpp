@@ -1,24 +1,56 @@
-#include "delio/evaluation/report/report_folder.h"
+#include "delio/evaluation/report.h"
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <ostream>
 #include <set>
+#include <string>
 
 #include "delio/core/error.h"
-#include "delio/evaluation/report/report.h"
+#include "delio/core/numbers.h"
 #include "delio/io/output_file.h"
 #include "delio/io/partial_folder.h"
 #include "delio/io/target_folder.h"
-#include "html_report.h"
-#include "report_charts.h"
+#include "evaluation/charts.h"
+#include "evaluation/html_report.h"
 
 namespace delio::evaluation {
 namespace fs = std::filesystem;
 
 namespace {
+using Cells = std::vector<std::string>;
+
+std::string number(double value, int decimals) {
+    return std::isfinite(value) ? fixed(value, decimals) : "-";
+}
+
+Cells cellsOf(const ReportRow& row, int decimals) {
+    return {row.name,
+            row.sequence,
+            number(row.length_m, decimals),
+            std::to_string(row.kitti.segments),
+            number(row.kitti.t_percent, decimals),
+            number(row.kitti.r_deg_per_100m, decimals),
+            number(row.ape_m, decimals),
+            number(row.rpe_m, decimals),
+            number(row.rpe_deg, decimals)};
+}
+
+void writeLine(const Cells& cells, std::ostream& out) {
+    const char* separator = "";
+    for (const auto& cell : cells) {
+        out << separator << cell;
+        separator = "\t";
+    }
+    out << '\n';
+}
+
+constexpr int kTsvDecimals = 9;
+constexpr int kTableDecimals = 4;
+
 // All that a report consists of; the page marks it as whole.
 const std::vector<std::string> kNames = {"report.html", "metrics.tsv", "lengths.tsv", "plots"};
 
@@ -68,6 +100,43 @@ void dropEmpty(std::vector<Chart>& charts) {
 }
 }  // namespace
 
+void writeMetricsTsv(const std::vector<ReportRow>& rows, std::ostream& out) {
+    writeLine({"name", "sequence", "length_m", "segments", "t_percent", "r_deg_per_100m", "ape_m",
+               "rpe_m", "rpe_deg"},
+              out);
+    for (const auto& row : rows) writeLine(cellsOf(row, kTsvDecimals), out);
+}
+
+void writeLengthsTsv(const std::vector<ReportRow>& rows, std::ostream& out) {
+    writeLine({"name", "sequence", "segment_length_m", "segments", "t_percent", "r_deg_per_100m"},
+              out);
+    for (const auto& row : rows)
+        for (const auto& errors : row.kitti.perLength)
+            writeLine({row.name, row.sequence, number(errors.length_m, kTsvDecimals),
+                       std::to_string(errors.segments), number(errors.t_percent, kTsvDecimals),
+                       number(errors.r_deg_per_100m, kTsvDecimals)},
+                      out);
+}
+
+void writeTable(const std::vector<ReportRow>& rows, std::ostream& out) {
+    std::vector<Cells> lines = {{"name", "sequence", "length [m]", "segments", "translation [%]",
+                                 "rotation [deg/100 m]", "APE [m]", "RPE [m]", "RPE [deg]"}};
+    for (const auto& row : rows) lines.push_back(cellsOf(row, kTableDecimals));
+    std::vector<std::size_t> widths(lines.front().size(), 0);
+    for (const auto& cells : lines)
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            widths[i] = std::max(widths[i], cells[i].size());
+    for (const auto& cells : lines) {
+        std::string text;
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const std::string padding(widths[i] - cells[i].size(), ' ');
+            if (i > 0) text += "  ";
+            text += i < 2 ? cells[i] + padding : padding + cells[i];  // words left, numbers right
+        }
+        out << text << '\n';
+    }
+}
+
 void writeReportFolder(const std::vector<Comparison>& comparisons,
                        const std::vector<ReportRow>& rows, const ReportNotes& notes,
                        const std::string& folder) {
@@ -86,7 +155,7 @@ void writeReportFolder(const std::vector<Comparison>& comparisons,
 
     std::set<std::string> taken = {"all"};
     std::vector<Section> sections;
-    std::vector<Chart> overview, all;
+    std::vector<Chart> overview = overviewCharts(byEstimate), all;
     for (const auto& sequence : bySequence) {
         sections.push_back({sequence, sequenceCharts(sequence, prefixOf(sequence.name, taken)),
                             mapsOf(sequence, folder)});
@@ -94,7 +163,6 @@ void writeReportFolder(const std::vector<Comparison>& comparisons,
         dropEmpty(charts);
         all.insert(all.end(), charts.begin(), charts.end());
     }
-    if (sections.size() > 1) overview = overviewCharts(byEstimate);
     dropEmpty(overview);
     all.insert(all.end(), overview.begin(), overview.end());
 

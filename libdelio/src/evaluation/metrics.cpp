@@ -1,12 +1,15 @@
-#include "delio/evaluation/kitti_metric.h"
+#include "delio/evaluation/metrics.h"
 
 #include <mrpt/core/bits_math.h>
+#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "delio/evaluation/rotation_angle.h"
+#include "core/portable_math.h"
+#include "delio/core/percentile.h"
 
 namespace delio::evaluation {
 namespace {
@@ -30,7 +33,22 @@ std::vector<Segment> segmentsOf(const std::vector<Eigen::Isometry3d>& reference,
     }
     return segments;
 }
+
+Eigen::Matrix3Xd positions(const std::vector<Eigen::Isometry3d>& poses) {
+    Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(poses.size()));
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        result.col(static_cast<Eigen::Index>(i)) = poses[i].translation();
+    return result;
+}
 }  // namespace
+
+double rotationAngle_rad(const Eigen::Isometry3d& pose) {
+    const Eigen::Matrix3d nearly = pose.linear();
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(nearly, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
+    const Eigen::Vector3d skew(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+    return portable::atan2(skew.norm(), R.trace() - 1);  // 2 sin, 2 cos
+}
 
 SegmentErrors meanOf(const std::vector<Segment>& segments) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -82,6 +100,58 @@ KittiErrors kittiErrors(const std::vector<Eigen::Isometry3d>& reference,
         result.perLength.push_back({meanOf(segments), length});
     }
     static_cast<SegmentErrors&>(result) = meanOf(result.all);
+    return result;
+}
+
+AbsoluteError absoluteError(const std::vector<Eigen::Isometry3d>& reference,
+                            const std::vector<Eigen::Isometry3d>& estimate) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (reference.empty()) return {none, none};
+    const Eigen::Matrix3Xd wanted = positions(reference);
+    const Eigen::Matrix3Xd found = positions(estimate);
+    const Eigen::Isometry3d align(Eigen::umeyama(found, wanted, false));
+    const Eigen::RowVectorXd squares = (align * found - wanted).colwise().squaredNorm();
+    return {std::sqrt(squares.mean()), std::sqrt(squares.maxCoeff())};
+}
+
+Spread spreadOf(std::vector<double> errors) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (errors.empty()) return {none, none, none, none};
+    std::sort(errors.begin(), errors.end());
+    const std::size_t n = errors.size();
+    double squares = 0;
+    for (const double e : errors) squares += e * e;
+    Spread spread;
+    spread.rmse = std::sqrt(squares / static_cast<double>(n));
+    spread.median = (errors[(n - 1) / 2] + errors[n / 2]) / 2;
+    spread.p95 = percentileOf(errors, 95);
+    spread.max = errors.back();
+    return spread;
+}
+
+PoseError poseError(const std::vector<Eigen::Isometry3d>& reference,
+                    const std::vector<Eigen::Isometry3d>& estimate) {
+    std::vector<double> translations_m, rotations_deg;
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+        const Eigen::Isometry3d error = estimate[i].inverse() * reference[i];
+        translations_m.push_back(error.translation().norm());
+        rotations_deg.push_back(mrpt::RAD2DEG(rotationAngle_rad(error)));
+    }
+    return {spreadOf(std::move(translations_m)), spreadOf(std::move(rotations_deg))};
+}
+
+RelativeError relativeError(const std::vector<Eigen::Isometry3d>& reference,
+                            const std::vector<Eigen::Isometry3d>& estimate, std::size_t delta) {
+    RelativeError result;
+    for (std::size_t i = 0; i + delta < reference.size(); ++i) {
+        const Eigen::Isometry3d wanted = reference[i].inverse() * reference[i + delta];
+        const Eigen::Isometry3d found = estimate[i].inverse() * estimate[i + delta];
+        const Eigen::Isometry3d error = found.inverse() * wanted;
+        result.translations_m.push_back(error.translation().norm());
+        result.rotations_deg.push_back(mrpt::RAD2DEG(rotationAngle_rad(error)));
+    }
+    result.translation_m = spreadOf(result.translations_m);
+    result.rotation_deg = spreadOf(result.rotations_deg);
     return result;
 }
 }  // namespace delio::evaluation

@@ -1,4 +1,4 @@
-#include "html_report.h"
+#include "evaluation/html_report.h"
 
 #include <mrpt/core/format.h>
 
@@ -13,7 +13,7 @@
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/core/printable.h"
-#include "palette.h"
+#include "evaluation/charts.h"
 
 namespace delio::evaluation {
 using mrpt::format;
@@ -55,27 +55,6 @@ nav a { margin-right: .8em; }
 )";
 
 const char* const kMean = "mean";  // heading of the rows of averages
-
-std::string html(const std::string& text) {
-    std::string result;
-    for (const char c : printable(text)) switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += c;
-        }
-    return result;
-}
 
 /** An SVG file as an address that holds it: the page needs no other file. */
 std::string dataAddress(const std::string& svgFile) {
@@ -120,12 +99,12 @@ class Page {
                const std::vector<Column>& columns) const {
         out_ << "<div class=\"scroll\"><table>\n<tr><th class=\"word\">sequence</th>"
                 "<th class=\"word\">estimate</th>";
-        for (const auto& column : columns) out_ << "<th>" << html(column.heading) << "</th>";
+        for (const auto& column : columns) out_ << "<th>" << htmlText(column.heading) << "</th>";
         out_ << "</tr>\n";
         for (std::size_t i = 0; i < groups.size(); ++i) {
             const bool first = i == 0 || groups[i] != groups[i - 1];
             out_ << (first ? "<tr class=\"first\">" : "<tr>") << "<td class=\"word\">"
-                 << (first ? html(groups[i]) : "") << "</td><td class=\"word\">"
+                 << (first ? htmlText(groups[i]) : "") << "</td><td class=\"word\">"
                  << estimate(names[i], estimates[i]) << "</td>";
             for (const auto& column : columns)
                 out_ << (isBest(groups, column, i) ? "<td class=\"best\">" : "<td>")
@@ -138,15 +117,15 @@ class Page {
     void plots(const std::vector<Chart>& charts) const {
         out_ << "<div class=\"plots\">\n";
         for (const auto& chart : charts)
-            out_ << "<figure><img alt=\"" << html(chart.caption()) << "\" src=\""
+            out_ << "<figure><img alt=\"" << htmlText(chart.caption()) << "\" src=\""
                  << dataAddress(plots_ + "/" + chart.name() + ".svg") << "\"><figcaption>"
-                 << html(chart.caption()) << ".</figcaption></figure>\n";
+                 << htmlText(chart.caption()) << ".</figcaption></figure>\n";
         out_ << "</div>\n";
     }
 
     /** Its colour and its name: on one line where that is short. */
     static std::string estimate(const std::string& name, std::size_t index) {
-        const std::string text = swatch(index) + html(name);
+        const std::string text = swatch(index) + htmlText(name);
         return name.size() > 24 ? text : "<span class=\"name\">" + text + "</span>";
     }
 
@@ -254,10 +233,10 @@ void writeHead(const std::vector<Group>& byEstimate, const ReportNotes& notes, s
            "<title>Trajectory evaluation</title>\n<style>"
         << kStyle << "</style>\n</head>\n<body>\n<h1>Trajectory evaluation</h1>\n<p>";
     for (const auto& group : byEstimate)
-        out << Page::swatch(group.estimates.front()) << html(group.name) << "&emsp;";
+        out << Page::swatch(group.estimates.front()) << htmlText(group.name) << "&emsp;";
     out << "<span class=\"swatch\" style=\"background:" << kTruthColour
-        << "\"></span>ground truth</p>\n<p class=\"note\">" << html(notes.program)
-        << ". Segments of " << html(notes.lengths)
+        << "\"></span>ground truth</p>\n<p class=\"note\">" << htmlText(notes.program)
+        << ". Segments of " << htmlText(notes.lengths)
         << " m from every tenth pose on. Bold: the lowest of a sequence.</p>\n";
 }
 
@@ -297,16 +276,16 @@ void writeSequences(const Page& page, const std::vector<Section>& sections, std:
     if (sections.size() > 1) {
         out << "<h2>Sequences</h2>\n<nav>";
         for (std::size_t i = 0; i < sections.size(); ++i)
-            out << "<a href=\"#s" << i << "\">" << html(sections[i].sequence.name) << "</a>";
+            out << "<a href=\"#s" << i << "\">" << htmlText(sections[i].sequence.name) << "</a>";
         out << "</nav>\n";
     }
     for (std::size_t i = 0; i < sections.size(); ++i) {
         const auto& section = sections[i];
-        out << "<h2 id=\"s" << i << "\">Sequence " << html(section.sequence.name) << "</h2>\n";
+        out << "<h2 id=\"s" << i << "\">Sequence " << htmlText(section.sequence.name) << "</h2>\n";
         for (std::size_t k = 0; k < section.maps.size(); ++k)
             if (!section.maps[k].empty())
                 out << "<p><a href=\"" << section.maps[k] << "\">Map of "
-                    << html(section.sequence.members[k]->row.name) << "</a></p>\n";
+                    << htmlText(section.sequence.members[k]->row.name) << "</a></p>\n";
         page.plots(section.charts);
     }
 }
@@ -321,7 +300,7 @@ void writeHtml(const std::vector<Group>& byEstimate, const std::vector<Section>&
     writeHead(byEstimate, notes, out);
     writeKittiErrors(page, lines, unlike, out);
     if (!overview.empty()) {
-        out << "<h3>Over all sequences</h3>\n";
+        out << "<h3>Over length and speed of the segments</h3>\n";
         page.plots(overview);
     }
     writePoseErrors(page, lines, notes.delta, out);

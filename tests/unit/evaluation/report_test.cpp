@@ -1,4 +1,4 @@
-#include "delio/evaluation/report/report.h"
+#include "delio/evaluation/report.h"
 
 #include <gtest/gtest.h>
 

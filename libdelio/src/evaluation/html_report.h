@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "delio/evaluation/report/report_folder.h"
-#include "report_charts.h"
+#include "delio/evaluation/report.h"
+#include "evaluation/charts.h"
 
 namespace delio::evaluation {
 /** A sequence as the page shows it. */
