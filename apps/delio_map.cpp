@@ -10,7 +10,7 @@
 #include "delio/core/numbers.h"
 #include "delio/io/output_lock.h"
 #include "delio/io/partial_folder.h"
-#include "delio/map/edit.h"
+#include "delio/map/map_point.h"
 #include "delio/map/frames.h"
 #include "delio/version.h"
 #include "map_input.h"

@@ -12,7 +12,6 @@
 #include "delio/core/numbers.h"
 #include "delio/io/output_lock.h"
 #include "delio/io/partial_folder.h"
-#include "delio/picture/png.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
 #include "delio/version.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "delio/evaluation/rotation_angle.h"
+#include "delio/evaluation/metrics.h"
 #include "delio/run/doubts.h"
 #include "delio/run/summary.h"
 

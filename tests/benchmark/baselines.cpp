@@ -19,7 +19,7 @@
 
 #include "baseline.h"
 #include "delio/core/error.h"
-#include "delio/evaluation/report/report.h"
+#include "delio/evaluation/report.h"
 #include "delio/io/drive_meta.h"
 #include "delio/io/scan_reader.h"
 #include "delio/io/trajectory.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "delio/io/scan_reader.h"
-#include "delio/picture/illustrate.h"
+#include "delio/picture/figures.h"
 #include "delio/run/run.h"
 #include "delio/run/run_folder.h"
 #include "delio_slam_fixture.h"

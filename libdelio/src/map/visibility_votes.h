@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "delio/map/removal_options.h"
+#include "delio/map/map_builder.h"
 #include "delio/scan/range_image.h"
 #include "delio/scan/voxel_table.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "delio/evaluation/kitti_metric.h"
+#include "delio/evaluation/metrics.h"
 
 namespace delio::run {
 std::size_t RunRecord::predicted() const {

@@ -1,4 +1,4 @@
-#include "delio/map/edit.h"
+#include "delio/map/map_point.h"
 
 #include <gtest/gtest.h>
 
