@@ -183,7 +183,7 @@ const box = new THREE.Box3(...[0, 1].map(k => vector(['x', 'y', 'z'].map(
     axis => about[axis + '_most'][k]))));
 for (const place of about.trajectory) box.expandByPoint(vector(place));
 let renderer, controls, clouds = [], lines = {}, picked = [], pickedLines = null;
-let asked = false, moving = false, fraction = 1, drawnAt = 0;
+let standard = null, asked = false, moving = false, fraction = 1, drawnAt = 0;
 
 /** From so far that every corner of the box is in the picture. */
 function lookAtAll(forward) {
@@ -203,15 +203,20 @@ function lookAtAll(forward) {
   redraw();
 }
 
+/** The two standard views; `standard` is the current one, until the view is moved. */
 const looks = {
   /** From above and aside, the long side of the map along the picture's. */
   reset() {
     const size = box.getSize(new THREE.Vector3());
     const along = (size.x > size.y) === (camera.aspect > 1) ? [0, 0.8, -0.6] : [0.8, 0, -0.6];
     lookAtAll(vector(along));
+    standard = looks.reset;
   },
   /** From above, north (y) up. */
-  top() { lookAtAll(vector([0, 1e-4, -1]).normalize()); },
+  top() {
+    lookAtAll(vector([0, 1e-4, -1]).normalize());
+    standard = looks.top;
+  },
 };
 
 function redraw() {
@@ -372,7 +377,10 @@ function start() {
   controls.addEventListener('change', redraw);
   let still;
   const move = on => { clearTimeout(still); moving = on; redraw(); };
-  controls.addEventListener('start', () => move(true));
+  controls.addEventListener('start', () => {
+    standard = null;
+    move(true);
+  });
   controls.addEventListener('end', () => { still = setTimeout(() => move(false), 250); });
   let downAt = [0, 0];
   canvas.addEventListener('pointerdown', event => { downAt = [event.clientX, event.clientY]; });
@@ -386,7 +394,10 @@ function start() {
   for (const input of byId('panel').querySelectorAll('input, select'))
     input.addEventListener('input', update);
   byId('fold').addEventListener('click', () => fold(!byId('panel').classList.contains('folded')));
-  window.addEventListener('resize', fit);
+  window.addEventListener('resize', () => {
+    fit();
+    if (standard) standard();
+  });
   window.addEventListener('hashchange', readAddress);
   prepare();
   fold(window.innerWidth <= 640);
