@@ -1,8 +1,8 @@
 #include "delio/evaluation/comparison.h"
 
 #include <mrpt/core/format.h>
-#include <Eigen/Dense>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,8 +1,8 @@
 #include "delio/evaluation/metrics.h"
 
 #include <mrpt/core/bits_math.h>
-#include <Eigen/Dense>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -2,8 +2,8 @@
 
 #include <mrpt/math/TPose3D.h>
 #include <mrpt/topography/conversions.h>
-#include <Eigen/Eigenvalues>
 
+#include <Eigen/Eigenvalues>
 #include <ostream>
 #include <random>
 #include <vector>

@@ -3,8 +3,8 @@
 #include <mrpt/img/TColor.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/CSetOfLines.h>
-#include <Eigen/Core>
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include <mrpt/opengl/CCamera.h>
 #include <mrpt/opengl/CFBORender.h>
 #include <mrpt/opengl/COpenGLScene.h>
-#include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CRenderizableShaderPoints.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/poses/CPose3D.h>
@@ -14,13 +13,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -39,48 +36,10 @@ using mrpt::img::TColor;
 using mrpt::img::TColorf;
 using mrpt::opengl::CFBORender;
 using mrpt::opengl::COpenGLScene;
-using mrpt::opengl::CPointCloudColoured;
 using mrpt::opengl::CRenderizable;
 using mrpt::opengl::TFontParams;
 
 namespace {
-/** In how full a cell a typical point lies. */
-double pointsPerCell(const CPointCloudColoured& cloud, double cell_m) {
-    std::unordered_map<std::uint64_t, std::uint32_t> counts;
-    std::vector<std::uint64_t> cells(cloud.size());
-    const auto part = [&](float v) {
-        constexpr std::int64_t kHalf = 1 << 20;
-        const double at = std::clamp(std::floor(double{v} / cell_m), -1.0 * kHalf, kHalf - 1.0);
-        return static_cast<std::uint64_t>(static_cast<std::int64_t>(at) + kHalf);
-    };
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        const auto& p = cloud.getPoint3Df(i);
-        if (!std::isfinite(p.x + p.y + p.z)) continue;
-        cells[i] = part(p.x) << 42 | part(p.y) << 21 | part(p.z);
-        ++counts[cells[i]];
-    }
-    std::vector<std::uint32_t> fullness;
-    fullness.reserve(cells.size());
-    for (const auto cell : cells) fullness.push_back(counts[cell]);
-    const auto middle = fullness.begin() + static_cast<std::ptrdiff_t>(fullness.size() / 2);
-    std::nth_element(fullness.begin(), middle, fullness.end());
-    return *middle;
-}
-
-double lightness(const TColorf& c) { return 0.3 * c.R + 0.6 * c.G + 0.1 * c.B; }
-
-/** How far the points of a scene's map are from one another where a typical one of them lies, if
- *  they lie on surfaces; metres. 0 where there is no map. */
-double mapSpacing_m(mrpt::opengl::COpenGLScene& scene) {
-    const auto cloud = std::dynamic_pointer_cast<CPointCloudColoured>(scene.getByName(kMapName));
-    if (!cloud || cloud->empty()) return 0;
-    constexpr double kEnough = 12, kSmallest_m = 0.25, kLargest_m = 64;
-    for (double cell_m = kSmallest_m; cell_m <= kLargest_m; cell_m *= 2)
-        if (const double points = pointsPerCell(*cloud, cell_m); points >= kEnough)
-            return cell_m / std::sqrt(points);
-    return 0;
-}
-
 /** What rendering changes in a scene, put back when it is over. Sizes in pixels (points, text) are
  *  multiplied, as the picture is rendered larger than it is wanted. */
 class PreparedScene {

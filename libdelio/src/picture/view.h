@@ -42,6 +42,10 @@ struct Content {
  *  a map do not count, so that the view is the same with and without them. */
 Content contentOf(const mrpt::opengl::COpenGLScene& scene);
 
+/** Typical distance between neighbouring points of a scene's map, if they lie on surfaces; metres.
+ *  0 where there is no map. */
+double mapSpacing_m(mrpt::opengl::COpenGLScene& scene);
+
 /** Opening angle of the camera, from the lower to the upper edge. */
 constexpr double kVerticalView_deg = 30;
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <mrpt/random/RandomGenerators.h>
-#include <Eigen/Dense>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <limits>
 
@@ -162,7 +162,7 @@ std::vector<double> xOf(const std::vector<Eigen::Isometry3d>& poses) {
     return xs;
 }
 
-std::string messageOf(const io::Trajectory& reference, const io::Trajectory& estimate) {
+std::string associationError(const io::Trajectory& reference, const io::Trajectory& estimate) {
     try {
         associate(reference, estimate);
     } catch (const Error& e) {
@@ -188,7 +188,7 @@ TEST(Association, RowsMatchWhereEitherSideHasNoStamps) {
 }
 
 TEST(Association, DifferentCountsOfRowsAreNamed) {
-    const std::string message = messageOf(unstamped(61), unstamped(60));
+    const std::string message = associationError(unstamped(61), unstamped(60));
     EXPECT_NE(message.find("61"), std::string::npos);
     EXPECT_NE(message.find("60"), std::string::npos);
 }
@@ -223,7 +223,7 @@ TEST(Association, EveryThirdPoseOfTheReferenceIsFound) {
 }
 
 TEST(Association, NoMatchAtAllIsAnError) {
-    EXPECT_NE(messageOf(stamped({0, 1, 2}), stamped({1000, 1001, 1002})).find("clock"),
+    EXPECT_NE(associationError(stamped({0, 1, 2}), stamped({1000, 1001, 1002})).find("clock"),
               std::string::npos);
 }
 

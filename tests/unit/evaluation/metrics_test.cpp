@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <mrpt/core/bits_math.h>
-#include <Eigen/Dense>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <numeric>
 
@@ -189,12 +189,6 @@ TEST(AbsoluteError, FewPosesAreNoTrap) {
         absoluteError({poseAt(0, 0, 0), poseAt(0, 0, 2)}, {poseAt(0, 0, 0), poseAt(3, 0, 0)})
             .rmse_m,
         0.5, 1e-12);
-}
-
-Poses chain(const Eigen::Isometry3d& motion, std::size_t count) {
-    Poses poses = {Eigen::Isometry3d::Identity()};
-    while (poses.size() < count) poses.push_back(poses.back() * motion);
-    return poses;
 }
 
 TEST(RelativeError, SpreadOfAList) {

@@ -9,7 +9,7 @@
 
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
-#include "picture/point_spacing.h"
+#include "picture/view.h"
 #include "picture_support.h"
 #include "ring_scan.h"
 #include "test_data.h"

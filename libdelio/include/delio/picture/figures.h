@@ -1,7 +1,7 @@
 #pragma once
 #include <mrpt/opengl/COpenGLScene.h>
-#include <Eigen/Core>
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
