@@ -40,6 +40,8 @@ using mrpt::opengl::CRenderizable;
 using mrpt::opengl::TFontParams;
 
 namespace {
+double lightness(const TColorf& c) { return 0.3 * c.R + 0.6 * c.G + 0.1 * c.B; }
+
 /** What rendering changes in a scene, put back when it is over. Sizes in pixels (points, text) are
  *  multiplied, as the picture is rendered larger than it is wanted. */
 class PreparedScene {

@@ -253,8 +253,6 @@ double pointsPerCell(const CPointCloudColoured& cloud, double cell_m) {
     std::nth_element(fullness.begin(), middle, fullness.end());
     return *middle;
 }
-
-double lightness(const TColorf& c) { return 0.3 * c.R + 0.6 * c.G + 0.1 * c.B; }
 }  // namespace
 
 Content contentOf(const mrpt::opengl::COpenGLScene& scene) {
