@@ -16,9 +16,8 @@
 #include "delio/core/stopwatch.h"
 #include "delio/formats/g2o.h"
 #include "delio/recordings/scan_reader.h"
-#include "delio/picture/illustrate.h"
+#include "delio/picture/figures.h"
 #include "delio/run/run_folder.h"
-#include "heap.h"
 #include "initial_pose.h"
 #include "live_view.h"
 #include "output_folder.h"
@@ -228,7 +227,10 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    prepareHeap();
+    // One heap for all threads; large blocks go back to the system when they are freed.
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_MMAP_THRESHOLD, 8 << 20);
+    mallopt(M_TRIM_THRESHOLD, 384 << 20);
     const bool runs = std::none_of(
         argv, argv + argc, [](const char* word) { return std::string(word) == "--print-config"; });
     SlamCommandLine line(runs);

@@ -11,7 +11,6 @@
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/files/output_folder.h"
-#include "delio/picture/png.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
 #include "delio/version.h"

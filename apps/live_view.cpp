@@ -11,7 +11,7 @@
 #include <unordered_set>
 
 #include "delio/core/error.h"
-#include "delio/map/colormap.h"
+#include "delio/map/colouring.h"
 #include "delio/picture/figures.h"
 #include "core/voxel_grid.h"
 

@@ -19,7 +19,7 @@
 
 #include "baseline.h"
 #include "delio/core/error.h"
-#include "delio/evaluation/report/report.h"
+#include "delio/evaluation/report.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/formats/trajectory.h"
 #include "delio/recordings/scan_reader.h"

@@ -19,8 +19,7 @@
 #include <vector>
 
 #include "../common/poses.h"
-#include "delio/evaluation/kitti_metric.h"
-#include "delio/evaluation/relative_error.h"
+#include "delio/evaluation/metrics.h"
 #include "delio/graph/pose_graph.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/recordings/scan_reader.h"

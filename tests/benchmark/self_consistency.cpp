@@ -17,8 +17,7 @@
 #include <vector>
 
 #include "delio/core/error.h"
-#include "delio/evaluation/relative_error.h"
-#include "delio/evaluation/rotation_angle.h"
+#include "delio/evaluation/metrics.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/recordings/scan_reader.h"
 #include "delio/formats/trajectory.h"

@@ -10,7 +10,7 @@
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/evaluation/relative_error.h"
+#include "delio/evaluation/metrics.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/recordings/scan_reader.h"
 #include "delio/formats/trajectory.h"

@@ -36,12 +36,12 @@ TEST_F(DelioEval, WritesAReportAndKeepsWhatIsThere) {
         for (const char* other : {".png", ".dat", ".gp"})
             EXPECT_TRUE(fs::exists(fs::path(file).replace_extension(other))) << name << other;
     }
-    EXPECT_EQ(drawn, 10U);  // trajectory, height, 2 over length, speed, time, in histograms
+    EXPECT_EQ(drawn, 8U);  // trajectory, height; both errors over length, speed and time
     EXPECT_EQ(pictures, drawn);
     // Nothing is fetched, from the network or from the folder.
     for (const char* link : {"src=\"http", "href=\"http", "url(", "<script", "<link"})
         EXPECT_EQ(page.find(link), std::string::npos) << link;
-    EXPECT_EQ(test::namesIn(folder_ / "deep/report").size(), 44U);  // and no partial one
+    EXPECT_EQ(test::namesIn(folder_ / "deep/report").size(), 36U);  // and no partial one
 
     expectFailure(report("deep/report"), 1, "--force");
     EXPECT_EQ(report("deep/report", "--force").exitCode, 0);

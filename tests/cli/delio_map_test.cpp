@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <set>
 
-#include "delio/map/edit.h"
 #include "delio/map/map_builder.h"
+#include "delio/map/map_point.h"
 #include "delio/map/pcd.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"

@@ -1,7 +1,7 @@
 // Whoever calls the library gets what delio-slam leaves.
 #include <gtest/gtest.h>
 
-#include "delio/picture/illustrate.h"
+#include "delio/picture/figures.h"
 #include "delio/recordings/scan_reader.h"
 #include "delio/run/run.h"
 #include "delio/run/run_folder.h"

@@ -5,7 +5,7 @@
 
 #include "command.h"
 #include "delio/core/error.h"
-#include "delio/evaluation/kitti_metric.h"
+#include "delio/evaluation/metrics.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/run/doubts.h"
 #include "delio/run/run_folder.h"

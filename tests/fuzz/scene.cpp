@@ -1,5 +1,5 @@
 #include "delio/picture/scene.h"
-#include "picture/content.h"
+#include "picture/view.h"
 #include "target.h"
 
 /** A .3Dscene, and what delio-snapshot looks for in it. */

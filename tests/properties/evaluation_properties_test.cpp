@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "delio/evaluation/absolute_error.h"
-#include "delio/evaluation/kitti_metric.h"
+#include "delio/evaluation/metrics.h"
 #include "generators.h"
 
 namespace {

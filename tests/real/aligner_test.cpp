@@ -9,7 +9,7 @@
 #include <string>
 
 #include "delio/core/geometry.h"
-#include "delio/evaluation/rotation_angle.h"
+#include "delio/evaluation/metrics.h"
 #include "delio/formats/trajectory.h"
 #include "odometry/preprocess.h"
 #include "test_data.h"

@@ -7,8 +7,7 @@
 #include <set>
 
 #include "command.h"
-#include "delio/evaluation/relative_error.h"
-#include "delio/evaluation/rotation_angle.h"
+#include "delio/evaluation/metrics.h"
 #include "delio/formats/trajectory.h"
 #include "poses.h"
 #include "test_data.h"

@@ -4,8 +4,7 @@
 #include <sstream>
 
 #include "delio/evaluation/comparison.h"
-#include "delio/evaluation/frame_check.h"
-#include "delio/evaluation/kitti_metric.h"
+#include "delio/evaluation/metrics.h"
 #include "delio/formats/trajectory.h"
 #include "test_data.h"
 

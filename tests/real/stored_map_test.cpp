@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "command.h"
-#include "delio/evaluation/relative_error.h"
+#include "delio/evaluation/metrics.h"
 #include "delio/run/run_folder.h"
 #include "test_data.h"
 

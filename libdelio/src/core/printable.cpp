@@ -45,6 +45,27 @@ std::string printable(const std::string& text) {
     return result;
 }
 
+std::string htmlText(const std::string& text) {
+    std::string result;
+    for (const char c : printable(text)) switch (c) {
+            case '&':
+                result += "&amp;";
+                break;
+            case '<':
+                result += "&lt;";
+                break;
+            case '>':
+                result += "&gt;";
+                break;
+            case '"':
+                result += "&quot;";
+                break;
+            default:
+                result += c;
+        }
+    return result;
+}
+
 std::string shortened(const std::string& text, std::size_t most) {
     if (text.size() <= most) return text;
     const auto continues = [&](std::size_t i) {

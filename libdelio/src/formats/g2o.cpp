@@ -14,7 +14,7 @@
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/files/output_file.h"
-#include "delio/graph/information.h"
+#include "graph/residual.h"
 
 namespace delio::io {
 using graph::convertInformation;

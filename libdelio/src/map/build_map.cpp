@@ -1,22 +1,161 @@
-#include "build_map.h"
+#include "map/build_map.h"
 
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
+#include <tbb/parallel_for.h>
 
 #include <chrono>
+#include <cmath>
+#include <memory>
 
+#include "core/principal_axes.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/core/stopwatch.h"
-#include "spooled_scan.h"
-#include "surfaces_about.h"
-#include "visibility_votes.h"
-#include "voxel_set.h"
+#include "core/voxel_table.h"
+#include "map/stored_scan.h"
+#include "map/visibility_votes.h"
+#include "map/voxel_set.h"
 
 namespace delio::map {
 using Eigen::Isometry3d;
 
 namespace {
+using Voxel = Eigen::Array3i;
+
+/** The first point of each voxel, found by its place. */
+class FirstPoints {
+ public:
+    FirstPoints(const MapPoints& points, double size) : size_(size) {
+        firsts_.reserve(points.size());
+        index_.reserve(points.size());
+        for (std::uint32_t i = 0; i < points.size(); ++i)
+            if (index_.insert(keyOf(voxelOf(points[i]))) == firsts_.size()) firsts_.push_back(i);
+    }
+
+    Voxel voxelOf(const MapPoint& point) const {
+        return (point.position.cast<double>().array() / size_).floor().cast<int>();
+    }
+
+    template <typename Visit>
+    void forNeighbours(const Voxel& voxel, const Visit& visit) const {
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z) {
+                    const auto number = index_.find(keyOf(voxel + Voxel(x, y, z)));
+                    if (number != VoxelIndex::kNone) visit(firsts_[number]);
+                }
+    }
+
+ private:
+    static std::uint64_t keyOf(const Voxel& voxel) {
+        const auto part = [](int v) {
+            return static_cast<std::uint64_t>(static_cast<std::int64_t>(v)) & ((1U << 21) - 1);
+        };
+        return part(voxel.x()) << 42 | part(voxel.y()) << 21 | part(voxel.z());
+    }
+
+    double size_;
+    VoxelIndex index_;
+    std::vector<std::uint32_t> firsts_;
+};
+
+/** Gives each point the normal and the residual of the plane through the points about it (those in
+ *  its voxel's neighbourhood, one a voxel of `spacing` metres; 0: of 0.2). Its normal says before
+ *  towards which side it has to point; it is 0 afterwards where too few points are about. */
+void findSurfaces(MapPoints& points, double spacing) {
+    constexpr double kSpacing_m = 0.2;
+    constexpr int kLeast = 5;
+    // Points about a line, a pole or a single ring, have no normal.
+    constexpr double kBroad = 0.05;
+    const FirstPoints firsts(points, spacing > 0 ? spacing : kSpacing_m);
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+        MapPoint& point = points[i];
+        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+        Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+        int count = 0;
+        firsts.forNeighbours(firsts.voxelOf(point), [&](std::uint32_t other) {
+            const Eigen::Vector3f d = points[other].position - point.position;
+            sum += d;
+            squares += d * d.transpose();
+            ++count;
+        });
+        const Eigen::Vector3f towards = point.normal;
+        point.normal.setZero();
+        if (count < kLeast) return;
+        const Eigen::Vector3f mean = sum / static_cast<float>(count);
+        const Eigen::Matrix3f scatter =
+            squares / static_cast<float>(count) - mean * mean.transpose();
+        const auto [variances, axes] = principalAxes(scatter.cast<double>());
+        if (!(variances[1] > kBroad * variances[2])) return;
+        point.residual_m = static_cast<float>(std::sqrt(std::max(variances[0], 0.0)));
+        point.normal = axes.col(0).cast<float>();
+        if (point.normal.dot(towards) < 0) point.normal = -point.normal;
+    });
+}
+
+/** A CObservationPointCloud whose points, without those that are dynamic, are fetched from the disk
+ * while they are needed: a simplemap of such scans is written with one of them in memory at a time,
+ * and what is written is a plain CObservationPointCloud with its points embedded. */
+class SpooledScan : public mrpt::obs::CObservationPointCloud {
+ public:
+    SpooledScan(std::shared_ptr<const io::Spool> spool, const StoredScan& scan,
+                const Eigen::Isometry3d& sensorInWorld,
+                std::shared_ptr<const VisibilityVotes> votes)
+        : spool_(std::move(spool)),
+          place_(scan.stillPoints()),
+          withIntensity_(scan.withIntensity),
+          sensorInWorld_(sensorInWorld),
+          votes_(std::move(votes)) {}
+
+    void load() const override;
+    void unload() const override;
+    mrpt::rtti::CObject* clone() const override { return new SpooledScan(*this); }
+
+ protected:
+    void serializeTo(mrpt::serialization::CArchive& out) const override;
+
+ private:
+    std::shared_ptr<const io::Spool> spool_;
+    io::Spool::Place place_;
+    bool withIntensity_;
+    Eigen::Isometry3d sensorInWorld_;
+    std::shared_ptr<const VisibilityVotes> votes_;
+};
+
+void SpooledScan::load() const {
+    if (pointcloud) return;
+    const auto floats = spool_->read(place_);
+    const auto withIntensity = withIntensity_ ? mrpt::maps::CPointsMapXYZI::Create() : nullptr;
+    mrpt::maps::CPointsMap::Ptr cloud = withIntensity;
+    if (!cloud) cloud = mrpt::maps::CSimplePointsMap::Create();
+    cloud->reserve(floats.size() / 4);
+    for (std::size_t i = 0; 4 * i < floats.size(); ++i) {
+        const float* p = &floats[4 * i];
+        if (votes_->isDynamic(sensorInWorld_ * Eigen::Vector3f(p[0], p[1], p[2]).cast<double>()))
+            continue;
+        if (withIntensity)
+            withIntensity->insertPointRGB(p[0], p[1], p[2], p[3], 0, 0);
+        else
+            cloud->insertPointFast(p[0], p[1], p[2]);
+    }
+    cloud->mark_as_modified();
+    // MRPT's own load() of scans that are stored elsewhere does the same to a const object.
+    const_cast<SpooledScan*>(this)->pointcloud = cloud;
+}
+
+void SpooledScan::unload() const { const_cast<SpooledScan*>(this)->pointcloud.reset(); }
+
+void SpooledScan::serializeTo(mrpt::serialization::CArchive& out) const {
+    const bool wasLoaded = pointcloud != nullptr;
+    load();
+    CObservationPointCloud::serializeTo(out);
+    if (!wasLoaded) unload();
+}
+
 const Isometry3d& poseOf(const StoredScan& scan, const std::vector<Isometry3d>& poses) {
     if (scan.poseIndex >= poses.size())
         throw Error("the map needs pose " + std::to_string(scan.poseIndex) +

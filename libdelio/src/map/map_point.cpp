@@ -1,8 +1,19 @@
 #include "delio/map/map_point.h"
 
+#include <algorithm>
+
+#include "map/voxel_set.h"
+
 namespace delio::map {
 using mrpt::maps::CPointsMap;
 using mrpt::maps::CPointsMapXYZI;
+
+namespace {
+template <typename IsOut>
+void removeIf(MapPoints& points, const IsOut& isOut) {
+    points.erase(std::remove_if(points.begin(), points.end(), isOut), points.end());
+}
+}  // namespace
 
 CPointsMapXYZI cloudOf(const MapPoints& points) {
     CPointsMapXYZI cloud;
@@ -26,5 +37,24 @@ MapPoints pointsOf(const CPointsMap& cloud) {
         if (withIntensity) points[i].intensity = withIntensity->getPointIntensity_fast(i);
     }
     return points;
+}
+
+void move(MapPoints& points, const Eigen::Isometry3d& otherFromMap) {
+    for (auto& point : points) {
+        point.position = (otherFromMap * point.position.cast<double>()).cast<float>();
+        point.normal = (otherFromMap.linear() * point.normal.cast<double>()).cast<float>();
+    }
+}
+
+void crop(MapPoints& points, const Eigen::AlignedBox3d& box) {
+    removeIf(points, [&](const MapPoint& point) {
+        return !box.contains(Eigen::Vector3d(point.position.cast<double>()));
+    });
+}
+
+void thinOut(MapPoints& points, double spacing) {
+    VoxelSet taken(spacing);
+    removeIf(points,
+             [&](const MapPoint& point) { return !taken.insert(point.position.cast<double>()); });
 }
 }  // namespace delio::map

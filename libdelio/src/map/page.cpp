@@ -2,51 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
 
 #include "delio/core/error.h"
+#include "delio/core/printable.h"
 #include "delio/files/output_file.h"
-#include "page_cloud.h"
-#include "page_texts.h"
+#include "map/page_cloud.h"
 
 namespace delio::map {
 namespace {
 using Poses = std::vector<Eigen::Isometry3d>;
 
-std::string html(const std::string& text) {
-    std::string result;
-    for (const char c : text) switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-        }
-    return result;
-}
+/** Of three.js's examples: what turns the view, and lines wider than a pixel. */
+constexpr const char* kExamples[] = {"controls/OrbitControls.js", "lines/LineSegmentsGeometry.js",
+                                     "lines/LineMaterial.js", "lines/LineSegments2.js"};
 
-std::string readThreeJs(const std::string& file, const std::string& page) {
+std::string readScript(const std::filesystem::path& file, const std::string& page) {
     std::ifstream in(file, std::ios::binary);
     std::ostringstream read;
     read << in.rdbuf();
     std::string text = read.str();
     if (text.empty())
-        throw Error("cannot write '" + page + "': three.js, which draws it, is not at '" + file +
-                    "'; install Debian's libjs-three");
+        throw Error("cannot write '" + page + "': a part of three.js, which draws it, is not at '" +
+                    file.string() + "'; install Debian's libjs-three");
     if (text.find("</script") != std::string::npos || text.find("<!--") != std::string::npos)
-        throw Error("cannot write '" + page + "': '" + file + "' cannot stand in a page");
+        throw Error("cannot write '" + page + "': '" + file.string() + "' cannot stand in a page");
+    return text + '\n';
+}
+
+/** three.js and those of its examples that a page needs, which lie beside it. */
+std::string readThreeJs(const std::string& file, const std::string& page) {
+    std::string text = readScript(file, page);
+    const auto examples = std::filesystem::path(file).parent_path() / "examples" / "js";
+    for (const char* name : kExamples) text += readScript(examples / name, page);
     return text;
 }
 
@@ -222,7 +214,7 @@ void savePage(const PageContent& content, const std::string& path, const std::st
             const std::string name = page.substr(begin + 2, end - begin - 2);
             at = end + 2;
             if (name == "title")
-                out << html(content.title);
+                out << htmlText(content.title);
             else if (name == "three.js")
                 out << three;
             else if (name == "about")

@@ -1,4 +1,4 @@
-#include "page_cloud.h"
+#include "map/page_cloud.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,15 +1,16 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "delio/map/colormap.h"
+#include "delio/map/colouring.h"
 #include "delio/map/map_point.h"
-#include "ground_height.h"
+#include "map/ground.h"
 
 namespace delio::map {
-/** From the lowest to the highest value that a byte or two stand for. */
+/** The values that the lowest and the highest stored number stand for. */
 struct PageScales {
     ValueRange intensity, time_s;
 };
@@ -46,4 +47,7 @@ PageCloud pageCloudOf(const MapPoints& points, const PageScales& scales,
 /** Lines of base64 with a whole number of bytes each, kBase64Line characters but for the last. */
 constexpr std::size_t kBase64Line = 8192;
 void writeBase64(const std::uint8_t* bytes, std::size_t count, std::ostream& out);
+
+/** The files of share/page by name, as they were when the library was built. */
+const std::map<std::string, std::string>& pageTexts();
 }  // namespace delio::map

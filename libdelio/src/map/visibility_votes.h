@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/voxel_table.h"
-#include "delio/map/removal_options.h"
+#include "delio/map/map_builder.h"
 #include "odometry/range_image.h"
+#include "core/voxel_table.h"
 
 namespace delio::map {
 /** What the scans of a whole drive say of each voxel in which they saw something: how many saw it,

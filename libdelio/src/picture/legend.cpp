@@ -1,9 +1,16 @@
-#include "legend.h"
+#include "picture/legend.h"
 
 #include <mrpt/img/CImage.h>
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt/opengl/CText.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "delio/core/numbers.h"
+#include "picture/view.h"
 
 namespace delio::picture {
 using mrpt::img::TColor;
@@ -44,6 +51,35 @@ void addText(COpenGLScene& scene, int x, double row, unsigned id, const std::str
 }
 }  // namespace
 
+double roundLength(double length_m) {
+    const double power = std::pow(10, std::floor(std::log10(length_m)));
+    for (const double factor : {1.0, 2.0, 5.0})
+        if (length_m <= factor * power * 1.3) return factor * power;
+    return 10 * power;
+}
+
+std::string metresText(double length_m) {
+    return length_m >= 1000 ? rounded(length_m / 1000, 6) + " km" : rounded(length_m, 6) + " m";
+}
+
+mrpt::opengl::CSetOfLines::Ptr wideLines(const mrpt::img::TColor& colour, float width_px) {
+    auto set = mrpt::opengl::CSetOfLines::Create();
+    set->setColor_u8(colour);
+    set->setVerticesPointSize(width_px);
+    set->enableVariablePointSize(false);
+    return set;
+}
+
+void appendWide(mrpt::opengl::CSetOfLines& set, const Eigen::Vector3d& from,
+                const Eigen::Vector3d& to, double piece_m) {
+    const int pieces = std::clamp(static_cast<int>((to - from).norm() / piece_m), 1, 1000);
+    const auto at = [&](int k) {
+        const Eigen::Vector3d p = from + (to - from) * (double(k) / pieces);
+        return mrpt::math::TPoint3D(p.x(), p.y(), p.z());
+    };
+    for (int k = 0; k < pieces; ++k) set.appendLine(at(k), at(k + 1));
+}
+
 void addLegendText(COpenGLScene& scene, unsigned row, const std::string& text,
                    const TColor& colour) {
     addText(scene, kMargin_px, row, row, text, colour);
@@ -81,5 +117,84 @@ void repaintBar(COpenGLScene& scene) {
             if (isColourBar(*viewport) && viewport->getByName(name))
                 return paint(*viewport, map::colormapNamed(name));
     recolourBar(scene, map::Colormap::Turbo);  // of a scene that does not say it
+}
+
+ScaleBar::ScaleBar(const View& view, const SnapshotOptions& options) {
+    const double length_m = roundLength(view.metresAcross / 8);
+    const double marks = sizeOfMarks(options);
+    width_px = static_cast<int>(std::lround(length_m / view.metresAcross * options.width_px));
+    height_px = static_cast<int>(std::lround(6 * marks));
+    right_px = static_cast<int>(options.width_px) - static_cast<int>(25 * marks);
+    bottom_px = static_cast<int>(options.height_px) - static_cast<int>(25 * marks);
+    text = metresText(length_m);
+}
+
+void ScaleBar::drawInto(mrpt::img::CImage& image, const mrpt::img::TColor& ink) const {
+    image.filledRectangle(right_px - width_px, bottom_px - height_px, right_px, bottom_px, ink);
+}
+
+LegendLayer::LegendLayer(const mrpt::img::TColorf& background, double around_px)
+    : around_px_(around_px) {
+    scene_.getViewport()->setCustomBackgroundColor(background);
+}
+
+void LegendLayer::addText(double x, double y, const std::string& text,
+                          const mrpt::opengl::TFontParams& font) {
+    scene_.getViewport()->addTextMessage(x, y, text, texts_++, font);
+    mrpt::opengl::CText measured(text);
+    measured.setFont(font.vfont_name, static_cast<int>(font.vfont_scale));
+    const double size = double{font.vfont_scale};
+    addPlate(x, y - 0.3 * size, measured.computeTextExtension().first * size, 1.3 * size);
+}
+
+void LegendLayer::addBar(const mrpt::opengl::COpenGLViewport& bar, double x, double y, double width,
+                         double height) {
+    mrpt::io::CMemoryStream stream;
+    mrpt::serialization::archiveFrom(stream) << bar;
+    stream.Seek(0);
+    const auto copy = scene_.createViewport("bar " + std::to_string(bars_++));
+    mrpt::serialization::archiveFrom(stream) >> *copy;
+    copy->setViewportPosition(x, y, width, height);
+    addPlate(x, y, width, height);
+}
+
+void LegendLayer::addPlate(double x, double y, double width, double height) {
+    const auto pixel = [](double v) { return static_cast<int>(std::lround(v)); };
+    Plate plate{pixel(x - around_px_), pixel(y - around_px_), pixel(x + width + around_px_),
+                pixel(y + height + around_px_)};
+    const auto touches = [&](const Plate& other) {
+        return plate.left < other.right && other.left < plate.right && plate.bottom < other.top &&
+               other.bottom < plate.top;
+    };
+    for (auto other = plates_.begin(); other != plates_.end();) {
+        if (!touches(*other)) {
+            ++other;
+            continue;
+        }
+        plate = {std::min(plate.left, other->left), std::min(plate.bottom, other->bottom),
+                 std::max(plate.right, other->right), std::max(plate.top, other->top)};
+        plates_.erase(other);
+        other = plates_.begin();  // the larger one may touch those that were passed
+    }
+    plates_.push_back(plate);
+}
+
+bool LegendLayer::isInRows(int lowest, int highest) const {
+    return std::any_of(plates_.begin(), plates_.end(), [&](const Plate& plate) {
+        return plate.bottom <= highest && plate.top >= lowest;
+    });
+}
+
+void LegendLayer::copy(const mrpt::img::CImage& from, mrpt::img::CImage& to, int lowest) const {
+    const int width = static_cast<int>(to.getWidth()), rows = static_cast<int>(to.getHeight());
+    for (const Plate& plate : plates_) {
+        const int left = std::max(plate.left, 0), right = std::min(plate.right, width);
+        if (left >= right) continue;
+        for (int y = std::max(plate.bottom, lowest); y < std::min(plate.top, lowest + rows); ++y) {
+            const auto row = static_cast<unsigned>(rows - 1 - (y - lowest));
+            std::copy_n(from.ptrLine<std::uint8_t>(row) + 3 * left, 3 * (right - left),
+                        to.ptrLine<std::uint8_t>(row) + 3 * left);
+        }
+    }
 }
 }  // namespace delio::picture

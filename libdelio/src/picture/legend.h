@@ -1,12 +1,31 @@
 #pragma once
+#include <mrpt/img/CImage.h>
 #include <mrpt/img/TColor.h>
 #include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt/opengl/CSetOfLines.h>
 
+#include <Eigen/Core>
 #include <string>
+#include <vector>
 
-#include "delio/map/colormap.h"
+#include "delio/map/colouring.h"
+#include "picture/view.h"
 
 namespace delio::picture {
+/** 1, 2 or 5 times a power of ten, near to the length. */
+double roundLength(double length_m);
+
+/** "50 m", "0.2 m", "2 km". */
+std::string metresText(double length_m);
+
+/** A set for appendWide(). MRPT draws lines one pixel wide, but their ends as dots of any size: a
+ *  line of many short pieces looks as wide as the dots. */
+mrpt::opengl::CSetOfLines::Ptr wideLines(const mrpt::img::TColor& colour, float width_px);
+
+/** Appends a line in up to 1000 pieces of about `piece_m`. */
+void appendWide(mrpt::opengl::CSetOfLines& set, const Eigen::Vector3d& from,
+                const Eigen::Vector3d& to, double piece_m);
+
 /** Height of a line of a legend, pixels. */
 constexpr int kLegendLine_px = 24;
 
@@ -29,4 +48,51 @@ bool isColourBar(mrpt::opengl::COpenGLViewport& viewport);
 
 /** Changes the colours of the bar, if there is one. */
 void recolourBar(mrpt::opengl::COpenGLScene& scene, map::Colormap colormap);
+
+/** A bar of a round length in the lower right corner of a picture, and its text. Pixels count from
+ *  the upper left corner. */
+struct ScaleBar {
+    ScaleBar(const View& view, const SnapshotOptions& options);
+    void drawInto(mrpt::img::CImage& image, const mrpt::img::TColor& ink) const;
+
+    int width_px, height_px, right_px, bottom_px;
+    std::string text;
+};
+
+/** Texts and a colour bar over a rendered picture, each on a plate of the background's colour, so
+ *  that they are readable over points. Pixels of the rendered picture, from its lower left corner.
+ */
+class LegendLayer {
+ public:
+    /** @param around_px how far plates reach beyond what is on them */
+    LegendLayer(const mrpt::img::TColorf& background, double around_px);
+
+    void addText(double x, double y, const std::string& text,
+                 const mrpt::opengl::TFontParams& font);
+    /** A viewport with an image, at another place. */
+    void addBar(const mrpt::opengl::COpenGLViewport& bar, double x, double y, double width,
+                double height);
+    /** The plate of what somebody else draws there. */
+    void addPlate(double x, double y, double width, double height);
+
+    /** To be rendered as large as the picture. */
+    mrpt::opengl::COpenGLScene& scene() { return scene_; }
+
+    /** Whether some of it is in these rows, which count from below. */
+    bool isInRows(int lowest, int highest) const;
+
+    /** Copies the plates with what is on them from a picture of scene() to one of the same rows,
+     *  the lowest of which is `lowest`. */
+    void copy(const mrpt::img::CImage& from, mrpt::img::CImage& to, int lowest) const;
+
+ private:
+    struct Plate {
+        int left, bottom, right, top;
+    };
+
+    double around_px_;
+    mrpt::opengl::COpenGLScene scene_;
+    std::vector<Plate> plates_;
+    unsigned texts_ = 0, bars_ = 0;
+};
 }  // namespace delio::picture

@@ -1,31 +1,225 @@
 #include "delio/picture/render.h"
 
+#include <mrpt/img/TColor.h>
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/opengl/CCamera.h>
 #include <mrpt/opengl/CFBORender.h>
+#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt/opengl/CRenderizableShaderPoints.h>
+#include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/poses/CPose3D.h>
+#include <mrpt/serialization/CArchive.h>
+#include <png.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
-#include "band_viewports.h"
-#include "bands.h"
-#include "core/chunked.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/picture/png.h"
-#include "eye_dome.h"
-#include "framing.h"
-#include "marks.h"
-#include "prepared_scene.h"
-#include "scale_bar.h"
+#include "core/chunked.h"
+#include "delio/files/output_file.h"
+#include "picture/bands.h"
+#include "picture/legend.h"
+#include "picture/shading.h"
+#include "picture/view.h"
 
 namespace delio::picture {
 using mrpt::img::CImage;
+using mrpt::img::TColor;
+using mrpt::img::TColorf;
 using mrpt::opengl::CFBORender;
 using mrpt::opengl::COpenGLScene;
+using mrpt::opengl::CRenderizable;
+using mrpt::opengl::TFontParams;
 
 namespace {
+double lightness(const TColorf& c) { return 0.3 * c.R + 0.6 * c.G + 0.1 * c.B; }
+
+/** What rendering changes in a scene, put back when it is over. Sizes in pixels (points, text) are
+ *  multiplied, as the picture is rendered larger than it is wanted. */
+class PreparedScene {
+ public:
+    /** @param enlarged how many times as large as wanted the picture is rendered
+     *  @param view decides on the size of points */
+    PreparedScene(mrpt::opengl::COpenGLScene& scene, const SnapshotOptions& options, float enlarged,
+                  const View& view);
+    ~PreparedScene();
+    PreparedScene(const PreparedScene&) = delete;
+    PreparedScene& operator=(const PreparedScene&) = delete;
+
+    void lookFrom(const View& view);
+
+    /** The scene's own texts and its bar of colours, and the scale bar's text and plate. The
+     *  prepared scene has none of them. */
+    LegendLayer legend(const std::optional<ScaleBar>& bar) const;
+
+    /** Stands out against the background. */
+    mrpt::img::TColor ink() const;
+
+ private:
+    struct Size {
+        std::shared_ptr<mrpt::opengl::CRenderizableShaderPoints> points;
+        float pixels;
+        bool variable;
+    };
+    using Viewport = mrpt::opengl::COpenGLViewport::Ptr;
+
+    void enlargePoints(const View& view);
+    /** Of the map's points, as they are rendered: such that surfaces look closed. */
+    float mapPointSize(float stored_px, const View& view) const;
+    void enlargeOtherViewports();
+    void addScaleBar(const ScaleBar& bar, LegendLayer& layer) const;
+    /** From 1 on it is pixels, below a share of the picture. */
+    double larger(double v) const { return v >= 1 ? v * double{marks_} : v; }
+
+    mrpt::opengl::COpenGLScene& scene_;
+    Viewport viewport_;
+    const SnapshotOptions& options_;
+    float enlarged_, marks_;
+    float clipNear_ = 0, clipFar_ = 0;
+    mrpt::img::TColorf background_;
+    std::vector<Size> sizes_;
+    std::vector<std::pair<Viewport, std::unique_ptr<mrpt::io::CMemoryStream>>> others_;
+    struct Bar {
+        Viewport viewport;
+        double x, y, width, height;
+    };
+    std::vector<Bar> bars_;
+    std::map<uint32_t, mrpt::opengl::CTextMessageCapable::DataPerText> texts_;
+};
+
+PreparedScene::PreparedScene(mrpt::opengl::COpenGLScene& scene, const SnapshotOptions& options,
+                             float enlarged, const View& view)
+    : scene_(scene),
+      viewport_(scene.getViewport()),
+      options_(options),
+      enlarged_(enlarged),
+      marks_(static_cast<float>(sizeOfMarks(options)) * enlarged) {
+    viewport_->getViewportClipDistances(clipNear_, clipFar_);
+    background_ = viewport_->getCustomBackgroundColor();
+    texts_ = viewport_->getTextMessages().messages;
+    viewport_->clearTextMessages();
+    if (options.background) viewport_->setCustomBackgroundColor(TColorf(*options.background));
+    enlargePoints(view);
+    enlargeOtherViewports();
+}
+
+PreparedScene::~PreparedScene() {
+    viewport_->setViewportClipDistances(clipNear_, clipFar_);
+    viewport_->setCustomBackgroundColor(background_);
+    for (const auto& [points, size, variable] : sizes_) {
+        points->setPointSize(size);
+        points->enableVariablePointSize(variable);
+    }
+    // MRPT would keep the textures of these, too, of a context that is gone.
+    for (const auto& [viewport, kept] : others_) {
+        kept->Seek(0);
+        mrpt::serialization::archiveFrom(*kept) >> *viewport;
+    }
+    viewport_->clearTextMessages();
+    for (const auto& [id, text] : texts_)
+        viewport_->addTextMessage(text.x, text.y, text.text, id, text);
+    // Buffers and shaders belong to the context that is about to go.
+    scene_.unloadShaders();
+    scene_.freeOpenGLResources();
+    // MRPT does not notice by itself that it has to make them anew for the next picture.
+    scene_.visitAllObjects([](const CRenderizable::Ptr& object) { object->notifyChange(); });
+}
+
+float PreparedScene::mapPointSize(float stored_px, const View& view) const {
+    // Neighbours touch, and overlap a little as they lie at random; larger ones would hide poles.
+    constexpr double kOverlap = 1.2, kLargest = 8;
+    const double least_px = double{stored_px} * sizeOfMarks(options_);
+    const double spacing_px = mapSpacing_m(scene_) / view.metresAcross * options_.width_px;
+    return static_cast<float>(std::clamp(kOverlap * spacing_px, least_px, kLargest * least_px)) *
+           enlarged_;
+}
+
+void PreparedScene::enlargePoints(const View& view) {
+    const float wider = std::max(marks_, enlarged_);
+    // From near, the gaps between points grow: let the points grow as well.
+    const float nearer = static_cast<float>(std::clamp(std::sqrt(view.magnification), 1.0, 3.0));
+    scene_.visitAllObjects([&](const CRenderizable::Ptr& object) {
+        const auto points =
+            std::dynamic_pointer_cast<mrpt::opengl::CRenderizableShaderPoints>(object);
+        if (!points) return;
+        sizes_.push_back({points, points->getPointSize(), points->isEnabledVariablePointSize()});
+        // MRPT would draw huge squares wherever a point's depth in clip space is about 0.
+        points->enableVariablePointSize(false);
+        const bool isCloud = !std::dynamic_pointer_cast<mrpt::opengl::CSetOfLines>(object) &&
+                             object->getName() != "start" && object->getName() != "end";
+        if (isCloud && options_.pointSize_px)
+            points->setPointSize(*options_.pointSize_px * enlarged_);
+        else if (object->getName() == kMapName || object->getName() == kRemovedName)
+            points->setPointSize(mapPointSize(points->getPointSize(), view));
+        else
+            points->setPointSize(points->getPointSize() * (isCloud ? wider * nearer : marks_));
+    });
+}
+
+void PreparedScene::enlargeOtherViewports() {
+    constexpr double kNothing = 1e-9;  // a share of the picture; MRPT does not take 0
+    for (const auto& viewport : scene_.viewports()) {
+        if (viewport == viewport_) continue;
+        auto& kept = others_.emplace_back(viewport, std::make_unique<mrpt::io::CMemoryStream>());
+        mrpt::serialization::archiveFrom(*kept.second) << *viewport;
+        double x = 0, y = 0, w = 0, h = 0;
+        viewport->getViewportPosition(x, y, w, h);
+        if (hasLegend(options_) && isColourBar(*viewport))
+            bars_.push_back({viewport, larger(x), larger(y), larger(w), larger(h)});
+        if (hasLegend(options_) && !isColourBar(*viewport))
+            viewport->setViewportPosition(larger(x), larger(y), larger(w), larger(h));
+        else
+            viewport->setViewportPosition(0, 0, kNothing, kNothing);
+    }
+}
+
+void PreparedScene::lookFrom(const View& view) {
+    viewport_->setViewportClipDistances(static_cast<float>(nearClipOf(view)),
+                                        static_cast<float>(view.farthest));
+}
+
+LegendLayer PreparedScene::legend(const std::optional<ScaleBar>& bar) const {
+    constexpr double kAround_px = 7;  // so that the plates of neighbouring lines touch
+    LegendLayer layer(viewport_->getCustomBackgroundColor(), kAround_px * double{marks_});
+    if (!hasLegend(options_)) return layer;
+    for (const auto& [id, text] : texts_) {
+        TFontParams font = text;
+        font.vfont_scale *= marks_;
+        // On another background than the scene's own, a text must not vanish.
+        const double behind = lightness(viewport_->getCustomBackgroundColor());
+        if (std::abs(lightness(font.color) - behind) < 0.3) font.color = TColorf(ink());
+        layer.addText(larger(text.x), larger(text.y), text.text, font);
+    }
+    for (const auto& own : bars_) layer.addBar(*own.viewport, own.x, own.y, own.width, own.height);
+    if (bar) addScaleBar(*bar, layer);
+    return layer;
+}
+
+void PreparedScene::addScaleBar(const ScaleBar& bar, LegendLayer& layer) const {
+    TFontParams font;
+    font.vfont_name = "sans";
+    font.vfont_scale = 14.0F * marks_;
+    font.color = TColorf(ink());
+    const auto pixels = [&](int px) { return px * double{enlarged_}; };
+    const double bottom = pixels(static_cast<int>(options_.height_px) - bar.bottom_px);
+    const double left = pixels(bar.right_px - bar.width_px), height = pixels(bar.height_px);
+    layer.addPlate(left, bottom, pixels(bar.width_px), height);
+    layer.addText(left, bottom + 2.5 * height, bar.text, font);
+}
+
+TColor PreparedScene::ink() const {
+    const bool dark = lightness(viewport_->getCustomBackgroundColor()) < 0.5;
+    return dark ? TColor(255, 255, 255) : TColor(0, 0, 0);
+}
+
 /** Pixels of the picture that MRPT renders: twice the size, then averaged, for smooth edges. MRPT
  *  reads pixels into rows without padding while OpenGL pads them to four bytes, so the width has to
  *  be a multiple of four; the extra columns are cut off again. */
@@ -161,6 +355,30 @@ class Painter {
     std::unique_ptr<CFBORender> renderer_;
 };
 }  // namespace
+
+void checkPngName(const std::string& path) {
+    if (std::filesystem::path(path).extension() != ".png")
+        throw Error("cannot write '" + path + "': pictures are PNG, so give it a name in .png");
+}
+
+void savePng(const mrpt::img::CImage& image, const std::string& path) {
+    checkPngName(path);
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = static_cast<png_uint_32>(image.getWidth());
+    png.height = static_cast<png_uint_32>(image.getHeight());
+    png.format = PNG_FORMAT_BGR;
+    png.flags = PNG_IMAGE_FLAG_FAST;
+    // Not MRPT's writer: it tells stderr of a full disk by itself, or nobody.
+    io::replaceFile(path, [&](const std::string& temporary) {
+        std::FILE* const file = std::fopen(temporary.c_str(), "wb");
+        if (!file) return false;
+        const int written =
+            png_image_write_to_stdio(&png, file, 0, image.ptrLine<std::uint8_t>(0),
+                                     static_cast<png_int_32>(image.getRowStride()), nullptr);
+        return (std::fclose(file) == 0) && written != 0;
+    });
+}
 
 void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned pictures,
            const std::function<void(unsigned, const CImage&)>& use) {

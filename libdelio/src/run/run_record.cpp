@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "delio/core/geometry.h"
-#include "delio/evaluation/kitti_metric.h"
+#include "delio/evaluation/metrics.h"
 
 namespace delio::run {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "delio/core/error.h"
 #include "point_support.h"
 
@@ -78,5 +80,19 @@ TEST(Colouring, WhatPointsDoNotHaveIsAnError) {
     }
     EXPECT_EQ(map::coloursOf(bare).ofPoints.size(), 3U);
     EXPECT_THROW(map::colourByNamed("taste"), Error);
+}
+
+TEST(Colormap, RobustRangeIgnoresStrays) {
+    std::vector<float> values;
+    for (int i = 0; i <= 1000; ++i) values.push_back(static_cast<float>(i));
+    values.push_back(1e9F);
+    values.push_back(std::nanf(""));
+    const auto range = map::robustRange(values);
+    EXPECT_NEAR(range.low, 20, 1);
+    EXPECT_NEAR(range.high, 980, 1);
+    EXPECT_GT(map::robustRange({5, 5, 5}).high, map::robustRange({5, 5, 5}).low);
+    EXPECT_EQ(map::robustRange({}).high, 1);
+    EXPECT_THROW(map::colormapNamed("jet"), Error);
+    for (const auto& name : map::colormapNames()) EXPECT_NO_THROW(map::colormapNamed(name));
 }
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/map/edit.h"
+#include "delio/map/map_point.h"
 #include "point_support.h"
 #include "poses.h"
 #include "test_data.h"

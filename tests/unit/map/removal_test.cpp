@@ -1,12 +1,17 @@
-// What moves is taken out of a map by what the whole drive saw; what stands stays.
+#include <gtest/gtest.h>
+
 #include <gtest/gtest.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <tbb/global_control.h>
 
 #include <chrono>
+#include <set>
+#include <tuple>
 
 #include "delio/map/map_builder.h"
 #include "delio/map/simplemap.h"
+#include "map/visibility_votes.h"
+#include "map/voxel_set.h"
 #include "map_support.h"
 #include "poses.h"
 #include "ring_scan.h"
@@ -177,5 +182,44 @@ TEST_F(Removal, PointsKnowTheirTimeTheirSurfaceAndHowOftenTheyWereSeen) {
         EXPECT_LE(point.time_s, 3.5F);
     }
     EXPECT_GT(ground, 500U);
+}
+
+/** Where a first point lies in its voxel is kept in 1/256; just below a border it rounds to all of
+ *  them, which is one too many for a byte. */
+TEST(VisibilityVotes, APointJustBelowABorderOfItsVoxelStaysThere) {
+    map::RemovalOptions options;
+    options.voxelSize_m = 4;
+    map::VisibilityVotes votes(options);
+    const Eigen::Vector3d point(-1e-17, 10, 0.1);
+    votes.hit(point, false, 0);
+    // A wall 20 m ahead, of which only a part is seen: what stands 10 m ahead was looked through,
+    // what stands 4 m beside was not.
+    Eigen::Matrix3Xf wall(3, 81 * 81);
+    for (Eigen::Index i = 0; i < wall.cols(); ++i)
+        wall.col(i) = Eigen::Vector3f(0.05F * static_cast<float>(i % 81 - 40), 20,
+                                      0.05F * static_cast<float>(i / 81 - 40));
+    for (int k = 0; k < 4; ++k)
+        votes.look(odometry::RangeImage(wall, options.cell_deg), Eigen::Isometry3d::Identity(), 60);
+    votes.decide();
+    EXPECT_TRUE(votes.isDynamic(point));
+}
+
+TEST(VoxelSet, TakesVoxelsAsBruteForceDoes) {
+    constexpr double kSize = 0.7;
+    map::VoxelSet voxels(kSize);
+    std::set<std::tuple<int, int, int>> taken;
+    test::Noise noise;
+    for (int i = 0; i < 20000; ++i) {
+        const Eigen::Vector3d p = 4 * noise.normals();
+        const Eigen::Array3i cell = (p / kSize).array().floor().cast<int>();
+        const std::tuple<int, int, int> key{cell.x(), cell.y(), cell.z()};
+        EXPECT_EQ(voxels.insert(p), taken.insert(key).second) << i;
+    }
+}
+
+TEST(VoxelSet, WithoutASizeEveryPointHasAVoxelOfItsOwn) {
+    map::VoxelSet voxels(0);
+    EXPECT_TRUE(voxels.insert({1, 2, 3}));
+    EXPECT_TRUE(voxels.insert({1, 2, 3}));
 }
 }  // namespace

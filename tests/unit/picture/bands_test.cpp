@@ -1,9 +1,21 @@
 #include "picture/bands.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/opengl/CCamera.h>
+#include <mrpt/opengl/CFBORender.h>
+
+#include <array>
+
+#include "delio/picture/scene.h"
+#include "picture_support.h"
 
 namespace {
 using delio::picture::Bands;
+using namespace delio;
+using mrpt::img::CImage;
+using mrpt::opengl::CFBORender;
+using mrpt::opengl::COpenGLScene;
+using Position = std::array<double, 4>;
 
 TEST(Bands, EachRowIsInOneAndHasItsMarginsUnlessThePictureEnds) {
     for (const unsigned width : {4U, 1920U, 3840U, 16384U})
@@ -37,5 +49,82 @@ TEST(Bands, ASceneOfManyPointsIsDrawnInFewer) {
     EXPECT_EQ(Bands(3840, 2160, 4, 1000000).all.size(), 17U);
     EXPECT_EQ(Bands(3840, 2160, 4, 5000000).all.size(), 4U);
     EXPECT_EQ(Bands(3840, 2160, 4, std::size_t{1} << 40).all.size(), 1U);
+}
+
+constexpr unsigned kWidth = 320, kHeight = 240;
+
+/** In every way that MRPT takes: pixels, shares, and from the other end. */
+const Position kPositions[] = {{0, 0, 1, 1},       {15, 30, 16, 120},       {0.25, 0.5, 0.5, 0.25},
+                               {-60, -50, 40, 30}, {-0.25, -0.5, 0.1, 0.1}, {1, 1, 5, 1}};
+
+COpenGLScene::Ptr sceneWith(const Position& position) {
+    auto scene = picture::mapScene(test::someMap(), {test::someWay(), {}, {}, {}});
+    const auto other = scene->createViewport("other");
+    const auto& [x, y, width, height] = position;
+    other->setViewportPosition(x, y, width, height);
+    other->setCustomBackgroundColor({1, 0, 0});
+    return scene;
+}
+
+mrpt::opengl::CCamera camera() {
+    mrpt::opengl::CCamera camera;
+    camera.setPointingAt(100, 50, 0);
+    camera.setZoomDistance(150);
+    return camera;
+}
+
+std::string drawn(COpenGLScene& scene, unsigned rows) {
+    CFBORender renderer(kWidth, rows);
+    renderer.setCamera(scene, camera());
+    picture::BandViewports viewports(scene, kHeight, rows);
+    std::string bytes;
+    for (unsigned first = 0; first < kHeight; first += rows) {
+        viewports.show(first);
+        CImage band;
+        renderer.render_RGB(scene, band);
+        bytes += test::bytesOf(band);
+    }
+    scene.unloadShaders();
+    scene.freeOpenGLResources();
+    return bytes;
+}
+
+// Where a point covers a pixel by a hair, the last digit of its place may say otherwise.
+TEST(BandViewports, BandsAreThePicture) {
+    for (const auto& position : kPositions) {
+        const auto whole = drawn(*sceneWith(position), kHeight);
+        for (const unsigned rows : {16U, 60U, 120U}) {
+            const auto bands = drawn(*sceneWith(position), rows);
+            ASSERT_EQ(bands.size(), whole.size());
+            std::size_t others = 0;
+            for (std::size_t i = 0; i < whole.size(); ++i) others += bands[i] != whole[i];
+            EXPECT_LE(others, whole.size() / 1000)
+                << position[0] << " " << position[1] << ", rows " << rows;
+        }
+    }
+}
+
+TEST(BandViewports, AWholePictureIsAsMrptDrawsIt) {
+    for (const auto& position : kPositions) {
+        const auto scene = sceneWith(position);
+        CFBORender renderer(kWidth, kHeight);
+        renderer.setCamera(*scene, camera());
+        CImage whole;
+        renderer.render_RGB(*scene, whole);
+        scene->unloadShaders();
+        scene->freeOpenGLResources();
+        EXPECT_TRUE(drawn(*sceneWith(position), kHeight) == test::bytesOf(whole))
+            << position[0] << " " << position[1];
+    }
+}
+
+TEST(BandViewports, AreWhereTheyWereInTheEnd) {
+    for (const auto& position : kPositions) {
+        const auto scene = sceneWith(position);
+        { picture::BandViewports(*scene, kHeight, 60).show(30); }
+        Position after{};
+        scene->getViewport("other")->getViewportPosition(after[0], after[1], after[2], after[3]);
+        EXPECT_EQ(after, position);
+    }
 }
 }  // namespace

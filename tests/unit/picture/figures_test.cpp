@@ -3,13 +3,22 @@
 #include <gtest/gtest.h>
 #include <mrpt/img/CImage.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "delio/picture/render.h"
+#include "delio/picture/scene.h"
+#include "picture/view.h"
+#include "picture_support.h"
 #include "ring_scan.h"
+#include "test_data.h"
 
 namespace {
 using namespace delio;
+using mrpt::img::CImage;
+using run::RunFolder;
+using test::pixel;
 
 /** Pixels in which one channel stands out from the two others, by third of the picture. */
 std::vector<int> colouredByThird(const mrpt::img::CImage& picture) {
@@ -57,5 +66,103 @@ TEST(FiguresScene, LinesAndTheirPairsAreDrawn) {
     }
     // Without lines there is nothing to see, and nothing breaks.
     EXPECT_NO_THROW(picture::lineScene({Eigen::Matrix3Xf(3, 0), Eigen::Matrix3Xf(3, 0), {}, 0}));
+}
+
+bool isRed(const test::Rgb& p) { return p[0] > 120 && p[1] < p[0] / 3 && p[2] < p[0] / 3; }
+
+map::BuiltMap someBuiltMap() {
+    map::BuiltMap map;
+    map.points = map::pointsOf(test::someMap());
+    for (int i = 0; i < 200; ++i) {
+        map::MapPoint point;
+        point.position = {100 + 0.2F * static_cast<float>(i % 20), 20,
+                          0.2F * static_cast<float>(i / 20)};
+        map.dynamic.push_back(point);
+    }
+    return map;
+}
+
+run::RunRecord someRecord() {
+    run::RunRecord record;
+    record.final.poses = record.odometry.poses = test::someWay();
+    return record;
+}
+
+TEST(RemovalPicture, ShowsTheSameViewBeforeAndAfter) {
+    const test::TemporaryFolder folder;
+    const RunFolder results(folder.path().string());
+    picture::illustrate(someRecord(), someBuiltMap(), results);
+    CImage sheet;
+    ASSERT_TRUE(sheet.loadFromFile(results.path(RunFolder::kRemovalPicture)));
+    ASSERT_EQ(sheet.getWidth(), 2 * 1920U);
+    ASSERT_EQ(sheet.getHeight(), 1080U);
+    std::size_t redBefore = 0, redAfter = 0, otherwise = 0;
+    for (int row = 0; row < 800; ++row)  // above the legend
+        for (int column = 0; column < 1920; ++column) {
+            const auto before = pixel(sheet, column, row), after = pixel(sheet, column + 1920, row);
+            redBefore += isRed(before);
+            redAfter += isRed(after);
+            otherwise += before != after;
+        }
+    EXPECT_GT(redBefore, 100U);
+    EXPECT_EQ(redAfter, 0U);
+    EXPECT_LT(otherwise, 6 * redBefore)
+        << "but for the red points, and around them, it is the same";
+    std::size_t captions = 0;
+    for (int row = 800; row < 1080; ++row)
+        for (int column = 0; column < 480; ++column)
+            captions += pixel(sheet, column, row) != pixel(sheet, column + 1920, row);
+    EXPECT_GT(captions, 100U) << "each has its own";
+}
+
+TEST(RemovalPicture, IsThereOnlyWhereSomethingMoved) {
+    const test::TemporaryFolder folder;
+    const RunFolder results(folder.path().string());
+    auto map = someBuiltMap();
+    map.dynamic.clear();
+    picture::illustrate(someRecord(), map, results);
+    EXPECT_TRUE(results.has(RunFolder::kMapPicture));
+    EXPECT_FALSE(results.has(RunFolder::kRemovalPicture));
+    map = someBuiltMap();
+    map.points.clear();
+    picture::illustrate(someRecord(), map, results);
+    EXPECT_FALSE(results.has(RunFolder::kRemovalPicture));
+}
+
+TEST(PointSpacing, IsThatOfTheSurfaces) {
+    for (const float spacing : {0.05F, 0.2F, 3.F}) {
+        mrpt::maps::CSimplePointsMap points;
+        for (int i = 0; i < 100; ++i)
+            for (int j = 0; j < 100; ++j)
+                points.insertPoint(spacing * static_cast<float>(i), spacing * static_cast<float>(j),
+                                   0.1F);
+        EXPECT_NEAR(picture::mapSpacing_m(*picture::mapScene(points, {})), spacing,
+                    0.3 * double{spacing});
+    }
+    EXPECT_EQ(picture::mapSpacing_m(*picture::trajectoryScene({test::someWay(), {}, {}, {}})), 0);
+}
+
+TEST(PointSpacing, FromNearPointsGrowUntilSurfacesAreClosed) {
+    // A level plane seen from above: whatever is shown of it, no gap is left.
+    mrpt::maps::CSimplePointsMap points;
+    for (int i = 0; i < 300; ++i)
+        for (int j = 0; j < 300; ++j)
+            points.insertPoint(0.2F * static_cast<float>(i), 0.2F * static_cast<float>(j),
+                               i % 50 == 0 ? 0.05F : 0);
+    picture::SnapshotOptions options = picture::topView();
+    options.width_px = 800;
+    options.height_px = 600;
+    options.scaleBar = false;
+    options.shading = 0;
+    options.background = mrpt::img::TColor(255, 0, 255);
+    for (const double zoom : {60.0, 30.0, 20.0}) {
+        options.zoom_m = zoom;
+        const auto image = picture::picture(*picture::mapScene(points, {}), options);
+        std::size_t gaps = 0;
+        for (int row = 200; row < 400; ++row)
+            for (int column = 300; column < 500; ++column)
+                gaps += pixel(image, column, row) == test::Rgb{255, 0, 255};
+        EXPECT_LT(gaps, 400U) << zoom;
+    }
 }
 }  // namespace

@@ -3,6 +3,7 @@
 #include <mrpt/maps/CPointsMapXYZI.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
@@ -24,4 +25,15 @@ using MapPoints = std::vector<MapPoint>;
 mrpt::maps::CPointsMapXYZI cloudOf(const MapPoints& points);
 /** See cloudOf(); all else is not known. */
 MapPoints pointsOf(const mrpt::maps::CPointsMap& cloud);
+
+/** Each changes the points in place: a map may be as large as half of the memory. */
+
+/** Gives positions and normals in another frame. */
+void move(MapPoints& points, const Eigen::Isometry3d& otherFromMap);
+
+/** Keeps what lies in the box, metres, its borders included. */
+void crop(MapPoints& points, const Eigen::AlignedBox3d& box);
+
+/** Keeps the first point in each voxel of `spacing` metres; 0: all. */
+void thinOut(MapPoints& points, double spacing);
 }  // namespace delio::map

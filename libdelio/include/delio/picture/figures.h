@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "delio/picture/view.h"
 #include "paper/line_cloud.h"
+#include "delio/picture/render.h"
+#include "delio/run/run_folder.h"
 
 namespace delio::picture {
 /** Patterns of normals (unit vectors), each on a unit sphere of its own, side by side from left to
@@ -25,4 +26,12 @@ mrpt::opengl::COpenGLScene::Ptr lineScene(const paper::LineCloud& lines);
  *  green, 0.3 m above, what joins the midpoints of a pair. */
 mrpt::opengl::COpenGLScene::Ptr matchScene(const paper::LineCloud& from, const paper::LineCloud& to,
                                            const Eigen::Vector3d& t);
+
+/** The pictures of a run: map.3Dscene and map.png where there are points, map_removal.png
+ *  where something dynamic was taken out of them, before (in red what was) beside after in the same
+ *  view, and trajectory.png, from above; where the graph had something to optimise, before and
+ * after it side by side. To be given to run::RunFolder::write(). Throws Error where one cannot be
+ * drawn or written. */
+void illustrate(const run::RunRecord& record, const map::BuiltMap& map,
+                const run::RunFolder& folder);
 }  // namespace delio::picture

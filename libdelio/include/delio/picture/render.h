@@ -1,13 +1,42 @@
 #pragma once
 #include <mrpt/img/CImage.h>
+#include <mrpt/img/TColor.h>
 #include <mrpt/opengl/COpenGLScene.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 
-#include "delio/picture/view.h"
-
 namespace delio::picture {
+/** From where a scene is looked at, and how. What is not set is chosen so that the whole content
+ *  (without stray points) fills the picture. */
+struct SnapshotOptions {
+    unsigned width_px = 1920;   //!< 1 to kMaxPictureSize_px
+    unsigned height_px = 1080;  //!< likewise
+
+    /** Where the camera stands, seen from the content: 0 on the side of +x, 90 of +y. Unset: such
+     *  that the longer side of the content lies across the picture (looking straight down: turned
+     *  by right angles only, +x to the right or up). */
+    std::optional<double> azimuth_deg;
+    double elevation_deg = 55;     //!< above the horizon; 90 looks straight down
+    std::optional<double> zoom_m;  //!< metres across the picture, through the content's middle
+    bool ortho = false;            //!< parallel projection instead of perspective
+    bool scaleBar = false;         //!< in the lower right corner; with `ortho` only
+    /** Of all point clouds; unset: the scene's, which are meant for pictures of 1080 lines, larger
+     * in larger pictures and from nearer (a map's: such that its surfaces look closed). */
+    std::optional<float> pointSize_px;
+    std::optional<mrpt::img::TColor> background;  //!< unset: the scene's
+    /** Of the points of a map where others in front of them are near: shows what stands out from
+     *  what. 0: none; 1: as usual. Scenes without a map are never shaded. */
+    double shading = 1;
+};
+
+/** The longest side of a picture, pixels. */
+constexpr unsigned kMaxPictureSize_px = 16384;
+
+/** Straight from above in parallel projection, with a scale bar. */
+SnapshotOptions topView();
+
 /** Renders without a display (EGL, in software where there is no GPU). The scene is the same again
  *  afterwards. Throws Error if the scene is empty, the size is out of range, or no EGL device can
  *  be used. */
@@ -22,4 +51,10 @@ void orbit(mrpt::opengl::COpenGLScene& scene, const SnapshotOptions& options, un
 /** picture() into a .png file. Throws Error also if that cannot be written. */
 void savePicture(mrpt::opengl::COpenGLScene& scene, const SnapshotOptions& options,
                  const std::string& pngPath);
+
+/** Throws Error for a name that does not end in .png: to be asked before the work is done. */
+void checkPngName(const std::string& path);
+
+/** Writes a .png. Throws Error if that fails, or for a name that does not end in .png. */
+void savePng(const mrpt::img::CImage& image, const std::string& path);
 }  // namespace delio::picture

@@ -1,0 +1,83 @@
+#pragma once
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "delio/map/map_point.h"
+
+namespace delio::map {
+/** Height of the ground around a place, as the low points of each cell of a coarse grid give it,
+ *  straight lines between the cells: so that a street on a hill looks like one in the valley. */
+class GroundHeight {
+ public:
+    /** Of `count` points; pointAt(i) is an Eigen::Vector3f. */
+    template <typename PointAt>
+    GroundHeight(std::size_t count, const PointAt& pointAt) {
+        std::unordered_map<std::uint64_t, std::vector<float>> heights;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Eigen::Vector3f p = pointAt(i);
+            heights[cellOf(double{p.x()}, double{p.y()})].push_back(p.z());
+        }
+        for (auto& [key, values] : heights) cells_[key] = lowOf(values);
+    }
+
+    double at(double x, double y) const;
+
+ private:
+    static std::uint64_t cellOf(double x, double y);
+    static double lowOf(std::vector<float>& heights);
+    double ofCell(std::int64_t column, std::int64_t row, double otherwise) const;
+
+    std::unordered_map<std::uint64_t, double> cells_;
+};
+
+/** Of each point above the ground around it. */
+template <typename PointAt>
+std::vector<float> heightsAboveGround(std::size_t count, const PointAt& pointAt) {
+    const GroundHeight ground(count, pointAt);
+    std::vector<float> heights(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Vector3f p = pointAt(i);
+        heights[i] = static_cast<float>(double{p.z()} - ground.at(double{p.x()}, double{p.y()}));
+    }
+    return heights;
+}
+
+/** The ground below the points, for telling what stands on it: the low points of each cell, but
+ *  not more above those of the cells around than a steep street would be (so that the roof of a car
+ *  is none), nor far below them (reflections in wet streets); straight lines between the cells. */
+class GroundSurface {
+ public:
+    /** @param cell edge of a cell in metres; the points' extent has to have less than 2^31 cells */
+    GroundSurface(const MapPoints& points, double cell);
+
+    /** Where no cell around has points, NaN. */
+    double at(double x, double y) const;
+
+    /** False where the low points are an island of a few square metres: the top of a tree or a
+     *  wall that was seen from afar, the ground below them was not. */
+    bool isGround(double x, double y) const;
+
+ private:
+    struct Low {
+        std::uint32_t cell;
+        float height;
+    };
+    std::uint32_t cellOf(const Eigen::Vector3f& point) const;
+    float height(std::int64_t column, std::int64_t row) const;
+    std::vector<Low> lowsOf(const MapPoints& points) const;
+    void liftPits(std::vector<Low>& lows);
+    void lowerWhatStandsOut(std::vector<Low>& lows);
+    void findIslands(const std::vector<Low>& lows);
+    /** Those around it that go on at about its height. */
+    template <typename Visit>
+    void visitNeighbours(std::uint32_t cell, const Visit& visit) const;
+
+    double cell_;
+    std::int64_t firstColumn_ = 0, firstRow_ = 0, columns_ = 0, rows_ = 0;
+    std::vector<float> heights_;  //!< NaN: no points
+    std::vector<bool> isGround_;
+};
+}  // namespace delio::map

@@ -1,0 +1,414 @@
+'use strict';
+// Shows the map. OrbitControls and the wide lines are three.js's own.
+
+const byId = id => document.getElementById(id);
+const vector = numbers => new THREE.Vector3().fromArray(numbers);
+const about = JSON.parse(byId('about').textContent);
+
+// As libdelio's page_cloud.h has them.
+const quantum_m = 0.001, tile_m = 65, groundQuantum_m = 0.01, lowestGround_m = -10;
+
+function complain(text) {
+  byId('fault').textContent = text;
+  byId('fault').hidden = false;
+  document.body.dataset.state = 'error: ' + text;
+}
+window.addEventListener('error', event => complain('The map cannot be shown: ' + event.message));
+
+// What points are coloured by, in the order of the shader's modes: the limits, the unit, and
+// whether a point stores the value itself or its fraction of the limits.
+const values = {
+  height: {range: about.z_most, unit: 'm', isFraction: false},
+  ground: {range: about.ground_most, unit: 'm above the ground', isFraction: false},
+  intensity: {range: about.intensity, unit: 'as the sensor gives it', isFraction: true},
+  time: {range: about.time, unit: 's', isFraction: true},
+  observations: {range: about.observations, unit: 'scans', isFraction: false},
+};
+
+const pointVertex = `
+precision highp float;
+attribute vec4 position;  // millimetres from the tile's origin; height above the ground
+attribute vec4 known;     // intensity, observations, time (low byte, high byte)
+uniform mat4 modelViewMatrix, projectionMatrix;
+uniform sampler2D ramp;
+uniform int mode;
+uniform float tileHeight;
+uniform vec2 range, section;
+uniform vec3 plain;
+uniform float focal, size_m, least;
+varying vec3 colour;
+
+float valueOf(float ground) {
+  if (mode == 0) return tileHeight + ${quantum_m} * position.z;
+  if (mode == 1) return ground;
+  if (mode == 2) return known.x / 255.0;
+  if (mode == 3) return (known.z + 256.0 * known.w) / 65535.0;
+  return known.y;
+}
+
+void main() {
+  float ground = ${groundQuantum_m} * position.w + float(${lowestGround_m});
+  if (ground < section.x || ground > section.y) {
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside the picture
+    gl_PointSize = 0.0;
+    return;
+  }
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(${quantum_m} * position.xyz, 1.0);
+  gl_PointSize = clamp(size_m * focal / max(gl_Position.w, 0.01), least, 60.0);
+  float t = clamp((valueOf(ground) - range.x) / (range.y - range.x), 0.0, 1.0);
+  colour = mode < 0 ? plain : texture2D(ramp, vec2((t * 63.0 + 0.5) / 64.0, 0.5)).rgb;
+}`;
+
+const pointFragment = `
+precision mediump float;
+varying vec3 colour;
+void main() {
+  vec2 fromMiddle = gl_PointCoord - 0.5;
+  if (dot(fromMiddle, fromMiddle) > 0.25) discard;
+  gl_FragColor = vec4(colour, 1.0);
+}`;
+
+/** The bytes of an element, line by line: never a second copy of all of them as text. */
+function bytesOf(id, count) {
+  const element = byId(id), bytes = new Uint8Array(count);
+  let at = 0;
+  for (const line of element.textContent.split('\n')) {
+    const text = atob(line);
+    for (let i = 0; i < text.length; ++i) bytes[at++] = text.charCodeAt(i);
+  }
+  element.remove();
+  if (at !== count) throw new Error('the points are cut off');
+  return bytes;
+}
+
+/** The bytes r g b of a colour map, 64 of them. */
+function rampOf(name) {
+  return Uint8Array.from(about.colours[name].match(/../g), pair => parseInt(pair, 16));
+}
+
+/** Points, an object a tile. `uniforms` are shared by all tiles but for the tile's own height. */
+class Cloud {
+  constructor(what, id, mode) {
+    this.tiles = what.tiles;
+    this.places = new Uint16Array(bytesOf(id + 'places', 8 * what.shown).buffer);
+    const known = bytesOf(id + 'known', 4 * what.shown);
+    const texture = new THREE.DataTexture(rampOf('turbo'), 64, 1, THREE.RGBFormat);
+    texture.minFilter = texture.magFilter = THREE.LinearFilter;
+    texture.unpackAlignment = 1;
+    this.uniforms = {
+      ramp: {value: texture}, mode: {value: mode}, range: {value: new THREE.Vector2(0, 1)},
+      section: {value: new THREE.Vector2(-1e6, 1e6)}, plain: {value: new THREE.Color(0xff3b30)},
+      focal: {value: 1}, size_m: {value: 0.1}, least: {value: 2}, tileHeight: {value: 0},
+    };
+    const material = new THREE.RawShaderMaterial(
+        {vertexShader: pointVertex, fragmentShader: pointFragment, uniforms: this.uniforms});
+    this.object = new THREE.Group();
+    for (const [x, y, z, begin, count] of what.tiles) {
+      const part = bytes => new THREE.BufferAttribute(
+          bytes.subarray(4 * begin, 4 * (begin + count)), 4);
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', part(this.places));
+      geometry.setAttribute('known', part(known));
+      const half = tile_m / 2;
+      geometry.boundingSphere = new THREE.Sphere(vector([half, half, half]), half * Math.sqrt(3));
+      const points = new THREE.Points(geometry, material);
+      points.position.set(x, y, z);
+      points.userData.count = count;
+      points.onBeforeRender = () => {
+        this.uniforms.tileHeight.value = z;
+        material.uniformsNeedUpdate = true;
+      };
+      this.object.add(points);
+    }
+  }
+
+  /** The first points of a tile are an even choice of them. */
+  setFraction(fraction) {
+    for (const tile of this.object.children)
+      tile.geometry.setDrawRange(0, Math.ceil(fraction * tile.userData.count));
+  }
+
+  /** The point nearest to the camera of those within 10 pixels of (x, y), or null. */
+  pointAt(x, y) {
+    const reach_px = 10, section = this.uniforms.section.value;
+    const width = canvas.clientWidth, height = canvas.clientHeight;
+    const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix,
+                                                   camera.matrixWorldInverse).elements;
+    let best = null, bestScore = Infinity;
+    for (const [ox, oy, oz, begin, count] of this.tiles) {
+      // Rows of the matrix for the tile's millimetres.
+      const [[ax, ay, az, aw], [bx, by, bz, bw], [cx, cy, cz, cw]] = [0, 1, 3].map(k =>
+          [m[k] * quantum_m, m[k + 4] * quantum_m, m[k + 8] * quantum_m,
+           m[k] * ox + m[k + 4] * oy + m[k + 8] * oz + m[k + 12]]);
+      for (let i = 4 * begin; i < 4 * (begin + count); i += 4) {
+        const px = this.places[i], py = this.places[i + 1], pz = this.places[i + 2];
+        const w = cx * px + cy * py + cz * pz + cw;
+        if (w < 0.05) continue;
+        const u = ((ax * px + ay * py + az * pz + aw) / w + 1) / 2 * width - x;
+        const v = (1 - (bx * px + by * py + bz * pz + bw) / w) / 2 * height - y;
+        const off = (u * u + v * v) / (reach_px * reach_px);
+        const ground = groundQuantum_m * this.places[i + 3] + lowestGround_m;
+        if (off > 1 || w * (1 + off) >= bestScore || ground < section.x || ground > section.y)
+          continue;
+        bestScore = w * (1 + off);
+        best = vector([ox + quantum_m * px, oy + quantum_m * py, oz + quantum_m * pz]);
+      }
+    }
+    return best;
+  }
+}
+
+/** Segments between pairs of places, always before the points. */
+function linesOf(pairs, colour, width_px) {
+  const origin = pairs[0][0], geometry = new THREE.LineSegmentsGeometry();
+  geometry.setPositions(pairs.flat().map(place => place.map((v, k) => v - origin[k])).flat());
+  const lines = new THREE.LineSegments2(geometry, new THREE.LineMaterial(
+      {color: new THREE.Color(colour), linewidth: width_px, depthTest: false, depthWrite: false}));
+  lines.position.fromArray(origin);
+  lines.renderOrder = 1;
+  lines.frustumCulled = false;
+  scene.add(lines);
+  return lines;
+}
+
+function pathOf(places, colour) {
+  return linesOf(places.slice(1).map((place, i) => [places[i], place]), colour, 3);
+}
+
+const canvas = byId('view');
+const scene = new THREE.Scene();
+const camera = new THREE.PerspectiveCamera(55, 1, 0.1, 1000);
+camera.up.set(0, 0, 1);
+const box = new THREE.Box3(...[0, 1].map(k => vector(['x', 'y', 'z'].map(
+    axis => about[axis + '_most'][k]))));
+for (const place of about.trajectory) box.expandByPoint(vector(place));
+let renderer, controls, clouds = [], lines = {}, picked = [], pickedLines = null;
+let standard = null, asked = false, moving = false, fraction = 1, drawnAt = 0;
+
+/** From so far that every corner of the box is in the picture. */
+function lookAtAll(forward) {
+  const centre = box.getCenter(new THREE.Vector3());
+  const right = forward.clone().cross(camera.up).normalize(), upward = right.clone().cross(forward);
+  const upright = Math.tan(camera.fov / 2 * Math.PI / 180), across = upright * camera.aspect;
+  let distance = 1;
+  for (let i = 0; i < 8; ++i) {
+    const corner = vector(['x', 'y', 'z'].map(
+        (axis, k) => box[i >> k & 1 ? 'max' : 'min'][axis])).sub(centre);
+    distance = Math.max(distance, 1.05 * (Math.max(Math.abs(right.dot(corner)) / across,
+        Math.abs(upward.dot(corner)) / upright) - forward.dot(corner)));
+  }
+  controls.target.copy(centre);
+  camera.position.copy(centre).addScaledVector(forward, -distance);
+  controls.update();
+  redraw();
+}
+
+/** The two standard views; `standard` is the current one, until the view is moved. */
+const looks = {
+  /** From above and aside, the long side of the map along the picture's. */
+  reset() {
+    const size = box.getSize(new THREE.Vector3());
+    const along = (size.x > size.y) === (camera.aspect > 1) ? [0, 0.8, -0.6] : [0.8, 0, -0.6];
+    lookAtAll(vector(along));
+    standard = looks.reset;
+  },
+  /** From above, north (y) up. */
+  top() {
+    lookAtAll(vector([0, 1e-4, -1]).normalize());
+    standard = looks.top;
+  },
+};
+
+function redraw() {
+  if (!asked) requestAnimationFrame(draw);
+  asked = true;
+}
+
+function draw(now = performance.now()) {
+  asked = false;
+  // While the view moves, as many points as are drawn fluently.
+  if (moving && now - drawnAt > 45) fraction = Math.max(0.05, 0.8 * fraction);
+  if (moving && now - drawnAt < 24) fraction = Math.min(1, 1.1 * fraction);
+  drawnAt = now;
+  const shown = moving ? fraction : 1;
+  for (const cloud of clouds) {
+    cloud.setFraction(shown);
+    cloud.uniforms.size_m.value = byId('size').value / 100 / Math.sqrt(shown);
+  }
+  const radius = box.getSize(new THREE.Vector3()).length() / 2;
+  camera.far = camera.position.distanceTo(box.getCenter(new THREE.Vector3())) + 4 * radius + 100;
+  camera.near = Math.min(Math.max(camera.position.distanceTo(controls.target) / 100, 0.1),
+                         camera.far / 100);
+  camera.updateProjectionMatrix();
+  renderer.render(scene, camera);
+}
+
+function fit() {
+  const width = window.innerWidth, height = window.innerHeight;
+  const ratio = Math.min(window.devicePixelRatio || 1, 2);
+  renderer.setPixelRatio(ratio);
+  renderer.setSize(width, height, false);
+  // On a wide screen the panel stands beside the map, on a narrow one over it.
+  const covered = width > 640 && !byId('panel').classList.contains('folded') ?
+      byId('panel').getBoundingClientRect().right : 0;
+  camera.aspect = (width - covered) / height;
+  camera.setViewOffset(width - covered, height, -covered, 0, width, height);
+  for (const cloud of clouds) {
+    cloud.uniforms.focal.value = ratio * height / 2 / Math.tan(camera.fov / 2 * Math.PI / 180);
+    cloud.uniforms.least.value = 2 * ratio;
+  }
+  scene.traverse(object => {
+    if (object.material && object.material.resolution) object.material.resolution.set(width, height);
+  });
+  redraw();
+}
+
+function fold(folded) {
+  byId('panel').classList.toggle('folded', folded);
+  byId('fold').setAttribute('aria-expanded', String(!folded));
+  fit();
+}
+
+/** A click on a point: where it is, and how far it is from the point that was clicked before. */
+function pick(x, y) {
+  const found = clouds.filter(cloud => cloud.object.visible).map(cloud => cloud.pointAt(x, y))
+      .filter(point => point).sort((a, b) => a.distanceTo(camera.position) -
+                                             b.distanceTo(camera.position))[0];
+  if (pickedLines) scene.remove(pickedLines);
+  pickedLines = null;
+  picked = found ? [...picked.slice(-1), found] : [];
+  byId('result').hidden = !found;
+  if (found) {
+    byId('result').textContent = found.toArray().map((v, k) => `xyz`[k] + ' ' + v.toFixed(2))
+        .join(', ') + ' m';
+    if (picked.length === 2) {
+      const d = picked[1].clone().sub(picked[0]);
+      byId('result').textContent += `; ${d.length().toFixed(2)} m from the point before (level ` +
+          `${Math.hypot(d.x, d.y).toFixed(2)} m, height ${d.z.toFixed(2)} m)`;
+      pickedLines = linesOf([picked.map(point => point.toArray())], 0xffd24a, 3);
+      fit();
+    }
+  }
+  redraw();
+}
+
+/** What the map does not have is not offered. */
+function prepare() {
+  Object.keys(values).forEach((name, i) => {
+    const option = byId('color').options[i];
+    option.disabled = !values[name].range;
+    if (option.disabled) option.textContent += ' (not known)';
+  });
+  for (const name of ['trajectory', 'odometry', 'truth', 'loops'])
+    byId(name).parentElement.hidden = !lines[name];
+  byId('dynamic').parentElement.hidden = about.dynamic.shown === 0;
+  const low = Math.floor(10 * about.ground[0]), high = Math.ceil(10 * about.ground[1]);
+  for (const id of ['low', 'high']) Object.assign(byId(id), {min: low, max: high});
+  byId('low').value = low;
+  byId('high').value = high;
+  const grouped = count => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
+  const {shown, total} = about.points;
+  const size = ['x', 'y', 'z'].map(axis => Math.round(about[axis][1] - about[axis][0]));
+  byId('footer').textContent =
+      (shown < total ? `${grouped(shown)} of ${grouped(total)}` : grouped(total)) +
+      ` points \u00b7 ${size.join(' \u00d7 ')} m`;
+}
+
+/** Brings the picture to what the controls say. */
+function update() {
+  const {low, high} = {low: byId('low'), high: byId('high')};
+  if (Number(low.value) > Number(high.value)) high.value = low.value;
+  // At its end a slider leaves out nothing.
+  const from = low.value === low.min ? -1e6 : low.value / 10;
+  const to = high.value === high.max ? 1e6 : high.value / 10;
+  byId('low-text').textContent = from === -1e6 ? 'all' : `${from.toFixed(1)} m`;
+  byId('high-text').textContent = to === 1e6 ? 'all' : `${to.toFixed(1)} m`;
+  byId('size-text').textContent = `${byId('size').value} cm`;
+  const name = byId('color').value, {range, unit, isFraction} = values[name];
+  const ramp = rampOf(byId('colours').value);
+  for (const cloud of clouds) cloud.uniforms.section.value.set(from - 0.001, to + 0.001);
+  const uniforms = clouds[0].uniforms, limits = isFraction ? [0, 1] : range;
+  uniforms.ramp.value.image.data = ramp;
+  uniforms.ramp.value.needsUpdate = true;
+  uniforms.mode.value = Object.keys(values).indexOf(name);
+  uniforms.range.value.set(limits[0], Math.max(limits[1], limits[0] + 1e-3));
+  if (clouds[1]) clouds[1].object.visible = byId('dynamic').checked;
+  for (const line in lines) lines[line].visible = byId(line).checked;
+  const context = byId('ramp').getContext('2d');
+  for (let i = 0; i < 64; ++i) {
+    context.fillStyle = `rgb(${ramp.slice(3 * i, 3 * i + 3).join()})`;
+    context.fillRect(4 * i, 0, 4, 1);
+  }
+  const digits = range[1] - range[0] < 20 && !Number.isInteger(range[1]) ? 1 : 0;
+  byId('ramp-low').textContent = range[0].toFixed(digits);
+  byId('ramp-unit').textContent = unit;
+  byId('ramp-high').textContent = range[1].toFixed(digits);
+  redraw();
+}
+
+/** Sets the controls as the address says: map.html#view=top&color=time&dynamic=1 */
+function readAddress() {
+  const wanted = new URLSearchParams(location.hash.slice(1));
+  for (const [name, text] of wanted) {
+    const input = byId(name);
+    if (!input || !input.matches('#panel input, #panel select')) continue;
+    if (input.type === 'checkbox') input.checked = text === '1';
+    else if (name === 'low' || name === 'high') input.value = Math.round(10 * Number(text));
+    else if (input.tagName === 'INPUT' || [...input.options].some(
+        option => option.value === text && !option.disabled)) input.value = text;
+  }
+  if (wanted.has('panel')) fold(wanted.get('panel') === '0');
+  if (looks[wanted.get('view')]) looks[wanted.get('view')]();
+  update();
+}
+
+function start() {
+  renderer = new THREE.WebGLRenderer({canvas, antialias: true});
+  renderer.setClearColor(0x14171c);
+  clouds.push(new Cloud(about.points, '', 0));
+  if (about.dynamic.shown) clouds.push(new Cloud(about.dynamic, 'dynamic-', -1));
+  for (const cloud of clouds) scene.add(cloud.object);
+  if (about.truth.length > 1) lines.truth = pathOf(about.truth, 0x4de36a);
+  if (about.odometry.length > 1) lines.odometry = pathOf(about.odometry, 0xff9a2e);
+  const ends = about.loops.map(loop => loop.map(pose => about.trajectory[pose]));
+  if (ends.length) lines.loops = linesOf(ends, 0xff5ad1, 2);
+  if (about.trajectory.length > 1) lines.trajectory = pathOf(about.trajectory, 0xffffff);
+  controls = new THREE.OrbitControls(camera, canvas);
+  controls.addEventListener('change', redraw);
+  let still;
+  const move = on => { clearTimeout(still); moving = on; redraw(); };
+  controls.addEventListener('start', () => {
+    standard = null;
+    move(true);
+  });
+  controls.addEventListener('end', () => { still = setTimeout(() => move(false), 250); });
+  let downAt = [0, 0];
+  canvas.addEventListener('pointerdown', event => { downAt = [event.clientX, event.clientY]; });
+  canvas.addEventListener('click', event => {
+    if (Math.hypot(event.clientX - downAt[0], event.clientY - downAt[1]) < 4)
+      pick(event.clientX, event.clientY);
+  });
+  canvas.addEventListener('webglcontextlost',
+                          () => complain('The graphics are gone; load it again.'));
+  for (const view in looks) byId(view).addEventListener('click', looks[view]);
+  for (const input of byId('panel').querySelectorAll('input, select'))
+    input.addEventListener('input', update);
+  byId('fold').addEventListener('click', () => fold(!byId('panel').classList.contains('folded')));
+  window.addEventListener('resize', () => {
+    fit();
+    if (standard) standard();
+  });
+  window.addEventListener('hashchange', readAddress);
+  prepare();
+  fold(window.innerWidth <= 640);
+  looks.reset();
+  readAddress();
+  draw();
+  document.body.dataset.state = `ready ${about.points.shown} points`;
+}
+
+if (document.createElement('canvas').getContext('webgl'))
+  start();
+else
+  complain('This browser cannot draw in three dimensions here (WebGL is missing or switched ' +
+           'off). The same map is in map.ply.');
