@@ -4,16 +4,18 @@
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/files/output_folder.h"
-#include "delio/recordings/scan_reader.h"
-#include "odometry/paper_odometry.h"
 #include "delio/picture/figures.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/slam/options.h"
-#include "paper/normals.h"
 #include "delio/version.h"
+#include "odometry/paper_odometry.h"
 #include "option_sections.h"
 #include "overlap.h"
+#include "paper/normals.h"
+#include "paper/outlier_removal.h"
+#include "picture/line_scenes.h"
 
 namespace {
 using namespace delio;
@@ -118,10 +120,10 @@ void drawOutlierRemoval(const Scan& scan, const PaperOdometryOptions& options,
 /** The line cloud of a scan, and the pairs with the next one's before and after registration. */
 void drawLines(const std::vector<Scan>& scans, const PaperOdometryOptions& options,
                const Figures& figures) {
-    PaperOdometry odometry(options);
-    const Step first = odometry.process(scans[0]), second = odometry.process(scans[1]);
+    odometry::PaperOdometry method(options);
+    const Step first = method.process(scans[0]), second = method.process(scans[1]);
     const auto linesOf = [](const Step& step) -> const paper::LineCloud& {
-        return std::static_pointer_cast<const PaperFeatures>(step.features)->lines;
+        return std::static_pointer_cast<const odometry::PaperFeatures>(step.features)->lines;
     };
     const Eigen::Isometry3d& pose = second.increment.pose;
     const paper::LineCloud& from = linesOf(first);

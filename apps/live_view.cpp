@@ -10,10 +10,15 @@
 #include <cstdlib>
 #include <unordered_set>
 
+#include "core/voxel_grid.h"
 #include "delio/core/error.h"
 #include "delio/map/colouring.h"
 #include "delio/picture/figures.h"
-#include "core/voxel_grid.h"
+#include "odometry/preprocess.h"
+#include "paper/line_cloud.h"
+#include "paper/normals.h"
+#include "paper/outlier_removal.h"
+#include "picture/line_scenes.h"
 
 namespace delio {
 using mrpt::img::TColor;

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "odometry/paper_odometry.h"
+#include "delio/core/odometry_options.h"
 #include "delio/slam/slam.h"
 
 namespace delio {

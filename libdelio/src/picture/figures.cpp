@@ -12,6 +12,7 @@
 #include "delio/picture/scene.h"
 #include "paper/line_registration.h"
 #include "picture/legend.h"
+#include "picture/line_scenes.h"
 
 namespace delio::picture {
 using mrpt::img::TColor;

@@ -21,9 +21,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/chunked.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "core/chunked.h"
 #include "delio/files/output_file.h"
 #include "picture/bands.h"
 #include "picture/legend.h"

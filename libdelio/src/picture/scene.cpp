@@ -19,8 +19,8 @@
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "mrpt/object_file.h"
 #include "map/ground.h"
+#include "mrpt/object_file.h"
 #include "picture/legend.h"
 #include "picture/view.h"
 

@@ -3,7 +3,6 @@
 #include <mrpt/obs/CObservationComment.h>
 
 #include "bag_files.h"
-#include "files/spool.h"
 #include "rawlog_files.h"
 
 namespace delio {
@@ -77,18 +76,5 @@ TEST(LargeFiles, BagHasItsIndexBehindFourGigabytes) {
     while (const auto scan = reader->next())
         EXPECT_EQ(scan->index, scans++) << "scan after " << kLarge;
     EXPECT_EQ(scans, 3U);
-}
-
-TEST(LargeFiles, CloudsArePutAsideBehindFourGigabytes) {
-    const test::TemporaryFolder folder;
-    const std::string path = (folder / "map.spool").string();
-    const io::Spool::Floats cloud{1, 2, 3};
-    io::Spool::named(path, "the scans", "--no-map");
-    std::filesystem::resize_file(path, kLarge);
-    io::Spool spool = io::Spool::again(path, "the scans", "--no-map", kLarge);
-    const auto place = spool.append(cloud);
-    EXPECT_EQ(place.offset, kLarge);
-    EXPECT_EQ(spool.read(place), cloud);
-    EXPECT_EQ(spool.kept(), kLarge + cloud.size() * sizeof(float));
 }
 }  // namespace delio

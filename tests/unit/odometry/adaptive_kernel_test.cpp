@@ -6,8 +6,10 @@
 
 #include "poses.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using Eigen::Isometry3d;
 using test::poseAt;
 

@@ -8,8 +8,10 @@
 #include "delio/odometry/aligner.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 
 AlignerOptions loaded(const std::string& lines) {
     AlignerOptions options;

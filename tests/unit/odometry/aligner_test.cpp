@@ -18,8 +18,10 @@
 #include "poses.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using Eigen::Isometry3d;
 using mrpt::maps::CPointsMap;
 using mrpt::poses::CPose2D;

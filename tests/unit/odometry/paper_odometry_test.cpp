@@ -7,6 +7,7 @@
 
 namespace {
 using namespace delio;
+using namespace delio::odometry;
 using namespace delio::odometry_test;
 
 const PaperFeatures& featuresOf(const Step& step) {

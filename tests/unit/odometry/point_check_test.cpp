@@ -6,6 +6,7 @@
 
 namespace {
 using namespace delio;
+using namespace delio::odometry;
 using namespace delio::odometry_test;
 
 const test::Sensor kSensor{16, 900, -15, 15, 0.02};
@@ -17,7 +18,7 @@ CheckPoints at(const Eigen::Isometry3d& pose, std::uint32_t seed, const test::Sc
 }
 
 odometry::PointEstimate check(const test::Scene& before, const test::Scene& now,
-                            const Eigen::Isometry3d& moved, const Eigen::Isometry3d& found) {
+                              const Eigen::Isometry3d& moved, const Eigen::Isometry3d& found) {
     const PointCheckOptions options;
     return checkByPoints(at(poseAtDeg(0, 0, 0, 0), 1, before), at(moved, 2, now), found,
                          Eigen::Isometry3d::Identity(), 4, options, {});

@@ -8,9 +8,10 @@
 #include "delio/core/geometry.h"
 #include "poses.h"
 
+using namespace delio;
+using namespace delio::odometry;
+
 namespace {
-using delio::LinearPrediction;
-using delio::PredictionOptions;
 using delio::test::degreesBetween;
 using delio::test::metresBetween;
 using delio::test::poseAt;

@@ -6,6 +6,7 @@
 // Scans that drivers and recorders repeat: a copy says nothing about the motion.
 namespace {
 using namespace delio;
+using namespace delio::odometry;
 using namespace delio::odometry_test;
 using Eigen::Isometry3d;
 

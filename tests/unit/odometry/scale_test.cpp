@@ -1,11 +1,14 @@
 #include "odometry/preprocess.h"
+#include "odometry/tuning.h"
 
 #include <gtest/gtest.h>
 
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 
 Scan sphere(float radius, Eigen::Index count) {
     test::Noise noise;
@@ -26,9 +29,10 @@ TEST(Scale, LengthsOfThePlaceAreMultiplied) {
     const PlaneOdometryOptions options;
     const auto half = atScale(options, 0.5);
     EXPECT_EQ(half.map.voxel_size, options.map.voxel_size / 2);
-    EXPECT_EQ(half.tracker.point_spacing, options.tracker.point_spacing / 2);
+    EXPECT_EQ(half.spacing.point_spacing, SpacingTuning().point_spacing / 2);
     EXPECT_EQ(half.scan.max_range, options.scan.max_range);  // the sensor's
-    EXPECT_EQ(half.scanToMap.point_sigma, options.scanToMap.point_sigma);
+    EXPECT_EQ(half.localMap.point_sigma, LocalMapTuning().point_sigma);
+    EXPECT_EQ(half.localMap.probe, LocalMapTuning().probe / 2);
     EXPECT_NO_THROW(atScale(options, 0.25).points.check("point_registration"));
 }
 }  // namespace

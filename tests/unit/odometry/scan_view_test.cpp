@@ -4,8 +4,10 @@
 
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 
 Eigen::Matrix3Xf anyPoints(Eigen::Index count) {
     test::Noise noise;

@@ -6,8 +6,10 @@
 
 #include "poses.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using test::poseAt;
 
 /** After so many increments that were off by `metres` and `radians`. */

@@ -13,7 +13,6 @@ namespace {
 using namespace delio;
 using paper::drawLines;
 using paper::LineCloud;
-using LineCloudOptions;
 
 test::RingScan scan() {
     test::Noise noise;

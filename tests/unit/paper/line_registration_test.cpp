@@ -12,7 +12,6 @@ namespace {
 using namespace delio;
 using paper::closestPoints;
 using paper::LineCloud;
-using LineRegistrationOptions;
 using paper::registerLines;
 using paper::searchTranslation;
 

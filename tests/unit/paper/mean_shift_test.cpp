@@ -24,8 +24,8 @@ double degrees(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 /** `each` normals about each axis, then `scattered` anywhere. */
 paper::SurfaceNormals planted(const std::vector<Eigen::Vector3d>& axes,
-                                 const std::vector<Eigen::Index>& each, double spread_deg,
-                                 Eigen::Index scattered) {
+                              const std::vector<Eigen::Index>& each, double spread_deg,
+                              Eigen::Index scattered) {
     test::Noise noise;
     std::vector<Eigen::Vector3f> all;
     for (std::size_t a = 0; a < axes.size(); ++a)

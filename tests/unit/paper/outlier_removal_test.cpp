@@ -10,7 +10,6 @@
 
 namespace {
 using namespace delio;
-using OutlierRemovalOptions;
 using paper::removeOutliers;
 using paper::SurfaceNormals;
 

@@ -10,7 +10,6 @@
 namespace {
 using namespace delio;
 using paper::Pattern;
-using PatternRegistrationOptions;
 using paper::registerPatterns;
 using test::degreesBetween;
 using test::rotationAbout;

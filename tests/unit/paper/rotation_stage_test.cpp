@@ -3,6 +3,8 @@
 
 #include "delio/slam/options.h"
 #include "paper/normals.h"
+#include "paper/outlier_removal.h"
+#include "paper/pattern_registration.h"
 #include "ring_scan.h"
 
 namespace {

@@ -1,4 +1,5 @@
 #include "delio/picture/figures.h"
+#include "picture/line_scenes.h"
 
 #include <gtest/gtest.h>
 #include <mrpt/img/CImage.h>

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "paper/line_cloud.h"
 #include "delio/picture/render.h"
 #include "delio/run/run_folder.h"
 
@@ -18,14 +17,6 @@ mrpt::opengl::COpenGLScene::Ptr sphereScene(const std::vector<Eigen::Matrix3Xf>&
 
 /** The spheres of sphereScene() as a reader of the paper looks at them: from behind and above. */
 SnapshotOptions sphereView(std::size_t spheres);
-
-/** The lines of a scan, coloured by height. Metres, sensor's frame. */
-mrpt::opengl::COpenGLScene::Ptr lineScene(const paper::LineCloud& lines);
-
-/** The lines of two scans, those of `from` in blue, those of `to` moved by `t` in red, and in
- *  green, 0.3 m above, what joins the midpoints of a pair. */
-mrpt::opengl::COpenGLScene::Ptr matchScene(const paper::LineCloud& from, const paper::LineCloud& to,
-                                           const Eigen::Vector3d& t);
 
 /** The pictures of a run: map.3Dscene and map.png where there are points, map_removal.png
  *  where something dynamic was taken out of them, before (in red what was) beside after in the same

@@ -4,10 +4,11 @@
 
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using odometry::PointMap;
-using PointMapOptions;
 
 Eigen::Matrix3Xd cloud(Eigen::Index count, double spread, test::Noise& noise) {
     Eigen::Matrix3Xd points(3, count);

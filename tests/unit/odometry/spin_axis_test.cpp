@@ -8,8 +8,10 @@
 #include "odometry/rings.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 
 test::RingScan scanOfRings(unsigned rings) {
     test::Noise noise;

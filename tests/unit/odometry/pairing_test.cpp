@@ -5,8 +5,10 @@
 #include "delio/core/geometry.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using odometry::Pairing;
 
 /** However it came to a pose, its pairs are the ones that are looked for from nothing. */

@@ -9,6 +9,9 @@
 
 #include "ring_scan.h"
 
+using namespace delio;
+using namespace delio::odometry;
+
 namespace {
 using delio::odometry::ringsOf;
 using delio::test::Noise;

@@ -6,8 +6,10 @@
 
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using Eigen::Isometry3d;
 using odometry::CoursePrior;
 using odometry::TimedPoints;
@@ -92,7 +94,7 @@ TEST(CourseRegistration, FindsTheSwingWithinAScan) {
 TEST(CourseRegistration, StartsWhereItIsKnownToStart) {
     const auto found =
         odometry::registerCourse(mapOf(test::yard()), seen(test::yard(), 0),
-                               evenCourse(poseAt(0, 0, 0)), kSince_s, kOfHand, 1, {});
+                                 evenCourse(poseAt(0, 0, 0)), kSince_s, kOfHand, 1, {});
     EXPECT_LT((found.at(-kSince_s).matrix() - swung(-kSince_s).matrix()).norm(), 1e-12);
 }
 
@@ -103,7 +105,7 @@ TEST(CourseRegistration, IsLedAstrayNoFartherThanIsLikely) {
     const Course even = evenCourse(poseAt(0, 0, 0));
     const auto found =
         odometry::registerCourse(mapOf(test::corridor()), seen(test::corridor(), 0), even, kSince_s,
-                               {kSigma_m, 0.02, kSigma_m, 0.1}, 1, {});
+                                 {kSigma_m, 0.02, kSigma_m, 0.1}, 1, {});
     for (const double time_s : {-0.05, 0.0, 0.05})
         EXPECT_NEAR(found.at(time_s).translation().x(), even.at(time_s).translation().x(),
                     3 * kSigma_m);
@@ -113,7 +115,7 @@ TEST(CourseRegistration, IsLedAstrayNoFartherThanIsLikely) {
 TEST(CourseRegistration, AnEvenMotionStaysEvenWhereItIsKnownToBe) {
     const Course even = evenCourse(poseAt(0, 0, 0));
     const auto found = odometry::registerCourse(mapOf(test::yard()), seen(test::yard(), 0.01), even,
-                                              kSince_s, {1e-4, 1e-4, 1e-5, 1e-5}, 1, {});
+                                                kSince_s, {1e-4, 1e-4, 1e-5, 1e-5}, 1, {});
     for (const double time_s : {-0.05, 0.0, 0.05})
         EXPECT_LT((found.at(time_s).matrix() - even.at(time_s).matrix()).norm(), 1e-2);
 }

@@ -7,8 +7,10 @@
 
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using odometry::Outlines;
 
 TEST(Outlines, ThoseAboutAPlaceAreFoundByTheirX) {

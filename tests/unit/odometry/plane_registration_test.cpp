@@ -5,15 +5,16 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "odometry/initial_guess.h"
 #include "core/voxel_grid.h"
+#include "odometry/initial_guess.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using odometry::Correspondences;
 using odometry::PlaneMap;
-using PlaneRegistrationOptions;
 using test::degreesBetween;
 using test::poseAt;
 using test::rotationAbout;
@@ -57,7 +58,8 @@ TEST(PlaneRotation, ConvergesToThePlantedRotationFromTenDegrees) {
     const auto matches = matchesSeenFrom(truth, {5, 6, 7}, 0, noise);
     Eigen::Matrix3d R = truth * rotationAbout({1, 1, -1}, 10);
     for (int i = 0; i < 10; ++i) {
-        const Eigen::Vector3d w = odometry::rotationFromPlanes(matches, isometry(R, {0, 0, 0})).step;
+        const Eigen::Vector3d w =
+            odometry::rotationFromPlanes(matches, isometry(R, {0, 0, 0})).step;
         if (w.norm() > 0) R = R * Eigen::AngleAxisd(w.norm(), w.normalized()).matrix();
     }
     EXPECT_LT(degreesBetween(R, truth), 1e-6);
@@ -111,7 +113,8 @@ TEST(PlaneTranslation, IsTheLeastSquaresSolution) {
         for (const auto& match : noisy) sum += match.weight * std::pow(match.residual(R, t), 2);
         return sum;
     };
-    const Eigen::Vector3d best = odometry::translationFromPlanes(noisy, isometry(R, {0, 0, 0})).step;
+    const Eigen::Vector3d best =
+        odometry::translationFromPlanes(noisy, isometry(R, {0, 0, 0})).step;
     for (int i = 0; i < 50; ++i) EXPECT_GT(cost(best + 1e-3 * noise.direction()), cost(best));
 }
 
@@ -135,7 +138,8 @@ TEST(PlanePrior, IsFusedByItsInformation) {
     const auto alone = odometry::translationFromPlanes(matches, Eigen::Isometry3d::Identity());
     odometry::Prior prior;  // at the origin
     prior.translation = alone.information.trace() / 3;
-    const auto fused = odometry::translationFromPlanes(matches, Eigen::Isometry3d::Identity(), prior);
+    const auto fused =
+        odometry::translationFromPlanes(matches, Eigen::Isometry3d::Identity(), prior);
     const Eigen::Vector3d expected =
         (alone.information + prior.translation * Eigen::Matrix3d::Identity())
             .ldlt()
@@ -153,7 +157,8 @@ TEST(PlanePrior, HoldsARotationThatNoPlaneSees) {
     prior.rotation = 1e-3 * Eigen::Matrix3d::Identity();
     const auto turned = isometry(rotationAbout({0, 0, 1}, 2), {0, 0, 0});
     EXPECT_LT(odometry::rotationFromPlanes(matches, turned).step.z(), 1e-9);
-    EXPECT_NEAR(odometry::rotationFromPlanes(matches, turned, prior).step.z(), -2 * M_PI / 180, 1e-6);
+    EXPECT_NEAR(odometry::rotationFromPlanes(matches, turned, prior).step.z(), -2 * M_PI / 180,
+                1e-6);
 }
 
 // Normals that are known badly see axes that they do not look along.
@@ -191,8 +196,7 @@ TEST(Matcher, FindsTheSameAsOneThatKnowsNoEarlierPose) {
     test::Noise noise;
     const PlaneMap map = mapOf(test::yard(), noise);
     const Eigen::Matrix3Xd points =
-        voxelCentroids(pointsSeenFrom(test::yard(), Eigen::Isometry3d::Identity(), noise),
-                             0.5)
+        voxelCentroids(pointsSeenFrom(test::yard(), Eigen::Isometry3d::Identity(), noise), 0.5)
             .cast<double>();
     constexpr double kKernel = 0.2, kPointSigma = 0.02;
     odometry::Matcher matcher(map, points, kPointSigma);
@@ -236,8 +240,8 @@ TEST(PlaneRegistration, TheSearchFindsWhatTheIterationCannot) {
     const Eigen::Matrix3Xf scan = pointsSeenFrom(test::yard(), truth, noise);
     const Eigen::Matrix3Xd points = voxelCentroids(scan, 0.5).cast<double>();
     const auto surfaces = paper::estimateNormals(scan, NormalsOptions{});
-    const auto found = odometry::searchInPlanes(map, points, surfaces, Eigen::Isometry3d::Identity(),
-                                              4, PlaneRegistrationOptions{});
+    const auto found = odometry::searchInPlanes(
+        map, points, surfaces, Eigen::Isometry3d::Identity(), 4, PlaneRegistrationOptions{});
     ASSERT_TRUE(found.valid);
     EXPECT_LT((found.translation.translation - Eigen::Vector3d(3.2, -0.9, 0)).norm(), 0.02);
     const auto agreed = [&](const Eigen::Vector3d& t) {
@@ -254,7 +258,7 @@ TEST(PlaneRegistration, AlongACorridorThePredictionStays) {
         voxelCentroids(pointsSeenFrom(test::corridor(), poseAt(1, 0.2, 0.05), noise), 0.5)
             .cast<double>();
     const auto found = odometry::registerToPlanes(map, points, priorAt(poseAt(0.6, 0, 0)), 1,
-                                                PlaneRegistrationOptions{});
+                                                  PlaneRegistrationOptions{});
     ASSERT_TRUE(found.valid);
     ASSERT_EQ(found.translation.unobservedAxes.cols(), 1);
     EXPECT_NEAR(std::abs(found.translation.unobservedAxes(0, 0)), 1, 1e-2);
@@ -272,7 +276,7 @@ TEST(PlaneRegistration, WithoutPlanesThePredictionStays) {
     const Eigen::Matrix3d R = rotationAbout({0, 0, 1}, 3);
     for (const auto& cloud : {points, Eigen::Matrix3Xd(3, 0)}) {
         const auto found = odometry::registerToPlanes(empty, cloud, priorAt(isometry(R, {1, 2, 3})),
-                                                    1, PlaneRegistrationOptions{});
+                                                      1, PlaneRegistrationOptions{});
         EXPECT_FALSE(found.valid);
         EXPECT_EQ(found.rotation.rotation, R);
         EXPECT_EQ(found.translation.translation, Eigen::Vector3d(1, 2, 3));

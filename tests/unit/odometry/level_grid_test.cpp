@@ -5,8 +5,10 @@
 #include "delio/core/geometry.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using Eigen::Vector3d;
 using odometry::LevelSquare;
 using odometry::PointMap;

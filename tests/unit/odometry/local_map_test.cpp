@@ -2,13 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "delio/core/odometry_options.h"
 #include "core/voxel_grid.h"
+#include "delio/core/odometry_options.h"
 #include "poses.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using test::metresBetween;
 using test::poseAt;
 
@@ -20,12 +22,12 @@ class AScanInAYard : public testing::Test {
         const auto fineAt = [&](const Eigen::Isometry3d& pose) -> Eigen::Matrix3Xf {
             return voxelCentroids(
                 test::ringScan(test::yard(), pose, {48, 900, -24, 8, 0.01}, noise).points,
-                options.tracker.map_spacing);
+                options.spacing.map_spacing);
         };
         for (const double x : {0.0, 1.0}) map.add(fineAt(poseAt(x, 0, 0)), poseAt(x, 0, 0));
         view.fine = fineAt(there);
-        view.coarse = firstOfVoxels(view.fine, options.tracker.point_spacing).cast<double>();
-        view.thinned = voxelCentroids(view.fine, options.tracker.scan_spacing).cast<double>();
+        view.coarse = firstOfVoxels(view.fine, options.spacing.point_spacing).cast<double>();
+        view.thinned = voxelCentroids(view.fine, options.spacing.scan_spacing).cast<double>();
     }
 
     /** As points would have placed it, of which `share` fitted. */
@@ -39,9 +41,9 @@ class AScanInAYard : public testing::Test {
         return map.refine(view, placed, placedAt, poseAt(1, 0, 0)).pose();
     }
 
-    PlaneOdometryOptions options;
-    odometry::LocalMap map{options.scanToMap, options.map, options.registration, options.pointMap,
-                  options.points};
+    ScaledOptions options;
+    LocalMap map{options.localMap, options.map, options.registration, options.pointMap,
+                 options.points};
     ScanView view;
     const Eigen::Isometry3d there = poseAt(2, 0.1, 0);
 };

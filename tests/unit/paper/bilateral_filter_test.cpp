@@ -9,7 +9,6 @@
 
 namespace {
 using namespace delio;
-using BilateralFilterOptions;
 using paper::filterBilaterally;
 using paper::SurfaceNormals;
 

@@ -6,13 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odometry/deskew.h"
 #include "delio/slam/options.h"
+#include "odometry/deskew.h"
 #include "poses.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using Eigen::Isometry3d;
 using test::degreesBetween;
 using test::metresBetween;

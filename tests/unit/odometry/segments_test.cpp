@@ -4,10 +4,11 @@
 
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using odometry::Segment;
-using SegmentOptions;
 
 Eigen::Matrix3Xf seen(const test::Scene& things,
                       const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
@@ -19,7 +20,7 @@ Eigen::Matrix3Xf seen(const test::Scene& things,
 
 TEST(Segments, ThingsThatStandApartAreOneSegmentEach) {
     const auto segments = segmentsOf(
-        seen({{{6, -1, -1.8}, {10, 1, 0.5}}, {{6, 3, -1.8}, {10, 5, 0.5}}}), SegmentOptions{});
+        seen({{{6, -1, -1.8}, {10, 1, 0.5}}, {{6, 3, -1.8}, {10, 5, 0.5}}}), SegmentTuning{});
     ASSERT_EQ(segments.size(), 2U);
     for (const Segment& segment : segments) {
         EXPECT_GT(segment.points.size(), 200U);
@@ -31,26 +32,26 @@ TEST(Segments, ThingsThatStandApartAreOneSegmentEach) {
 }
 
 TEST(Segments, GroundIsNoneAlsoWhereItSlopes) {
-    EXPECT_TRUE(segmentsOf(seen({}), SegmentOptions{}).empty());
+    EXPECT_TRUE(segmentsOf(seen({}), SegmentTuning{}).empty());
     const Eigen::Isometry3d tilted = test::poseAtDeg(0, 0, 0, 0, 5);
-    EXPECT_TRUE(segmentsOf(seen({}, tilted), SegmentOptions{}).empty());
+    EXPECT_TRUE(segmentsOf(seen({}, tilted), SegmentTuning{}).empty());
 }
 
 TEST(Segments, WhatIsLongHighFarOrNearlyUnseenIsLeftOut) {
-    EXPECT_TRUE(segmentsOf(seen({{{-10, 5, -1.8}, {10, 6, 0.5}}}), SegmentOptions{}).empty());
+    EXPECT_TRUE(segmentsOf(seen({{{-10, 5, -1.8}, {10, 6, 0.5}}}), SegmentTuning{}).empty());
     const test::Block box{{12, -1, -1.8}, {14, 1, -0.2}};
-    EXPECT_EQ(segmentsOf(seen({box}), SegmentOptions{}).size(), 1U);
-    SegmentOptions options;
+    EXPECT_EQ(segmentsOf(seen({box}), SegmentTuning{}).size(), 1U);
+    SegmentTuning options;
     options.radius = 10;
     EXPECT_TRUE(segmentsOf(seen({box}), options).empty());
     options = {};
     options.min_points = 100000;
     EXPECT_TRUE(segmentsOf(seen({box}), options).empty());
     // Of a sign over the road only what is low enough.
-    EXPECT_TRUE(segmentsOf(seen({{{12, -1, 1.3}, {12.2, 1, 1.6}}}), SegmentOptions{}).empty());
+    EXPECT_TRUE(segmentsOf(seen({{{12, -1, 1.3}, {12.2, 1, 1.6}}}), SegmentTuning{}).empty());
 }
 
 TEST(Segments, NoPointsNoSegments) {
-    EXPECT_TRUE(segmentsOf(Eigen::Matrix3Xf(3, 0), SegmentOptions{}).empty());
+    EXPECT_TRUE(segmentsOf(Eigen::Matrix3Xf(3, 0), SegmentTuning{}).empty());
 }
 }  // namespace

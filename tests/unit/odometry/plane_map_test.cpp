@@ -7,10 +7,11 @@
 
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using odometry::PlaneMap;
-using PlaneMapOptions;
 
 /** Points of the plane n.(p - q) = 0 about q, off it by `sigma`. */
 Eigen::Matrix3Xd patch(const Eigen::Vector3d& q, const Eigen::Vector3d& normal, double sigma,

@@ -4,8 +4,10 @@
 
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using odometry::Place;
 using odometry::RangeImage;
 

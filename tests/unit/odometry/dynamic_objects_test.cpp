@@ -5,8 +5,10 @@
 #include "core/voxel_grid.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using odometry::DynamicObjects;
 using test::poseAt;
 
@@ -62,7 +64,7 @@ class MovingObjectsInAStreet : public testing::Test {
     }
 
     test::Noise noise_;
-    DynamicObjects objects_{{}, {}};
+    DynamicObjects objects_{DynamicObjectsOptions()};
     double stamp_s_ = 0;
     int found_ = 0, missed_ = 0, wrong_ = 0;
 };

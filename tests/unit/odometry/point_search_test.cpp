@@ -5,14 +5,14 @@
 #include "core/voxel_grid.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using Eigen::Isometry3d;
 using Eigen::Matrix3f;
 using Eigen::Vector3d;
 using odometry::PointMap;
-using PointMapOptions;
-using PointRegistrationOptions;
 using test::poseAt;
 
 const test::Sensor kSensor{16, 900, -15, 15, 0.02};
@@ -60,10 +60,10 @@ TEST(PointSearch, RingsOnTheGroundDoNotHideAMotionOfMetres) {
     for (const auto& moved : {poseAt(4, 0, 0), poseAt(-2, 3, 0), poseAt(3, -2, 0, 0.05)}) {
         const Pair pair = pairIn(test::yard(), moved);
         const auto nearest = odometry::registerToPoints(pair.map, pair.scan, Isometry3d::Identity(),
-                                                      kOptions.least_kernel, kOptions);
+                                                        kOptions.least_kernel, kOptions);
         EXPECT_GT(offBy(nearest, moved), kMistaken_m) << "nothing to search for";
         const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(),
-                                                kReach_m, Matrix3f::Identity(), kOptions);
+                                                  kReach_m, Matrix3f::Identity(), kOptions);
         EXPECT_TRUE(found.valid);
         EXPECT_LT(offBy(found, moved), kFound_m) << moved.translation().transpose();
     }
@@ -77,12 +77,12 @@ TEST(PointSearch, ATurnOfTwentyDegreesAboutAnyAxisIsFound) {
         moved.linear() = rotationExp(kTurn * axis);
         const Pair pair = pairIn(test::yard(), moved);
         const auto nearest = odometry::registerToPoints(pair.map, pair.scan, Isometry3d::Identity(),
-                                                      kOptions.least_kernel, kOptions);
+                                                        kOptions.least_kernel, kOptions);
         EXPECT_GT(test::degreesBetween(nearest.pose, moved), kMistaken_deg)
             << "nothing to search for";
         for (const double enough : {0.5, 2.0}) {  // with the first that fits, and by all of them
-            const auto found =
-                odometry::searchTurns(pair.map, pair.scan, Isometry3d::Identity(), enough, kOptions);
+            const auto found = odometry::searchTurns(pair.map, pair.scan, Isometry3d::Identity(),
+                                                     enough, kOptions);
             EXPECT_TRUE(found.valid);
             EXPECT_LT(offBy(found, moved), kFound_m) << axis.transpose();
             EXPECT_LT(test::degreesBetween(found.pose, moved), kFound_deg) << axis.transpose();
@@ -108,7 +108,7 @@ TEST(PointSearch, TheDiscIsLevelWhereUprightSaysSo) {
         rolled *
         test::ringScan(test::yard(), Isometry3d::Identity(), kSensor, noise).points.cast<double>());
     const auto found = odometry::searchPoints(map, rolled * pair.scan, Isometry3d::Identity(),
-                                            kReach_m, rolled.transpose().cast<float>(), kOptions);
+                                              kReach_m, rolled.transpose().cast<float>(), kOptions);
     EXPECT_LT((rolled.transpose() * found.pose.translation() - moved.translation()).norm(),
               kFound_m);
 }
@@ -116,7 +116,7 @@ TEST(PointSearch, TheDiscIsLevelWhereUprightSaysSo) {
 TEST(PointSearch, AStandingSensorStands) {
     const Pair pair = pairIn(test::yard(), Isometry3d::Identity());
     const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), 5,
-                                            Matrix3f::Identity(), kOptions);
+                                              Matrix3f::Identity(), kOptions);
     EXPECT_TRUE(found.valid);
     EXPECT_LT(offBy(found, Isometry3d::Identity()), 0.03);
 }
@@ -126,7 +126,7 @@ TEST(PointSearch, ASensorBetweenCarsThatDriveOnStands) {
     for (const double driven : {0.8, 1.5, 3.0}) {
         const Pair pair = pairIn(traffic(0), Isometry3d::Identity(), traffic(driven));
         const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), 5,
-                                                Matrix3f::Identity(), kOptions);
+                                                  Matrix3f::Identity(), kOptions);
         EXPECT_TRUE(found.valid);
         EXPECT_LT(offBy(found, Isometry3d::Identity()), 0.03) << driven;
     }

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "delio/core/geometry.h"
 #include "core/voxel_grid.h"
+#include "delio/core/geometry.h"
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using odometry::PointMap;
-using PointMapOptions;
-using PointRegistrationOptions;
 using test::degreesBetween;
 using test::poseAt;
 
@@ -33,7 +33,7 @@ TEST(PointRegistration, FindsAScanOfFewRings) {
     const PointMap map = mapOfYard(noise);
     const Eigen::Isometry3d truth = poseAt(0.8, 0.1, 0.02, 0.03);
     const auto found = odometry::registerToPoints(map, scanFrom(truth, 1, noise), poseAt(0.5, 0, 0),
-                                                1, PointRegistrationOptions{});
+                                                  1, PointRegistrationOptions{});
     ASSERT_TRUE(found.valid);
     EXPECT_LT((found.pose.translation() - truth.translation()).norm(), 0.1);
     EXPECT_LT(degreesBetween(found.pose.linear(), truth.linear()), 0.5);
@@ -53,7 +53,7 @@ TEST(PointRegistration, TheSamePointsComeBackExactly) {
     PointRegistrationOptions options;
     options.converged_m = 1e-9;
     const auto found = odometry::registerToPoints(map, truth.inverse() * points,
-                                                Eigen::Isometry3d::Identity(), 0.5, options);
+                                                  Eigen::Isometry3d::Identity(), 0.5, options);
     ASSERT_TRUE(found.valid);
     EXPECT_LT((found.pose.matrix() - truth.matrix()).norm(), 1e-5);  // the map keeps floats
     EXPECT_EQ(found.share, 1);

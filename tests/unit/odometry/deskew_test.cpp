@@ -7,8 +7,10 @@
 
 #include "ring_scan.h"
 
-namespace {
 using namespace delio;
+using namespace delio::odometry;
+
+namespace {
 using test::poseAt;
 
 /** The pose that the motion leads to after `time_s`, in many small steps. */
