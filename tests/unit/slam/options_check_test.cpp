@@ -110,7 +110,7 @@ TEST(OptionsCheck, NamesASectionOfTheOtherOdometry) {
         ofOne(assignment, "paper", "paper", "accurate", "planes");
     for (const std::string assignment :
          {"plane_tracker.lost_share=0.9", "plane_map.radius=70", "plane_registration.search_step=2",
-          "moving_objects.enabled=false", "segments.max_length=9"})
+          "moving_objects.enabled=false", "point_map.radius=70"})
         ofOne(assignment, "accurate", "planes", "paper", "paper");
 }
 }  // namespace
