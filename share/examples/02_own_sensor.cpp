@@ -2,7 +2,7 @@
 // times at which they were measured are de-skewed. The driver here is a simulated LiDAR of 32 rings
 // that drives and turns in a hall; what it truly did is printed beside what the odometry found.
 //   02_own_sensor
-#include <delio/odometry/make_odometry.h>
+#include <delio/odometry/odometry.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 
 #include <cmath>

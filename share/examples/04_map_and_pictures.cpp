@@ -2,7 +2,7 @@
 // Odometry, pose graph and map are strung together here as you need them: delio::Slam tells each
 // listener of every step.
 //   04_map_and_pictures DRIVE OUTDIR
-#include <delio/io/scan_reader.h>
+#include <delio/recordings/scan_reader.h>
 #include <delio/map/ply.h>
 #include <delio/picture/render.h>
 #include <delio/picture/scene.h>
