@@ -17,7 +17,6 @@ std::vector<HelpText::Row> optionSections(const ConstStageList& stages) {
         {"scan", "which points of a scan are used, and their de-skewing"},
         {"prediction", "the motion that is expected"},
         {"plane_tracker", "scan against map: spacings, speeds, size of the place, search"},
-        {"scan_to_map", "how points and planes are weighed against each other"},
         {"point_map", "the map of points"},
         {"point_registration", "registration of points, which places a scan"},
         {"plane_map", "the map of planes"},

@@ -144,7 +144,9 @@ std::vector<OptionField> OutlierRemovalOptions::fields() const {
 }
 
 std::vector<OptionField> MeanShiftOptions::fields() const {
-    return {{"window_deg", &MeanShiftOptions::window_deg, "deg; apex angle of the conical window",
+    return {{"min_pattern", &MeanShiftOptions::min_pattern,
+             "normals that outlier removal has to leave; fewer: modes are sought", 0, 1e6},
+            {"window_deg", &MeanShiftOptions::window_deg, "deg; apex angle of the conical window",
              1, 180},
             {"max_iterations", &MeanShiftOptions::max_iterations, "steps from a seed at most", 1,
              10000},

@@ -175,7 +175,7 @@ TEST(Profile, ForADriveItIsAdaptedToTheDrive) {
 TEST(Profile, WrittenAndLoadedOptionsGiveTheSameBytes) {
     for (const std::string profile : {"paper-literal", "accurate"}) {
         Options options = Options::ofProfile(profile);
-        options.paper.normals.voxel_size = options.planes.normals.voxel_size = 1.0 / 3;
+        options.paper.pointMap.spacing = options.planes.pointMap.spacing = 1.0 / 3;
         options.paper.scan.vertical_correction_deg = options.planes.scan.vertical_correction_deg =
             0.205;
         options.planes.tracker.lost_share = 0.1 + 0.2;
@@ -186,8 +186,8 @@ TEST(Profile, WrittenAndLoadedOptionsGiveTheSameBytes) {
         again.load(text);
         EXPECT_EQ(textOf(again), text);
         EXPECT_EQ(again.isPaper(), profile != "accurate");
-        const auto& normals = again.isPaper() ? again.paper.normals : again.planes.normals;
-        EXPECT_EQ(normals.voxel_size, 1.0 / 3);
+        const auto& pointMap = again.isPaper() ? again.paper.pointMap : again.planes.pointMap;
+        EXPECT_EQ(pointMap.spacing, 1.0 / 3);
         EXPECT_EQ(again.scan().vertical_correction_deg, 0.205);
         EXPECT_EQ(again.graph.kernel_width, 1e-17);
         EXPECT_EQ(again.paper.lineRegistration.centroids, again.isPaper());

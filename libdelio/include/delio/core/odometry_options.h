@@ -159,13 +159,13 @@ struct OutlierRemovalOptions : public StageOptions {
 /** Section III-C: where too little of the pattern is left, the modes of the normals' density are
  *  sought, so that small structures are kept beside the ground. The paper gives no numbers. */
 struct MeanShiftOptions : public StageOptions {
+    unsigned min_pattern = 500;
     double window_deg = 20;
     unsigned max_iterations = 50;
     unsigned min_support = 10;
     double cell_deg = 1;
 
     // No keys of an .ini file:
-    unsigned min_pattern = 500;
     double min_observability = 0.01;
     double seed_spacing_deg = 10;
     double converged_deg = 0.01;
