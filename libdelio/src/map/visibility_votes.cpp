@@ -34,21 +34,8 @@ std::vector<OptionField> RemovalOptions::fields() const {
         {"voxel_size", &RemovalOptions::voxelSize_m,
          "m; edge of the voxels that scans are asked of", 0.02, 10},
         {"cell_deg", &RemovalOptions::cell_deg, "deg; directions are told apart by this", 0.1, 10},
-        {"margin", &RemovalOptions::margin_m,
-         "m; a beam that went on by this looked through a voxel", 0, 10},
         {"spacing", &RemovalOptions::spacing_m,
-         "m; between the scans that are asked (standing, one in half a second)", 0, 100},
-        {"witnesses", &RemovalOptions::witnesses, "scans that have to have looked through it", 1,
-         1000},
-        {"free_per_taken", &RemovalOptions::freePerTaken,
-         "a voxel is dynamic where this many times the scans that looked through it outnumber "
-         "those "
-         "that saw something there",
-         0, 100},
-        {"grown_share", &RemovalOptions::grownShare,
-         "of the voxels above and beside one of which little is known, those dynamic: it is, too",
-         0, 1},
-    };
+         "m; between the scans that are asked (standing, one in half a second)", 0, 100}};
 }
 
 std::size_t VisibilityVotes::Block::rankOf(unsigned number) const {

@@ -25,10 +25,15 @@ struct RemovalOptions : StageOptions {
     bool enabled = true;
     double voxelSize_m = 0.2;
     double cell_deg = 0.4;
-    double margin_m = 0.5;
     double spacing_m = 0.5;
-    unsigned witnesses = 2;
+
+    // No keys of an .ini file:
+    double margin_m = 0.5;   //!< a beam that went on by this looked through a voxel
+    unsigned witnesses = 2;  //!< scans that have to have looked through a dynamic voxel
+    /** A voxel is dynamic where the scans that looked through it are this many times those that saw
+     *  something there. */
     double freePerTaken = 1.5;
+    /** An unsure voxel is dynamic where at least this part of its neighbours is. */
     double grownShare = 0.5;
 
  protected:
