@@ -2,9 +2,12 @@
 
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 #include <mrpt/core/Clock.h>
+#include <mrpt/core/aligned_allocator.h>
 #include <mrpt/system/datetime.h>
 #include <mrpt/system/progress.h>
 #include <unistd.h>
+#include <cstdlib>
+#include <new>
 
 #include <algorithm>
 #include <cerrno>
@@ -21,6 +24,14 @@
 #include "command_line_output.h"
 #include "delio/core/error.h"
 #include "delio/core/printable.h"
+
+/** Replaces MRPT's own: the containers of MRPT 2.5.8 do not look whether they got the memory that
+ *  they asked for, and write to it. A program's own functions go before those of its libraries. */
+void* mrpt::aligned_malloc(std::size_t size, std::size_t alignment) {
+    void* memory = nullptr;
+    if (posix_memalign(&memory, alignment, size) != 0) throw std::bad_alloc();
+    return memory;
+}
 
 namespace delio::cli {
 namespace {

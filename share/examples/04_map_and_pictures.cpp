@@ -2,10 +2,10 @@
 // Odometry, pose graph and map are strung together here as you need them: delio::Slam tells each
 // listener of every step.
 //   04_map_and_pictures DRIVE OUTDIR
-#include <delio/recordings/scan_reader.h>
 #include <delio/map/ply.h>
 #include <delio/picture/render.h>
 #include <delio/picture/scene.h>
+#include <delio/recordings/scan_reader.h>
 #include <delio/slam/listeners.h>
 #include <delio/slam/options.h>
 #include <delio/slam/slam.h>

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "delio/odometry/scan.h"
 #include "odometry/motion_model.h"
 #include "odometry/preprocess.h"
-#include "delio/odometry/scan.h"
 
 namespace delio::benchmark {
 /** An odometry that is measured beside the others. */

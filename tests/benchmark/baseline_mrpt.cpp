@@ -3,8 +3,8 @@
 #include <mrpt/slam/CICP.h>
 
 #include "baseline.h"
-#include "delio/core/geometry.h"
 #include "core/voxel_grid.h"
+#include "delio/core/geometry.h"
 
 namespace delio::benchmark {
 using mrpt::maps::CSimplePointsMap;

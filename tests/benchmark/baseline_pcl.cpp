@@ -8,8 +8,8 @@
 #include <Eigen/Dense>
 
 #include "baseline.h"
-#include "delio/core/geometry.h"
 #include "core/voxel_grid.h"
+#include "delio/core/geometry.h"
 
 namespace delio::benchmark {
 namespace {

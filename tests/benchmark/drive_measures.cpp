@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <map>
 
-#include "odometry/rings.h"
 #include "core/voxel_grid.h"
+#include "odometry/rings.h"
 
 namespace delio::benchmark {
 namespace {

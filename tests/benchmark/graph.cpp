@@ -20,11 +20,11 @@
 
 #include "../common/poses.h"
 #include "delio/evaluation/metrics.h"
-#include "delio/graph/pose_graph.h"
 #include "delio/formats/drive_meta.h"
-#include "delio/recordings/scan_reader.h"
 #include "delio/formats/trajectory.h"
+#include "delio/graph/pose_graph.h"
 #include "delio/odometry/odometry.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/slam/listeners.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"

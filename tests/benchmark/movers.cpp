@@ -14,8 +14,8 @@
 
 #include "delio/core/error.h"
 #include "delio/formats/drive_meta.h"
-#include "delio/recordings/rawlog_reader.h"
 #include "delio/odometry/odometry.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "delio/slam/options.h"
 
 namespace {

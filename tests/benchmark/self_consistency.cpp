@@ -19,12 +19,12 @@
 #include "delio/core/error.h"
 #include "delio/evaluation/metrics.h"
 #include "delio/formats/drive_meta.h"
-#include "delio/recordings/scan_reader.h"
 #include "delio/formats/trajectory.h"
 #include "delio/odometry/odometry.h"
-#include "odometry/preprocess.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/slam/options.h"
 #include "map_measures.h"
+#include "odometry/preprocess.h"
 
 namespace {
 using namespace delio;

@@ -12,10 +12,10 @@
 #include "delio/core/geometry.h"
 #include "delio/evaluation/metrics.h"
 #include "delio/formats/drive_meta.h"
-#include "delio/recordings/scan_reader.h"
 #include "delio/formats/trajectory.h"
-#include "paper/coupled_registration.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/slam/options.h"
+#include "paper/coupled_registration.h"
 
 namespace {
 using namespace delio;

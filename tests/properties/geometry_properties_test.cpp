@@ -2,10 +2,10 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include "delio/core/geometry.h"
-#include "delio/core/increment.h"
 #include "core/principal_axes.h"
 #include "core/scan_trajectory.h"
+#include "delio/core/geometry.h"
+#include "delio/core/increment.h"
 #include "generators.h"
 
 namespace {

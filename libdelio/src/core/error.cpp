@@ -1,20 +1,8 @@
 #include "delio/core/error.h"
 
-#include <mrpt/core/aligned_allocator.h>
-
-#include <cstdlib>
 #include <filesystem>
 #include <ios>
 #include <new>
-
-/** In the place of MRPT's own: the containers of MRPT 2.5.8 do not look whether the memory that
- * they asked for is there, and write to it. What a program is made of goes before what libraries
- * have; it stands here, among what every program takes. */
-void* mrpt::aligned_malloc(std::size_t size, std::size_t alignment) {
-    void* memory = nullptr;
-    if (posix_memalign(&memory, alignment, size) != 0) throw std::bad_alloc();
-    return memory;
-}
 
 namespace delio {
 namespace {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/portable_math.h"
 #include "core/percentile.h"
+#include "core/portable_math.h"
 
 namespace delio::evaluation {
 namespace {

@@ -12,10 +12,10 @@
 #include <memory>
 
 #include "core/principal_axes.h"
+#include "core/voxel_table.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/core/stopwatch.h"
-#include "core/voxel_table.h"
 #include "map/stored_scan.h"
 #include "map/visibility_votes.h"
 #include "map/voxel_set.h"

@@ -142,7 +142,8 @@ void MapBuilder::putAside(const std::vector<float>& points, const CPointsMap* vi
     if (!spool_) spool_ = std::make_shared<io::Spool>(folder_, kWhat, kOption);
     scan.points = spool_->append(points);
     if (!view) return;
-    const auto packed = odometry::RangeImage(finitePoints(*view), options_.removal.cell_deg).packed();
+    const auto packed =
+        odometry::RangeImage(finitePoints(*view), options_.removal.cell_deg).packed();
     scan.viewFirstRow = packed.firstRow;
     scan.view = map::putAside(packed, *spool_);
 }

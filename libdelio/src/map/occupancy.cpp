@@ -8,8 +8,8 @@
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/files/output_file.h"
-#include "mrpt/object_file.h"
 #include "map/ground.h"
+#include "mrpt/object_file.h"
 
 namespace delio::map {
 namespace fs = std::filesystem;

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/voxel_table.h"
 #include "delio/map/map_builder.h"
 #include "odometry/range_image.h"
-#include "core/voxel_table.h"
 
 namespace delio::map {
 /** What the scans of a whole drive say of each voxel in which they saw something: how many saw it,
@@ -22,7 +22,8 @@ class VisibilityVotes {
     void hit(const Eigen::Vector3d& point, bool moving, std::uint32_t scan);
 
     /** Asks a scan of every voxel within `reach_m`. */
-    void look(const odometry::RangeImage& view, const Eigen::Isometry3d& sensorInWorld, float reach_m);
+    void look(const odometry::RangeImage& view, const Eigen::Isometry3d& sensorInWorld,
+              float reach_m);
 
     /** Tells what is dynamic: voxels that were looked through, or hit as a part of what moves; and
      *  those of which little is known and above or beside which most is dynamic. */

@@ -66,8 +66,7 @@ std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentTun
 class DynamicObjects {
  public:
     /** Of no scan yet. */
-    explicit DynamicObjects(const DynamicObjectsOptions& options)
-        : options_(options) {}
+    explicit DynamicObjects(const DynamicObjectsOptions& options) : options_(options) {}
 
     /** What a scan shows while its pose is not known. */
     class Sight;

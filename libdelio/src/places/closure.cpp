@@ -66,7 +66,7 @@ RegistrableSubmap::RegistrableSubmap(const Eigen::Matrix3Xf& points)
 }
 
 odometry::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& other,
-                                                    const Eigen::Isometry3d& guess) const {
+                                                      const Eigen::Isometry3d& guess) const {
     const PointRegistrationOptions points;
     const PlaneRegistrationOptions planes;
     const auto placed =
@@ -74,7 +74,7 @@ odometry::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& o
     if (!placed.valid) return odometry::predictedEstimate(guess, planes);
     const auto prior =
         odometry::Prior::of(placed.pose, kPointSigma_m,
-                          std::pow(kPointSigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity());
+                            std::pow(kPointSigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity());
     auto found =
         odometry::registerToPlanes(planes_, other.thinned_, prior, points.last_kernel, planes);
     const auto& unseen = found.translation.unobservedAxes;
@@ -164,8 +164,7 @@ FreeSpace::FreeSpace(const HeightImage& image, const Eigen::Matrix3Xf& points) {
         bool isBare = true;
         for (const double dx : kBeside)
             for (const double dy : kBeside)
-                isBare =
-                    isBare && standing_.find(cellAt(x + dx, y + dy)) == VoxelIndex::kNone;
+                isBare = isBare && standing_.find(cellAt(x + dx, y + dy)) == VoxelIndex::kNone;
         if (isBare) bare_.insert(cellAt(x, y));
     }
 }

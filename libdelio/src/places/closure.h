@@ -5,14 +5,14 @@
 #include <memory>
 #include <vector>
 
+#include "core/voxel_table.h"
 #include "delio/core/increment.h"
 #include "delio/places/loops.h"
 #include "delio/places/submap.h"
 #include "odometry/plane_map.h"
-#include "odometry/register_planes.h"
 #include "odometry/point_map.h"
+#include "odometry/register_planes.h"
 #include "odometry/register_points.h"
-#include "core/voxel_table.h"
 #include "places/descriptor.h"
 
 namespace delio::places {
@@ -47,7 +47,7 @@ class RegistrableSubmap {
 
     /** Registers `other` to this submap. The initial guess may be off by 2 m. */
     odometry::PlaneEstimate registered(const RegistrableSubmap& other,
-                                     const Eigen::Isometry3d& guess) const;
+                                       const Eigen::Isometry3d& guess) const;
 
     /** Overlap coefficient (Szymkiewicz and Simpson) of the voxels of 0.5 m that the two fill above
      *  the ground, 0 to 1: those that both fill, divided by the smaller set. The ground is left
@@ -63,8 +63,8 @@ class RegistrableSubmap {
     odometry::PlaneMap planes_;
     odometry::PointMap points_;
     Eigen::Matrix3Xd coarse_, thinned_, standing_;
-    VoxelIndex filled_;   //!< by what stands
-    VoxelIndex columns_;  //!< of 1 m in which anything was seen
+    VoxelIndex filled_;         //!< by what stands
+    VoxelIndex columns_;        //!< of 1 m in which anything was seen
     std::vector<double> tops_;  //!< of each of them
 };
 

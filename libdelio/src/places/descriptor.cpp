@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/portable_math.h"
-#include "odometry/plane_map.h"
 #include "core/voxel_grid.h"
+#include "odometry/plane_map.h"
 
 namespace delio::places {
 namespace {

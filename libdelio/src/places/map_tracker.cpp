@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "odometry/spin_axis.h"
 #include "core/voxel_grid.h"
+#include "odometry/spin_axis.h"
 #include "places/descriptor.h"
 
 namespace delio {

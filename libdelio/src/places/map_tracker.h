@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "delio/core/increment.h"
-#include "odometry/local_map.h"
 #include "delio/places/localisation.h"
 #include "delio/places/stored_map.h"
+#include "odometry/local_map.h"
 #include "places/place_search.h"
 
 namespace delio {

@@ -11,9 +11,9 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/voxel_grid.h"
 #include "delio/core/error.h"
 #include "delio/files/output_file.h"
-#include "core/voxel_grid.h"
 #include "files/input_file.h"
 #include "files/names.h"
 #include "places/bytes.h"

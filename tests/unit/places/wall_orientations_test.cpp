@@ -59,7 +59,6 @@ TEST(WallOrientations, OfGroundAloneSayNothing) {
     const places::WallOrientations here(ground), walls(wallsAt({10}));
     EXPECT_TRUE(here.turnsOf(walls, 0, 1, 3).empty());
     EXPECT_TRUE(walls.turnsOf(here, 0, 1, 3).empty());
-    EXPECT_TRUE(
-        places::WallOrientations(paper::SurfaceNormals{}).turnsOf(walls, 0, 1, 3).empty());
+    EXPECT_TRUE(places::WallOrientations(paper::SurfaceNormals{}).turnsOf(walls, 0, 1, 3).empty());
 }
 }  // namespace

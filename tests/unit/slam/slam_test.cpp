@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "delio/core/error.h"
-#include "odometry/preprocess.h"
 #include "gauss_newton.h"
+#include "odometry/preprocess.h"
 #include "slam_drive.h"
 
 namespace {

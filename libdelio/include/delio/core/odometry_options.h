@@ -120,7 +120,8 @@ struct NormalsOptions : public StageOptions {
     double min_breadth = 0.1;
 
     // No keys of an .ini file:
-    double max_thickness = 0.15;
+    double max_thickness =
+        0.15;  //!< largest thickness/breadth of a neighbourhood; more is no plane
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -133,7 +134,7 @@ struct BilateralFilterOptions : public StageOptions {
     double angle_sigma_deg = 10;
 
     // No keys of an .ini file:
-    double distance_sigma = 0.5;
+    double distance_sigma = 0.5;  //!< m; width of the kernel over distance in space
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -166,11 +167,11 @@ struct MeanShiftOptions : public StageOptions {
     double cell_deg = 1;
 
     // No keys of an .ini file:
-    double min_observability = 0.01;
-    double seed_spacing_deg = 10;
-    double converged_deg = 0.01;
-    double merge_deg = 5;
-    double ball_deg = 6;
+    double min_observability = 0.01;  //!< 0 to 1; modes are sought where an axis is fixed less
+    double seed_spacing_deg = 10;     //!< deg; between the seeds on the sphere
+    double converged_deg = 0.01;      //!< deg; a smaller shift ends the iteration
+    double merge_deg = 5;             //!< deg; nearer modes are one
+    double ball_deg = 6;              //!< deg; normals so near to a mode are kept
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -190,11 +191,11 @@ struct PatternRegistrationOptions : public StageOptions {
     double prior_sigma_deg = 1.0;
 
     // No keys of an .ini file:
-    double converged_deg = 0.001;
-    unsigned min_normals = 50;
-    double min_observability = 0.01;
-    double independent_share = 0.05;
-    double view_distance = 2;
+    double converged_deg = 0.001;     //!< deg; a smaller step ends the iteration
+    unsigned min_normals = 50;        //!< that are needed; fewer: predicted
+    double min_observability = 0.01;  //!< 0 to 1; an axis seen less is unobserved
+    double independent_share = 0.05;  //!< of the normals, that count as independent
+    double view_distance = 2;         //!< m; the covariance grows by (1 + d / this)^2
 
     void check(const std::string& section) const override;
 
@@ -213,9 +214,9 @@ struct RotationInPlaceOptions : public StageOptions {
     unsigned max_iterations = 30;
 
     // No keys of an .ini file:
-    double place_sigma = 0.5;
-    unsigned min_pairs = 500;
-    double converged_deg = 0.001;
+    double place_sigma = 0.5;      //!< m; width of the kernel over distance in space
+    unsigned min_pairs = 500;      //!< that are needed
+    double converged_deg = 0.001;  //!< deg; a smaller step ends the iteration
 
     void check(const std::string& section) const override;
 
@@ -254,13 +255,13 @@ struct LineRegistrationOptions : public StageOptions {
     double search_step = 1;
 
     // No keys of an .ini file:
-    double min_angle_deg = 15;
-    double short_length = 0.06;
-    double max_distance = 5;
-    double min_observability = 0.03;
-    double independent_share = 0.25;
-    double overlap_distance = 0.5;
-    double search_speed = 30;
+    double min_angle_deg = 15;        //!< deg; pairs of lines at smaller angles are left out
+    double short_length = 0.06;       //!< m; noise of the ends of a line
+    double max_distance = 5;          //!< m; midpoints of a pair are at most so far apart
+    double min_observability = 0.03;  //!< 0 to 1; an axis seen less is unobserved
+    double independent_share = 0.25;  //!< of the pairs, that count as independent in the covariance
+    double overlap_distance = 0.5;    //!< m; lines with midpoints so near see the same surface
+    double search_speed = 30;         //!< m/s; an unknown motion is searched up to this
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -274,11 +275,11 @@ struct PointCheckOptions : public StageOptions {
     double reach = 4;
 
     // No keys of an .ini file:
-    double believed_deg = 0.5;
-    double map_spacing = 0.1;
-    double point_spacing = 1.0;
-    double min_moved = 0.3;
-    double min_share = 0.15;
+    double believed_deg = 0.5;   //!< deg; largest deviation of the rotation
+    double map_spacing = 0.1;    //!< m; between points of the scan before
+    double point_spacing = 1.0;  //!< m; between points of the scan
+    double min_moved = 0.3;      //!< part of the points that a standstill must not explain
+    double min_share = 0.15;     //!< inlier ratio of these in the pose found
 
  protected:
     std::vector<OptionField> fields() const override;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "delio/graph/pose_graph.h"
 #include "delio/formats/trajectory.h"
+#include "delio/graph/pose_graph.h"
 #include "delio/places/submap.h"
 
 namespace delio::places {

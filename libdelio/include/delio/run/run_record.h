@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "delio/evaluation/comparison.h"
-#include "delio/graph/pose_graph.h"
 #include "delio/formats/trajectory.h"
+#include "delio/graph/pose_graph.h"
 #include "delio/map/map_builder.h"
 #include "delio/places/localisation.h"
 #include "delio/places/loops.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "delio/graph/pose_graph.h"
 #include "delio/formats/drive_meta.h"
+#include "delio/graph/pose_graph.h"
 #include "delio/map/map_builder.h"
 #include "delio/odometry/odometry.h"
 #include "delio/places/localisation.h"

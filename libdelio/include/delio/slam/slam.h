@@ -7,8 +7,8 @@
 
 #include "delio/formats/trajectory.h"
 #include "delio/odometry/odometry.h"
-#include "delio/odometry/step.h"
 #include "delio/odometry/scan.h"
+#include "delio/odometry/step.h"
 
 namespace delio {
 /** Which poses are kept: of all scans, or only what the next scan needs, so that memory does not

@@ -6,7 +6,8 @@
 #include "memory_limit.h"
 
 namespace {
-// MRPT 2.5.8 alone ends with a segmentation fault.
+// What programs have in place of MRPT's aligned_malloc (apps/common/cli.cpp): MRPT 2.5.8 alone ends
+// with a segmentation fault.
 TEST(MrptMemory, PointsForWhichThereIsNone) {
     if (!delio::test::MemoryLimit::works()) GTEST_SKIP() << "the sanitizer ends the process";
     constexpr std::size_t kMegabytes = 64, kPoints = 100'000'000;
