@@ -6,8 +6,6 @@
 #include <mrpt/system/datetime.h>
 #include <mrpt/system/progress.h>
 #include <unistd.h>
-#include <cstdlib>
-#include <new>
 
 #include <algorithm>
 #include <cerrno>

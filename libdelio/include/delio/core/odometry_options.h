@@ -52,7 +52,7 @@ struct PointRegistrationOptions : public StageOptions {
     double last_kernel = 0.2;
     unsigned min_matches = 50;
 
-    // No keys of an .ini file:
+    // Not read from .ini files:
     double first_kernel = 2.0;      //!< m; widest kernel, where the motion is not known
     double least_kernel = 0.3;      //!< m; narrowest first kernel, where it is known
     unsigned max_iterations = 100;  //!< with one kernel
@@ -76,7 +76,7 @@ struct PlaneMapOptions : public StageOptions {
     unsigned max_points = 300;
     double radius = 120;
 
-    // No key of an .ini file:
+    // Not read from .ini files:
     double max_thickness = 0.1;  //!< m; standard deviation of a plane's points across it
 
  protected:
@@ -92,7 +92,7 @@ struct PlaneRegistrationOptions : public StageOptions {
     double search_radius = 30;
     double search_step = 1;
 
-    // No keys of an .ini file:
+    // Not read from .ini files:
     unsigned max_iterations = 60;  //!< with one kernel
     double converged_m = 5e-4;     //!< smaller translation steps end the iteration
 
@@ -119,7 +119,7 @@ struct NormalsOptions : public StageOptions {
     double max_radius = 1.5;
     double min_breadth = 0.1;
 
-    // No keys of an .ini file:
+    // Not read from .ini files:
     double max_thickness =
         0.15;  //!< largest thickness/breadth of a neighbourhood; more is no plane
 
@@ -133,7 +133,7 @@ struct BilateralFilterOptions : public StageOptions {
     unsigned neighbours = 6;
     double angle_sigma_deg = 10;
 
-    // No keys of an .ini file:
+    // Not read from .ini files:
     double distance_sigma = 0.5;  //!< m; width of the kernel over distance in space
 
  protected:
@@ -166,7 +166,7 @@ struct MeanShiftOptions : public StageOptions {
     unsigned min_support = 10;
     double cell_deg = 1;
 
-    // No keys of an .ini file:
+    // Not read from .ini files:
     double min_observability = 0.01;  //!< 0 to 1; modes are sought where an axis is fixed less
     double seed_spacing_deg = 10;     //!< deg; between the seeds on the sphere
     double converged_deg = 0.01;      //!< deg; a smaller shift ends the iteration
@@ -190,7 +190,7 @@ struct PatternRegistrationOptions : public StageOptions {
     double max_correction_deg = 30;
     double prior_sigma_deg = 1.0;
 
-    // No keys of an .ini file:
+    // Not read from .ini files:
     double converged_deg = 0.001;     //!< deg; a smaller step ends the iteration
     unsigned min_normals = 50;        //!< that are needed; fewer: predicted
     double min_observability = 0.01;  //!< 0 to 1; an axis seen less is unobserved
@@ -213,7 +213,7 @@ struct RotationInPlaceOptions : public StageOptions {
     double last_kernel_deg = 0.7;
     unsigned max_iterations = 30;
 
-    // No keys of an .ini file:
+    // Not read from .ini files:
     double place_sigma = 0.5;      //!< m; width of the kernel over distance in space
     unsigned min_pairs = 500;      //!< that are needed
     double converged_deg = 0.001;  //!< deg; a smaller step ends the iteration
@@ -254,9 +254,9 @@ struct LineRegistrationOptions : public StageOptions {
     double search_radius = 8;
     double search_step = 1;
 
-    // No keys of an .ini file:
-    double min_angle_deg = 15;        //!< deg; pairs of lines at smaller angles are left out
-    double short_length = 0.06;       //!< m; noise of the ends of a line
+    // Not read from .ini files:
+    double min_angle_deg = 15;        //!< deg; lines at smaller angles count as parallel
+    double short_length = 0.06;       //!< m; pairs of much shorter lines hardly count
     double max_distance = 5;          //!< m; midpoints of a pair are at most so far apart
     double min_observability = 0.03;  //!< 0 to 1; an axis seen less is unobserved
     double independent_share = 0.25;  //!< of the pairs, that count as independent in the covariance
@@ -274,7 +274,7 @@ struct PointCheckOptions : public StageOptions {
     double rest = 0.3;
     double reach = 4;
 
-    // No keys of an .ini file:
+    // Not read from .ini files:
     double believed_deg = 0.5;   //!< deg; largest deviation of the rotation
     double map_spacing = 0.1;    //!< m; between points of the scan before
     double point_spacing = 1.0;  //!< m; between points of the scan

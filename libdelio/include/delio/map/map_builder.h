@@ -27,7 +27,7 @@ struct RemovalOptions : StageOptions {
     double cell_deg = 0.4;
     double spacing_m = 0.5;
 
-    // No keys of an .ini file:
+    // Not read from .ini files:
     double margin_m = 0.5;   //!< a beam that went on by this looked through a voxel
     unsigned witnesses = 2;  //!< scans that have to have looked through a dynamic voxel
     /** A voxel is dynamic where the scans that looked through it are this many times those that saw
