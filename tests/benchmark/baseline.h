@@ -61,7 +61,7 @@ class ScanToScan : public Baseline {
 
  private:
     PreprocessOptions options_;
-    LinearPrediction prediction_;
+    odometry::LinearPrediction prediction_;
     Features last_;
     std::vector<Eigen::Isometry3d> poses_;
 };

@@ -15,7 +15,9 @@
 #include "delio/formats/trajectory.h"
 #include "delio/recordings/scan_reader.h"
 #include "delio/slam/options.h"
+#include "odometry/paper_odometry.h"
 #include "paper/coupled_registration.h"
+#include "paper/pattern_registration.h"
 
 namespace {
 using namespace delio;
@@ -68,8 +70,9 @@ double normalised(const Eigen::Vector3d& error, const Eigen::Matrix3d& covarianc
 }
 
 /** The line stage alone with the true rotation given, and the coupled way from the same lines. */
-void compareLines(const Isometry3d& truth, const Isometry3d& predicted, const PaperFeatures& before,
-                  const PaperFeatures& now, const PaperOdometryOptions& options, Errors& errors) {
+void compareLines(const Isometry3d& truth, const Isometry3d& predicted,
+                  const odometry::PaperFeatures& before, const odometry::PaperFeatures& now,
+                  const PaperOdometryOptions& options, Errors& errors) {
     const Eigen::Vector3d t = truth.translation();
     errors.iterations +=
         paper::registerPatterns(before.pattern, now.pattern, predicted.linear(), options.pattern)
@@ -117,13 +120,13 @@ Run run(const std::string& rawlog, Options options) {
     if (reader->meta()) options.adaptTo(*reader->meta());
     const auto truth = trueMotions(rawlog);
     const auto odometry = makeOdometry(options);
-    LinearPrediction prediction(options.isPaper() ? options.paper.prediction
+    odometry::LinearPrediction prediction(options.isPaper() ? options.paper.prediction
                                                   : options.planes.prediction);
     Run run;
-    std::shared_ptr<const PaperFeatures> before;  // the method of planes has none
+    std::shared_ptr<const odometry::PaperFeatures> before;  // the method of planes has none
     while (const auto scan = reader->next()) {
         const auto step = odometry->process(*scan);
-        const auto now = std::dynamic_pointer_cast<const PaperFeatures>(step.features);
+        const auto now = std::dynamic_pointer_cast<const odometry::PaperFeatures>(step.features);
         add(step.times_ms, run.times_ms);
         if (run.scans > 0 && run.scans - 1 < truth.size()) {
             const auto& motion = truth[run.scans - 1];

@@ -5,6 +5,7 @@
 
 #include "delio/places/stored_map.h"
 #include "places/bytes.h"
+#include "places/descriptor.h"
 #include "target.h"
 
 using namespace delio;

@@ -1,6 +1,5 @@
+#include "run/tables.h"
 #include "delio/formats/scan_table.h"
-#include "delio/run/localisation_table.h"
-#include "delio/run/loop_table.h"
 #include "delio/run/summary.h"
 #include "target.h"
 

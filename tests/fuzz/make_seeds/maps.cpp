@@ -8,6 +8,7 @@
 #include "delio/map/simplemap.h"
 #include "delio/picture/scene.h"
 #include "delio/places/stored_map.h"
+#include "places/descriptor.h"
 #include "seeds.h"
 
 namespace delio::fuzz {

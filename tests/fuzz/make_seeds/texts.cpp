@@ -3,10 +3,9 @@
 #include "delio/formats/drive_meta.h"
 #include "delio/formats/g2o.h"
 #include "delio/formats/scan_table.h"
-#include "delio/run/localisation_table.h"
-#include "delio/run/loop_table.h"
 #include "delio/run/summary.h"
 #include "delio/slam/options.h"
+#include "run/tables.h"
 #include "seeds.h"
 
 namespace delio::fuzz {
@@ -18,10 +17,10 @@ void texts() {
     writeText(seed("poses", "tum"), "0# t x y z\n" + tum);
     writeText(seed("poses", "times"), "10\n0.1\n2e-1\n");
     writeText(seed("poses", "calib"), "2P0: " + row + "Tr: " + row);
-    behind("3", seed("poses", "meta"), [](const fs::path& file) {
-        io::writeDriveMeta({}, file.string() + ".rawlog");
-        fs::rename(file.string() + ".meta.yaml", file);
-    });
+    writeText(seed("poses", "meta"), "3source: synthetic
+motion_compensated: true
+vertical_correction_deg: 0
+");
     writeText(seed("poses", "compared"), "4" + row + row + kNul + row + row);
     writeText(seed("poses", "compared_tum"), "4" + tum + kNul + tum);
     writeText(seed("kitti", "calib"), "0Tr: " + row);
@@ -50,10 +49,10 @@ void tables() {
             1, [&](std::size_t) { return row; }, file.string());
     });
     behind("1", seed("tables", "loops"), [](const fs::path& file) {
-        run::writeLoopTable({loops::LoopCandidate{}}, file.string());
+        run::writeLoopTable({places::LoopCandidate{}}, file.string());
     });
     behind("2", seed("tables", "localisation"), [](const fs::path& file) {
-        run::RunRows rows;
+        std::vector<run::RunRow> rows;
         rows.push_back({});
         run::writeLocalisationTable(rows, {MapFix{}}, file.string());
     });
