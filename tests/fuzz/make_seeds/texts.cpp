@@ -17,10 +17,8 @@ void texts() {
     writeText(seed("poses", "tum"), "0# t x y z\n" + tum);
     writeText(seed("poses", "times"), "10\n0.1\n2e-1\n");
     writeText(seed("poses", "calib"), "2P0: " + row + "Tr: " + row);
-    writeText(seed("poses", "meta"), "3source: synthetic
-motion_compensated: true
-vertical_correction_deg: 0
-");
+    writeText(seed("poses", "meta"),
+              "3source: synthetic\nmotion_compensated: true\nvertical_correction_deg: 0\n");
     writeText(seed("poses", "compared"), "4" + row + row + kNul + row + row);
     writeText(seed("poses", "compared_tum"), "4" + tum + kNul + tum);
     writeText(seed("kitti", "calib"), "0Tr: " + row);
