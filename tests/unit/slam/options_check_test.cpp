@@ -54,11 +54,10 @@ const Contradiction kContradictions[] = {
      "pattern_registration.last_kernel_deg (9)",
      "pattern_registration.kernel_deg (8)",
      true},
-    // Relocalisation has it too.
     {"accurate",
-     {"pattern_registration.last_kernel_deg=9"},
-     "pattern_registration.last_kernel_deg (9)",
-     "pattern_registration.kernel_deg (8)",
+     {"point_registration.last_kernel=0.5"},
+     "point_registration.last_kernel (0.5)",
+     "point_registration.least_kernel (0.3)",
      true},
     {"accurate", {"map.min_range=70"}, "map.min_range (70)", "map.max_range (60)", false},
     {"paper", {"map.max_range=1"}, "map.min_range (2.5)", "map.max_range (1)", false},
@@ -110,7 +109,7 @@ TEST(OptionsCheck, NamesASectionOfTheOtherOdometry) {
         ofOne(assignment, "paper", "paper", "accurate", "planes");
     for (const std::string assignment :
          {"plane_tracker.lost_share=0.9", "plane_map.radius=70", "plane_registration.search_step=2",
-          "moving_objects.enabled=false", "point_map.radius=70"})
+          "moving_objects.enabled=false", "plane_map.levels=3"})
         ofOne(assignment, "accurate", "planes", "paper", "paper");
 }
 }  // namespace
