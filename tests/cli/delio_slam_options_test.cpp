@@ -81,28 +81,11 @@ TEST_F(DelioSlam, ItsConfigHasTheSectionsInUseOnly) {
             if (!line.empty() && line[0] == '[') names.push_back(line);
         return names;
     };
-    EXPECT_EQ(sections("accurate"), Words({"[odometry]",
-                                           "[scan]",
-                                           "[prediction]",
-                                           "[plane_tracker]",
-                                           "[scan_to_map]",
-                                           "[point_map]",
-                                           "[point_registration]",
-                                           "[plane_map]",
-                                           "[plane_registration]",
-                                           "[moving_objects]",
-                                           "[segments]",
-                                           "[normals]",
-                                           "[bilateral_filter]",
-                                           "[pattern_registration]",
-                                           "[graph]",
-                                           "[map]",
-                                           "[removal]",
-                                           "[submaps]",
-                                           "[loops]",
-                                           "[closures]",
-                                           "[place_search]",
-                                           "[localisation]"}));
+    EXPECT_EQ(sections("accurate"),
+              Words({"[odometry]", "[scan]", "[prediction]", "[plane_tracker]", "[point_map]",
+                     "[point_registration]", "[plane_map]", "[plane_registration]",
+                     "[moving_objects]", "[graph]", "[map]", "[removal]", "[submaps]", "[loops]",
+                     "[closures]", "[place_search]", "[localisation]"}));
     EXPECT_EQ(sections("paper"), Words({"[odometry]",
                                         "[scan]",
                                         "[normals]",
@@ -166,7 +149,7 @@ TEST(PrintConfig, PrintsEveryOptionOfEachProfileWithItsMeaning) {
             expected.insert(at + 1, "# ");
         }
         EXPECT_EQ(printed.out, expected);
-        EXPECT_GT(expectMeanings(printed.out), 60U) << profile;
+        EXPECT_GT(expectMeanings(printed.out), 40U) << profile;
         writeText(folder / "c.ini", printed.out);
         EXPECT_EQ(runTool("delio-slam", {"--print-config", "-c", folder / "c.ini"}).out,
                   printed.out);
