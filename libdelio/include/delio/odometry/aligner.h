@@ -8,11 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "delio/core/stage_options.h"
-#include "odometry/plane_map.h"
-#include "odometry/register_planes.h"
-#include "paper/normals.h"
-#include "paper/pattern_registration.h"
+#include "delio/core/odometry_options.h"
 
 namespace delio {
 /** Loaded from `section`, and the stages from `section.plane_map`, `section.plane_registration`,
