@@ -9,7 +9,6 @@
 #include "ring_scan.h"
 
 using namespace delio;
-using namespace delio::odometry;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "delio/odometry/aligner.h"
+#include "delio/core/geometry.h"
 
 #include <gtest/gtest.h>
 #include <mrpt/config/CConfigFileMemory.h>
@@ -15,11 +15,11 @@
 #include <limits>
 
 #include "delio/core/error.h"
+#include "delio/core/geometry.h"
 #include "poses.h"
 #include "ring_scan.h"
 
 using namespace delio;
-using namespace delio::odometry;
 
 namespace {
 using Eigen::Isometry3d;
