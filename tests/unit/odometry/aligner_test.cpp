@@ -1,4 +1,4 @@
-#include "delio/core/geometry.h"
+#include "delio/odometry/aligner.h"
 
 #include <gtest/gtest.h>
 #include <mrpt/config/CConfigFileMemory.h>
