@@ -121,7 +121,7 @@ Run run(const std::string& rawlog, Options options) {
     const auto truth = trueMotions(rawlog);
     const auto odometry = makeOdometry(options);
     odometry::LinearPrediction prediction(options.isPaper() ? options.paper.prediction
-                                                  : options.planes.prediction);
+                                                            : options.planes.prediction);
     Run run;
     std::shared_ptr<const odometry::PaperFeatures> before;  // the method of planes has none
     while (const auto scan = reader->next()) {

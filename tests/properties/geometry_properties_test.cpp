@@ -42,7 +42,7 @@ RC_GTEST_PROP(Geometry, TheLogarithmGivesTheExponentialsPoseBack, ()) {
 
 // Half the way and half the way again is the way.
 RC_GTEST_PROP(Geometry, AMotionAddsUpOverItsTime, ()) {
-    const auto motion = Motion::of(drawPose(10, 40), 0.1);
+    const auto motion = Twist::of(drawPose(10, 40), 0.1);
     const double a = drawReal(1), b = drawReal(1);
     RC_ASSERT(difference(motion.after(a) * motion.after(b), motion.after(a + b)) < 1e-6);
 }

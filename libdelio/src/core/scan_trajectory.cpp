@@ -6,63 +6,65 @@
 #include "delio/core/error.h"
 
 namespace delio {
-Motion Motion::of(const Eigen::Isometry3d& increment, double duration_s) {
+Twist Twist::of(const Eigen::Isometry3d& increment, double duration_s) {
     const Vector6 twist = poseLog(increment) / duration_s;
     return {twist.head<3>(), twist.tail<3>()};
 }
 
-Eigen::Isometry3d Motion::after(double time_s) const {
+Eigen::Isometry3d Twist::after(double time_s) const {
     Vector6 twist;
     twist << time_s * velocity, time_s * turning;
     return poseExp(twist);
 }
 
-Course::Course(const std::vector<double>& times_s, const std::vector<Eigen::Isometry3d>& poses)
+ScanTrajectory::ScanTrajectory(const std::vector<double>& times_s,
+                               const std::vector<Eigen::Isometry3d>& poses)
     : times_s_(times_s), poses_(poses) {
     const auto increases = [&] {
         return std::adjacent_find(times_s.begin(), times_s.end(),
                                   [](double a, double b) { return !(a < b); }) == times_s.end();
     };
     if (poses.size() < 2 || times_s.size() != poses.size() || !increases())
-        throw Error("a course of " + std::to_string(poses.size()) + " poses at " +
+        throw Error("a trajectory of " + std::to_string(poses.size()) + " poses at " +
                     std::to_string(times_s.size()) +
                     " times: it needs at least two poses, and one time for each, which increase");
     for (std::size_t i = 1; i < poses.size(); ++i)
         motions_.push_back(
-            Motion::of(poses[i - 1].inverse() * poses[i], times_s[i] - times_s[i - 1]));
+            Twist::of(poses[i - 1].inverse() * poses[i], times_s[i] - times_s[i - 1]));
 }
 
-Course::Course(const Motion& motion)
+ScanTrajectory::ScanTrajectory(const Twist& motion)
     : times_s_{0, 1}, poses_{Eigen::Isometry3d::Identity(), motion.after(1)}, motions_{motion} {}
 
-Course Course::even(const std::vector<double>& times_s, const Eigen::Isometry3d& pose,
-                    const Motion& motion) {
+ScanTrajectory ScanTrajectory::even(const std::vector<double>& times_s,
+                                    const Eigen::Isometry3d& pose, const Twist& motion) {
     std::vector<Eigen::Isometry3d> poses;
     poses.reserve(times_s.size());
     for (const double time_s : times_s) poses.push_back(pose * motion.after(time_s - times_s[0]));
     return {times_s, poses};
 }
 
-Eigen::Isometry3d Course::at(double time_s) const {
+Eigen::Isometry3d ScanTrajectory::at(double time_s) const {
     const auto next = std::upper_bound(times_s_.begin() + 1, times_s_.end() - 1, time_s);
     const auto i = static_cast<std::size_t>(next - times_s_.begin()) - 1;
     return poses_[i] * motions_[i].after(time_s - times_s_[i]);
 }
 
-Course Course::seenFrom(double time_s) const {
-    Course seen = *this;
+ScanTrajectory ScanTrajectory::seenFrom(double time_s) const {
+    ScanTrajectory seen = *this;
     const Eigen::Isometry3d back = at(time_s).inverse();
     for (auto& time : seen.times_s_) time -= time_s;
     for (auto& pose : seen.poses_) pose = back * pose;
     return seen;
 }
 
-PoseTable::PoseTable(const Course& course, double first_s, double last_s) : first_s_(first_s) {
+PoseTable::PoseTable(const ScanTrajectory& trajectory, double first_s, double last_s)
+    : first_s_(first_s) {
     constexpr unsigned kParts = 256;
     constexpr double kLeast_s = 1e-9;
     const double step_s = std::max(last_s - first_s, kLeast_s) / kParts;
     perSecond_ = 1 / step_s;
-    for (unsigned k = 0; k <= kParts; ++k) poses_.push_back(course.at(first_s + k * step_s));
+    for (unsigned k = 0; k <= kParts; ++k) poses_.push_back(trajectory.at(first_s + k * step_s));
 }
 
 Eigen::Isometry3d PoseTable::at(double time_s) const {

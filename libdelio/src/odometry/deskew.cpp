@@ -17,11 +17,11 @@ std::vector<float> azimuthTimes(const Eigen::Matrix3Xf& points, double sweep_s) 
 }
 
 Eigen::Matrix3Xf deskew(const Eigen::Matrix3Xf& points, const std::vector<float>& times_s,
-                        const Course& course) {
+                        const ScanTrajectory& trajectory) {
     Eigen::Matrix3Xf result(3, points.cols());
     if (points.cols() == 0) return result;
     const auto [least, most] = std::minmax_element(times_s.begin(), times_s.end());
-    const PoseTable poses(course, double{*least}, double{*most});
+    const PoseTable poses(trajectory, double{*least}, double{*most});
     tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
         const double time_s = double{times_s[static_cast<std::size_t>(i)]};
         result.col(i) = poses.at(time_s).cast<float>() * points.col(i);
@@ -29,10 +29,10 @@ Eigen::Matrix3Xf deskew(const Eigen::Matrix3Xf& points, const std::vector<float>
     return result;
 }
 
-ScanView undistorted(const PointCloud& cloud, const Course& course) {
+ScanView undistorted(const PointCloud& cloud, const ScanTrajectory& trajectory) {
     ScanView view;
     view.points =
-        cloud.times_s.empty() ? cloud.points : deskew(cloud.points, cloud.times_s, course);
+        cloud.times_s.empty() ? cloud.points : deskew(cloud.points, cloud.times_s, trajectory);
     view.dynamic.resize(static_cast<std::size_t>(view.points.cols()));
     return view;
 }

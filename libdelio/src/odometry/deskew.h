@@ -13,10 +13,10 @@ namespace delio::odometry {
 std::vector<float> azimuthTimes(const Eigen::Matrix3Xf& points, double sweep_s);
 
 /** The points (metres, sensor's frame at each point's own time) as the sensor would have seen them
- *  all at once at its stamp. `times_s`: of each point, seconds from the stamp; of the course, too,
- *  which maps the sensor's frame to what it is at the stamp. */
+ *  all at once at its stamp. `times_s`: of each point, seconds from the stamp; of the trajectory,
+ * too, which maps the sensor's frame to what it is at the stamp. */
 Eigen::Matrix3Xf deskew(const Eigen::Matrix3Xf& points, const std::vector<float>& times_s,
-                        const Course& course);
+                        const ScanTrajectory& trajectory);
 
 /** A scan as it is registered against a map: undistorted, in the sensor's frame at the stamp,
  *  dynamic objects left out of the thinned points. Metres. */
@@ -28,9 +28,9 @@ struct ScanView {
     Eigen::Matrix3Xd coarse;            //!< thinned for registration by points, all of the scan
 };
 
-/** Undistorted by `course` (see deskew()) where the points have times; not thinned yet,
+/** Undistorted by `trajectory` (see deskew()) where the points have times; not thinned yet,
  *  nothing dynamic. */
-ScanView undistorted(const PointCloud& cloud, const Course& course);
+ScanView undistorted(const PointCloud& cloud, const ScanTrajectory& trajectory);
 
 /** The columns of `points` that are not marked. */
 Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std::uint8_t>& marks);

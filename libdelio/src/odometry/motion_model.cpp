@@ -77,10 +77,10 @@ void Unevenness::observe(const Eigen::Isometry3d& found, const Eigen::Isometry3d
     remember(std::pow(angleOf(off.linear()), 2), squares_rad2_);
 }
 
-CoursePrior Unevenness::prior(double most) const {
+TrajectoryPrior Unevenness::prior(double most) const {
     constexpr double kLikely_m = 0.02, kLikely_rad = 3 * M_PI / 180;
     constexpr double kLeast_m = 1e-4, kLeast_rad = 1e-5;  // of a sensor that stands still
-    CoursePrior prior;
+    TrajectoryPrior prior;
     prior.unevenTranslation =
         std::clamp(meanRoot(squares_m2_, kLikely_m), kLeast_m, std::max(most, kLeast_m));
     prior.unevenRotation = std::max(meanRoot(squares_rad2_, kLikely_rad), kLeast_rad);

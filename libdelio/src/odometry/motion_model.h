@@ -61,7 +61,7 @@ class AdaptiveKernel {
 
 /** What is known of a motion before the planes are asked: standard deviations along (metres) and
  *  about (rad) each axis. */
-struct CoursePrior {
+struct TrajectoryPrior {
     double translation = 0.05;        //!< of the pose at the stamp
     double rotation = 0.02;           //!< likewise
     double unevenTranslation = 0.02;  //!< how far a motion between stamps is off constant speed
@@ -77,7 +77,7 @@ class Unevenness {
 
     /** Root mean square of the latest along (no more than `most` metres) and about each axis; while
      *  little is known, it may be anything that a hand does. */
-    CoursePrior prior(double most) const;
+    TrajectoryPrior prior(double most) const;
 
  private:
     std::deque<double> squares_m2_, squares_rad2_;  //!< an axis

@@ -292,7 +292,7 @@ Step PaperOdometry::process(const Scan& scan) {
         step.deskewed = !made.times_s.empty();
         if (step.deskewed)
             made.points =
-                deskew(made.points, made.times_s, Motion::of(predicted, interval.duration_s));
+                deskew(made.points, made.times_s, Twist::of(predicted, interval.duration_s));
         return made;
     });
     const std::string skipped = reference_ ? reasonToSkip(arrival, prediction_) : "";

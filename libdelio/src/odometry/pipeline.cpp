@@ -104,13 +104,13 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     // After scans that were not registered, the motion since the last registered one counts.
     const double since_s = arrivals_.sinceStart_s() - reference_.time_s;
 
-    const Onward onward = predictMotion(interval.duration_s);
-    const Eigen::Isometry3d predicted = pose_ * onward.at(interval.duration_s);
+    const Extrapolation extrapolation = predictMotion(interval.duration_s);
+    const Eigen::Isometry3d predicted = pose_ * extrapolation.at(interval.duration_s);
 
     ScanView view;
     {
         const StageTimer timer(step, "undistort");
-        view = undistorted(cloud, onward.motion());
+        view = undistorted(cloud, extrapolation.motion());
     }
     VoxelNumbers voxels;
     {
@@ -147,12 +147,12 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
 }
 
 /** From the latest scan on. The motion at the end of that scan is asked for once. */
-Onward PlaneOdometry::predictMotion(double duration_s) {
-    Onward onward(prediction_.predict(duration_s), duration_s);
+Extrapolation PlaneOdometry::predictMotion(double duration_s) {
+    Extrapolation extrapolation(prediction_.predict(duration_s), duration_s);
     const bool isKnown = !isLost(state_) && !std::holds_alternative<Degenerate>(state_);
-    if (onward_ && isKnown) onward = *onward_;
-    onward_.reset();
-    return onward;
+    if (extrapolation_ && isKnown) extrapolation = *extrapolation_;
+    extrapolation_.reset();
+    return extrapolation;
 }
 
 /** Thins the scan, while the one before it enters the map; says which points became which. */
@@ -295,10 +295,10 @@ void PlaneOdometry::begin(const PointCloud& cloud, Step& step) {
 /** A scan that says nothing about the motion: its pose is the prediction, and tracking goes on from
  *  the scan before. */
 void PlaneOdometry::skip(const PointCloud& cloud, const Interval& interval, Step& step) {
-    const Onward onward = predictMotion(interval.duration_s);
+    const Extrapolation extrapolation = predictMotion(interval.duration_s);
     const Eigen::Isometry3d before = pose_;
-    pose_ = pose_ * onward.at(interval.duration_s);
-    ScanView view = undistorted(cloud, onward.motion());
+    pose_ = pose_ * extrapolation.at(interval.duration_s);
+    ScanView view = undistorted(cloud, extrapolation.motion());
     step.details = detailsOf({}, {});
     report(predictedEstimate(pose_), before, view, step);
 }
@@ -322,7 +322,7 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3
 ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     // The second scan has this one alone to be registered against: it enters as dense as it came.
     constexpr double kDense = 0.2;
-    ScanView view = undistorted(cloud, Motion{});
+    ScanView view = undistorted(cloud, Twist{});
     odometry::thin(view, kDense * options_.spacing.map_spacing, options_.spacing.scan_spacing);
     map_.clear(upAt(pose_));
     waiting_.reset();

@@ -36,7 +36,7 @@ class PlaneOdometry : public Odometry {
     void skip(const PointCloud& cloud, const Interval& interval, Step& step);
 
     // The stages of track(), in their order.
-    Onward predictMotion(double duration_s);
+    Extrapolation predictMotion(double duration_s);
     VoxelNumbers thin(ScanView& view);
     Placement registerByPoints(const ScanView& view, const Expectation& expected,
                                std::optional<DynamicObjects::Sight>& sight, Step& step) const;
@@ -59,11 +59,11 @@ class PlaneOdometry : public Odometry {
     // De-skewing by the motion that was found (pipeline_deskew.cpp).
     void deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio, ScanView& view,
                      PlaneEstimate& estimate);
-    Course trajectoryOf(const KnownMotion& known, const PointCloud& cloud,
-                        const ScanView& view) const;
-    std::optional<ScanOnCourse> deskewPair(const PointCloud& first, KnownMotion known,
-                                           const PointCloud& cloud, const ScanView& view);
-    void deskewFirst(const PointCloud& first, const Course& course);
+    ScanTrajectory trajectoryOf(const KnownEnds& known, const PointCloud& cloud,
+                                const ScanView& view) const;
+    std::optional<ScanOnTrajectory> deskewPair(const PointCloud& first, KnownEnds known,
+                                               const PointCloud& cloud, const ScanView& view);
+    void deskewFirst(const PointCloud& first, const ScanTrajectory& trajectory);
 
     // The map.
     ScanView beginMap(const PointCloud& cloud, bool motionIsKnown);
@@ -104,7 +104,7 @@ class PlaneOdometry : public Odometry {
     LinearPrediction prediction_;
     AdaptiveKernel kernel_;
     Unevenness unevenness_;
-    std::optional<Onward> onward_;  //!< where the points have times
-    double usualInlierRatio_ = 0;   //!< 0: not known
+    std::optional<Extrapolation> extrapolation_;  //!< where the points have times
+    double usualInlierRatio_ = 0;                 //!< 0: not known
 };
 }  // namespace delio::odometry

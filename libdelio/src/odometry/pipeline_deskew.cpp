@@ -3,14 +3,14 @@
 #include "odometry/pipeline.h"
 
 namespace delio::odometry {
-Course PlaneOdometry::trajectoryOf(const KnownMotion& known, const PointCloud& cloud,
-                                   const ScanView& view) const {
-    return findCourse(map_.planes(), known, cloud, view, unevenness_, kernel_m(), options_);
+ScanTrajectory PlaneOdometry::trajectoryOf(const KnownEnds& known, const PointCloud& cloud,
+                                           const ScanView& view) const {
+    return refinedTrajectory(map_.planes(), known, cloud, view, unevenness_, kernel_m(), options_);
 }
 
 /** The scan that the map began with, which is all there is in it, as seen on this trajectory. */
-void PlaneOdometry::deskewFirst(const PointCloud& first, const Course& course) {
-    ScanView view = undistorted(first, course);
+void PlaneOdometry::deskewFirst(const PointCloud& first, const ScanTrajectory& trajectory) {
+    ScanView view = undistorted(first, trajectory);
     odometry::thin(view, options_.spacing.map_spacing, options_.spacing.scan_spacing);
     map_.clear(upAt(reference_.pose));
     map_.add(view.fine, reference_.pose);
@@ -20,23 +20,23 @@ void PlaneOdometry::deskewFirst(const PointCloud& first, const Course& course) {
 /** The second scan shows the motion during the first one, and the first one that during the second.
  *  A skewed first scan bends the trajectory of the second as it is bent itself: both are de-skewed
  *  again and again, as long as more points fit. */
-std::optional<ScanOnCourse> PlaneOdometry::deskewPair(const PointCloud& first, KnownMotion known,
-                                                      const PointCloud& cloud,
-                                                      const ScanView& view) {
+std::optional<ScanOnTrajectory> PlaneOdometry::deskewPair(const PointCloud& first, KnownEnds known,
+                                                          const PointCloud& cloud,
+                                                          const ScanView& view) {
     constexpr unsigned kMostRounds = 10, kPatience = 2;
-    std::optional<ScanOnCourse> best;
+    std::optional<ScanOnTrajectory> best;
     for (unsigned round = 0, worse = 0; round < kMostRounds && worse < kPatience; ++round) {
-        const Course course =
-            round == 0 ? evenCourse(known, cloud) : trajectoryOf(known, cloud, view);
-        deskewFirst(first, course.seenFrom(-known.since_s));
-        auto next = registerOn(course, known, map_, cloud, view, options_);
+        const ScanTrajectory trajectory =
+            round == 0 ? constantTwist(known, cloud) : trajectoryOf(known, cloud, view);
+        deskewFirst(first, trajectory.seenFrom(-known.since_s));
+        auto next = registerAlong(trajectory, known, map_, cloud, view, options_);
         if (!next) break;
         known.pose = next->estimate.pose();
         const bool better = !best || next->share > best->share;
         worse = better ? 0 : worse + 1;
         if (better) best = std::move(next);
     }
-    if (best) deskewFirst(first, best->course.seenFrom(-known.since_s));
+    if (best) deskewFirst(first, best->trajectory.seenFrom(-known.since_s));
     return best;
 }
 
@@ -46,25 +46,25 @@ std::optional<ScanOnCourse> PlaneOdometry::deskewPair(const PointCloud& first, K
 void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio,
                                 ScanView& view, PlaneEstimate& estimate) {
     constexpr double kNoise = 0.02;  // of an inlier ratio
-    const KnownMotion known{reference_.pose, since_s, estimate.pose()};
-    const auto fits = [&](const std::optional<ScanOnCourse>& found) {
+    const KnownEnds known{reference_.pose, since_s, estimate.pose()};
+    const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->share >= inlierRatio - kNoise;
     };
-    std::optional<ScanOnCourse> found;
+    std::optional<ScanOnTrajectory> found;
     const auto* first = std::get_if<FirstScan>(&state_);
     const bool isPair = first && first->skewed;
     if (isPair)
         found = deskewPair(*first->skewed, known, cloud, view);
     else
         for (const bool isConstant : {false, true}) {
-            found =
-                registerOn(isConstant ? evenCourse(known, cloud) : trajectoryOf(known, cloud, view),
-                           known, map_, cloud, view, options_);
+            found = registerAlong(
+                isConstant ? constantTwist(known, cloud) : trajectoryOf(known, cloud, view), known,
+                map_, cloud, view, options_);
             if (fits(found)) break;
         }
     if (!found || (!isPair && !fits(found))) return;
     estimate = found->estimate;
     view = std::move(found->view);
-    onward_ = Onward(found->course.seenFrom(0), since_s / 8);
+    extrapolation_ = Extrapolation(found->trajectory.seenFrom(0), since_s / 8);
 }
 }  // namespace delio::odometry

@@ -26,7 +26,7 @@ Eigen::Matrix<double, kDegree, 1> sharesAt(double time_s, double since_s) {
 }
 
 /** 1 over the variance of each. */
-Coefficients informationOf(const CoursePrior& prior) {
+Coefficients informationOf(const TrajectoryPrior& prior) {
     // Speeds that differ by a T from one interval to the next, on average, lead a T^2 astray;
     // within an interval the way is off by a T^2 / 2 (t/T) (t/T - 1), and by a jerk of a / T as the
     // third.
@@ -65,30 +65,31 @@ void place(const TimedPoints& scan, const PoseTable& poses, Eigen::Matrix3Xd& pl
     });
 }
 
-Course bent(const Course& course, const Coefficients& step, double since_s) {
-    auto poses = course.poses();
+ScanTrajectory bent(const ScanTrajectory& trajectory, const Coefficients& step, double since_s) {
+    auto poses = trajectory.poses();
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        const auto shares = sharesAt(course.times_s()[i], since_s);
+        const auto shares = sharesAt(trajectory.times_s()[i], since_s);
         Vector6 move = Vector6::Zero();
         for (Eigen::Index k = 0; k < kDegree; ++k) move += shares[k] * step.segment<6>(6 * k);
         const Eigen::Matrix3d R = poses[i].linear() * rotationExp(move.head<3>());
         poses[i] = isometry(normalised(R), poses[i].translation() + move.tail<3>());
     }
-    return {course.times_s(), poses};
+    return {trajectory.times_s(), poses};
 }
 }  // namespace
 
-Course registerCourse(const PlaneMap& map, const TimedPoints& scan, const Course& course,
-                      double since_s, const CoursePrior& prior, double kernel,
-                      const PlaneRegistrationOptions& options) {
+ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
+                                  const ScanTrajectory& trajectory, double since_s,
+                                  const TrajectoryPrior& prior, double kernel,
+                                  const PlaneRegistrationOptions& options) {
     constexpr unsigned kIterations = 6;  // with one kernel
     constexpr double kConverged = 1e-4, kRough = 1e-3, kLeastFactor = 0.01;
-    if (scan.times_s.empty()) return course;
+    if (scan.times_s.empty()) return trajectory;
     const auto [least, most] = std::minmax_element(scan.times_s.begin(), scan.times_s.end());
     const Coefficients known = informationOf(prior);
     Eigen::Matrix3Xd placed(3, scan.points.cols());
     Matcher matcher(map, placed, plane_tuning::kPointSigma_m);
-    Course now = course;
+    ScanTrajectory now = trajectory;
     Coefficients sinceStart = Coefficients::Zero();
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
@@ -96,7 +97,7 @@ Course registerCourse(const PlaneMap& map, const TimedPoints& scan, const Course
             const PoseTable poses(now, *least, *most);
             place(scan, poses, placed);
             const auto matches = matcher.at(Eigen::Isometry3d::Identity(), width);
-            if (matches.size() < options.min_matches) return course;
+            if (matches.size() < options.min_matches) return trajectory;
             Equations equations = equationsOf(matches, scan, poses, since_s);
             // As in registerToPlanes(): points of one surface err together.
             const double factor =
@@ -132,7 +133,7 @@ TimedPoints pickedOf(const PointCloud& cloud, const ScanView& view, double spaci
 }
 }  // namespace
 
-Course evenCourse(const KnownMotion& known, const PointCloud& cloud) {
+ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud) {
     constexpr unsigned kParts = 8;
     const auto [least, most] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
     const double start_s = -known.since_s, first_s = std::max(start_s, double{*least}),
@@ -142,34 +143,36 @@ Course evenCourse(const KnownMotion& known, const PointCloud& cloud) {
     if (first_s > start_s) times_s.push_back(start_s);
     for (unsigned k = 0; k <= (last_s > first_s ? kParts : 0); ++k)
         times_s.push_back(first_s + k * (last_s - first_s) / kParts);
-    return Course::even(times_s, known.reference,
-                        Motion::of(known.reference.inverse() * known.pose, known.since_s));
+    return ScanTrajectory::even(times_s, known.reference,
+                                Twist::of(known.reference.inverse() * known.pose, known.since_s));
 }
 
-Course findCourse(const PlaneMap& map, const KnownMotion& known, const PointCloud& cloud,
-                  const ScanView& view, const Unevenness& unevenness, double kernel,
-                  const ScaledOptions& options) {
+ScanTrajectory refinedTrajectory(const PlaneMap& map, const KnownEnds& known,
+                                 const PointCloud& cloud, const ScanView& view,
+                                 const Unevenness& unevenness, double kernel,
+                                 const ScaledOptions& options) {
     const double most_m = options.spacing.acceleration * known.since_s * known.since_s;
-    return registerCourse(map, pickedOf(cloud, view, options.spacing.scan_spacing),
-                          evenCourse(known, cloud), known.since_s, unevenness.prior(most_m), kernel,
-                          options.registration);
+    return registerTrajectory(map, pickedOf(cloud, view, options.spacing.scan_spacing),
+                              constantTwist(known, cloud), known.since_s, unevenness.prior(most_m),
+                              kernel, options.registration);
 }
 
-std::optional<ScanOnCourse> registerOn(const Course& course, const KnownMotion& known,
-                                       const LocalMap& map, const PointCloud& cloud,
-                                       const ScanView& view, const ScaledOptions& options) {
-    ScanView again = undistorted(cloud, course.seenFrom(0));
+std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
+                                              const KnownEnds& known, const LocalMap& map,
+                                              const PointCloud& cloud, const ScanView& view,
+                                              const ScaledOptions& options) {
+    ScanView again = undistorted(cloud, trajectory.seenFrom(0));
     again.dynamic = view.dynamic;
     thin(again, options.spacing.map_spacing, options.spacing.scan_spacing);
     again.coarse = firstOfVoxels(again.fine, options.spacing.point_spacing).cast<double>();
-    const auto placed = map.place(again.coarse, course.at(0), options.points.least_kernel);
+    const auto placed = map.place(again.coarse, trajectory.at(0), options.points.least_kernel);
     if (!placed.valid) return {};
     auto estimate = map.refine(again, placed, known.pose, known.reference);
-    return ScanOnCourse{std::move(again), std::move(estimate), course, placed.share};
+    return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.share};
 }
 
-Onward::Onward(const Course& course, double over_s)
-    : end_s_(course.times_s().back()),
-      end_(course.poses().back()),
-      motion_(Motion::of(course.at(end_s_ - over_s).inverse() * end_, over_s)) {}
+Extrapolation::Extrapolation(const ScanTrajectory& trajectory, double over_s)
+    : end_s_(trajectory.times_s().back()),
+      end_(trajectory.poses().back()),
+      motion_(Twist::of(trajectory.at(end_s_ - over_s).inverse() * end_, over_s)) {}
 }  // namespace delio::odometry

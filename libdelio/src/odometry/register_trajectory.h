@@ -21,17 +21,18 @@ struct TimedPoints {
 };
 
 /** The motion (sensor to map) during a scan, from the planes that its points lie on, each at its
- *  own time: continuous-time registration. `course` is where it begins: `since_s` before the stamp
- *  the pose is known and stays; from there on it is bent by a polynomial of third degree, from
+ *  own time: continuous-time registration. `trajectory` is where it begins: `since_s` before the
+ * stamp the pose is known and stays; from there on it is bent by a polynomial of third degree, from
  *  correspondences that are made anew while the kernel narrows from `kernel` (metres) to
  *  last_kernel. Planes and prior are fused by their information. With too few points on planes it
  *  stays as it is. */
-Course registerCourse(const PlaneMap& map, const TimedPoints& scan, const Course& course,
-                      double since_s, const CoursePrior& prior, double kernel,
-                      const PlaneRegistrationOptions& options);
+ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
+                                  const ScanTrajectory& trajectory, double since_s,
+                                  const TrajectoryPrior& prior, double kernel,
+                                  const PlaneRegistrationOptions& options);
 
 /** What is known of the motion during a scan whose points have times. */
-struct KnownMotion {
+struct KnownEnds {
     Eigen::Isometry3d reference;  //!< `since_s` before the stamp, sensor to map
     double since_s = 0;           //!< more than 0
     Eigen::Isometry3d pose;       //!< at the stamp, likewise
@@ -39,47 +40,49 @@ struct KnownMotion {
 
 /** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to
  *  map, times from the stamp. */
-Course evenCourse(const KnownMotion& known, const PointCloud& cloud);
+ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud);
 
 /** The same, bent as far as it is known to be uneven, such that static points, which `view` is told
  *  of, lie on the planes of `map`. `kernel` (metres): how far they may be off. */
-Course findCourse(const PlaneMap& map, const KnownMotion& known, const PointCloud& cloud,
-                  const ScanView& view, const Unevenness& unevenness, double kernel,
-                  const ScaledOptions& options);
+ScanTrajectory refinedTrajectory(const PlaneMap& map, const KnownEnds& known,
+                                 const PointCloud& cloud, const ScanView& view,
+                                 const Unevenness& unevenness, double kernel,
+                                 const ScaledOptions& options);
 
-/** A scan as it was seen on a course, and where it is then. */
-struct ScanOnCourse {
-    ScanView view;           //!< thinned, too
-    PlaneEstimate estimate;  //!< of its pose at the stamp
-    Course course;           //!< sensor to map, times from the stamp
-    double share = 0;        //!< of its points on those of the map
+/** A scan as it was seen on a trajectory, and where it is then. */
+struct ScanOnTrajectory {
+    ScanView view;              //!< thinned, too
+    PlaneEstimate estimate;     //!< of its pose at the stamp
+    ScanTrajectory trajectory;  //!< sensor to map, times from the stamp
+    double share = 0;           //!< of its points on those of the map
 };
 
 /** Undistorts `cloud`, what is dynamic in `view` left out, and registers it as a whole. None where
  *  it is not found in the map. */
-std::optional<ScanOnCourse> registerOn(const Course& course, const KnownMotion& known,
-                                       const LocalMap& map, const PointCloud& cloud,
-                                       const ScanView& view, const ScaledOptions& options);
+std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
+                                              const KnownEnds& known, const LocalMap& map,
+                                              const PointCloud& cloud, const ScanView& view,
+                                              const ScaledOptions& options);
 
 /** How the sensor moved when a scan ended, and moves on. */
-class Onward {
+class Extrapolation {
  public:
-    Onward() = default;
+    Extrapolation() = default;
     /** At constant twist, by `increment` in `duration_s` (more than 0) from the stamp on. */
-    Onward(const Eigen::Isometry3d& increment, double duration_s)
-        : end_s_(duration_s), end_(increment), motion_(Motion::of(increment, duration_s)) {}
-    /** `course`: during the scan, times and frame those of its stamp. The motion is that of its
+    Extrapolation(const Eigen::Isometry3d& increment, double duration_s)
+        : end_s_(duration_s), end_(increment), motion_(Twist::of(increment, duration_s)) {}
+    /** `trajectory`: during the scan, times and frame those of its stamp. The motion is that of its
      * last `over_s`. */
-    Onward(const Course& course, double over_s);
+    Extrapolation(const ScanTrajectory& trajectory, double over_s);
 
     /** The sensor at `time_s` from the stamp: maps its frame then to the one at the stamp. */
     Eigen::Isometry3d at(double time_s) const { return end_ * motion_.after(time_s - end_s_); }
     /** Its twist. */
-    const Motion& motion() const { return motion_; }
+    const Twist& motion() const { return motion_; }
 
  private:
     double end_s_ = 0;
     Eigen::Isometry3d end_ = Eigen::Isometry3d::Identity();
-    Motion motion_;
+    Twist motion_;
 };
 }  // namespace delio::odometry

@@ -14,7 +14,7 @@ namespace {
 using test::poseAt;
 
 /** The pose that the motion leads to after `time_s`, in many small steps. */
-Eigen::Isometry3d poseAfter(const Motion& motion, double time_s) {
+Eigen::Isometry3d poseAfter(const Twist& motion, double time_s) {
     constexpr int kSteps = 20000;
     const double dt = time_s / kSteps, angle = dt * motion.turning.norm();
     Eigen::Isometry3d step = Eigen::Isometry3d::Identity(), pose = step;
@@ -27,9 +27,9 @@ Eigen::Isometry3d poseAfter(const Motion& motion, double time_s) {
 
 TEST(Deskew, TheMotionOfAnIncrementLeadsThereInItsTime) {
     const Eigen::Isometry3d increment = poseAt(1.5, -0.2, 0.05, 0.1, -0.03, 0.02);
-    const Motion motion = Motion::of(increment, 0.25);
+    const Twist motion = Twist::of(increment, 0.25);
     EXPECT_LT(test::metresBetween(poseAfter(motion, 0.25), increment), 1e-4);
-    const Motion straight = Motion::of(poseAt(2, 0, 0, 0, 0, 0), 0.5);
+    const Twist straight = Twist::of(poseAt(2, 0, 0, 0, 0, 0), 0.5);
     EXPECT_NEAR(straight.velocity.x(), 4, 1e-12);
     EXPECT_EQ(straight.turning.norm(), 0);
 }
@@ -39,7 +39,7 @@ TEST(Deskew, PointsComeToWhereTheyAreSeenFromAtTheStamp) {
     for (const Eigen::Isometry3d& increment :
          {poseAt(2.5, 0.1, 0.02, 0.12, 0.02, -0.01), poseAt(1, 0, 0, 0, 0, 0),
           poseAt(0, 0, 0, 0.3, 0, 0)}) {
-        const Motion motion = Motion::of(increment, 0.1);
+        const Twist motion = Twist::of(increment, 0.1);
         Eigen::Matrix3Xf seen(3, 50), expected(3, 50);
         std::vector<float> times_s;
         for (Eigen::Index i = 0; i < seen.cols(); ++i) {

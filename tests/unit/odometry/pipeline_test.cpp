@@ -129,7 +129,7 @@ void skew(Scan& scan, const Isometry3d& step) {
                                   points(2, static_cast<Eigen::Index>(i)));
     auto times_s = odometry::azimuthTimes(points, 0.1);
     for (auto& time_s : times_s) time_s = -time_s;  // deskew() undoes the motion
-    const Scan skewed = test::scanOf(odometry::deskew(points, times_s, Motion::of(step, 0.1)));
+    const Scan skewed = test::scanOf(odometry::deskew(points, times_s, Twist::of(step, 0.1)));
     scan.points = skewed.points;
     for (const float time_s : times_s) scan.times_s.push_back(-time_s);
 }

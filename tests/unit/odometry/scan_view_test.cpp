@@ -16,8 +16,8 @@ Eigen::Matrix3Xf anyPoints(Eigen::Index count) {
     return points;
 }
 
-Motion movingAt(const Eigen::Vector3d& velocity, const Eigen::Vector3d& turning) {
-    Motion motion;
+Twist movingAt(const Eigen::Vector3d& velocity, const Eigen::Vector3d& turning) {
+    Twist motion;
     motion.velocity = velocity;
     motion.turning = turning;
     return motion;
@@ -55,7 +55,7 @@ TEST(ScanView, PointsWithTimesComeToWhereTheyAreAtTheStamp) {
 }
 
 TEST(ScanView, OfNoPointsIsEmpty) {
-    ScanView view = undistorted({}, Motion{});
+    ScanView view = undistorted({}, Twist{});
     thin(view, 0.25, 0.5);
     EXPECT_EQ(view.points.cols() + view.fine.cols() + view.thinned.cols(), 0);
     EXPECT_TRUE(view.dynamic.empty());

@@ -13,7 +13,7 @@ namespace {
 using test::poseAt;
 
 /** After so many increments that were off by `metres` and `radians`. */
-odometry::CoursePrior after(int count, double metres, double radians, double most = 1) {
+odometry::TrajectoryPrior after(int count, double metres, double radians, double most = 1) {
     Unevenness unevenness;
     for (int i = 0; i < count; ++i)
         unevenness.observe(poseAt(2, 0, 0, 0.1) * poseAt(0, metres, 0, 0, radians),

@@ -11,8 +11,8 @@ using namespace delio::odometry;
 
 namespace {
 using Eigen::Isometry3d;
-using odometry::CoursePrior;
 using odometry::TimedPoints;
+using odometry::TrajectoryPrior;
 using test::degreesBetween;
 using test::poseAt;
 
@@ -57,35 +57,37 @@ TimedPoints seen(const test::Scene& scene, double noise_m) {
 }
 
 /** At one twist, from the true pose before to a pose that is off at the stamp. */
-Course evenCourse(const Isometry3d& off) {
+ScanTrajectory constantTwist(const Isometry3d& off) {
     const Isometry3d start = swung(-kSince_s);
-    return Course::even({-0.1, -0.05, -0.025, 0, 0.025, 0.05}, start,
-                        Motion::of(start.inverse() * swung(0) * off, kSince_s));
+    return ScanTrajectory::even({-0.1, -0.05, -0.025, 0, 0.025, 0.05}, start,
+                                Twist::of(start.inverse() * swung(0) * off, kSince_s));
 }
 
 struct Off {
     double metres = 0, degrees = 0;
 };
-Off worstOf(const Course& course) {
+Off worstOf(const ScanTrajectory& trajectory) {
     Off worst;
     for (double time_s = -0.05; time_s <= 0.05; time_s += 0.005) {
-        worst.metres = std::max(
-            worst.metres, (course.at(time_s).translation() - swung(time_s).translation()).norm());
-        worst.degrees = std::max(worst.degrees, degreesBetween(course.at(time_s), swung(time_s)));
+        worst.metres =
+            std::max(worst.metres,
+                     (trajectory.at(time_s).translation() - swung(time_s).translation()).norm());
+        worst.degrees =
+            std::max(worst.degrees, degreesBetween(trajectory.at(time_s), swung(time_s)));
     }
     return worst;
 }
 
-const CoursePrior kOfHand{0.05, 0.02, 0.1, 0.1};
+const TrajectoryPrior kOfHand{0.05, 0.02, 0.1, 0.1};
 
 TEST(CourseRegistration, FindsTheSwingWithinAScan) {
     const auto map = mapOf(test::yard());
     const auto scan = seen(test::yard(), 0.01);
     for (const auto& off : {poseAt(0, 0, 0), poseAt(0.04, -0.03, 0.02, 0.01, -0.01, 0.005)}) {
-        const Course even = evenCourse(off);
+        const ScanTrajectory even = constantTwist(off);
         EXPECT_GT(worstOf(even).degrees, 1);
         const Off worst =
-            worstOf(odometry::registerCourse(map, scan, even, kSince_s, kOfHand, 1, {}));
+            worstOf(odometry::registerTrajectory(map, scan, even, kSince_s, kOfHand, 1, {}));
         EXPECT_LT(worst.metres, 0.02);
         EXPECT_LT(worst.degrees, 0.12);
     }
@@ -93,8 +95,8 @@ TEST(CourseRegistration, FindsTheSwingWithinAScan) {
 
 TEST(CourseRegistration, StartsWhereItIsKnownToStart) {
     const auto found =
-        odometry::registerCourse(mapOf(test::yard()), seen(test::yard(), 0),
-                                 evenCourse(poseAt(0, 0, 0)), kSince_s, kOfHand, 1, {});
+        odometry::registerTrajectory(mapOf(test::yard()), seen(test::yard(), 0),
+                                     constantTwist(poseAt(0, 0, 0)), kSince_s, kOfHand, 1, {});
     EXPECT_LT((found.at(-kSince_s).matrix() - swung(-kSince_s).matrix()).norm(), 1e-12);
 }
 
@@ -102,10 +104,10 @@ TEST(CourseRegistration, StartsWhereItIsKnownToStart) {
 // known before allows.
 TEST(CourseRegistration, IsLedAstrayNoFartherThanIsLikely) {
     constexpr double kSigma_m = 0.01;
-    const Course even = evenCourse(poseAt(0, 0, 0));
+    const ScanTrajectory even = constantTwist(poseAt(0, 0, 0));
     const auto found =
-        odometry::registerCourse(mapOf(test::corridor()), seen(test::corridor(), 0), even, kSince_s,
-                                 {kSigma_m, 0.02, kSigma_m, 0.1}, 1, {});
+        odometry::registerTrajectory(mapOf(test::corridor()), seen(test::corridor(), 0), even,
+                                     kSince_s, {kSigma_m, 0.02, kSigma_m, 0.1}, 1, {});
     for (const double time_s : {-0.05, 0.0, 0.05})
         EXPECT_NEAR(found.at(time_s).translation().x(), even.at(time_s).translation().x(),
                     3 * kSigma_m);
@@ -113,20 +115,21 @@ TEST(CourseRegistration, IsLedAstrayNoFartherThanIsLikely) {
 }
 
 TEST(CourseRegistration, AnEvenMotionStaysEvenWhereItIsKnownToBe) {
-    const Course even = evenCourse(poseAt(0, 0, 0));
-    const auto found = odometry::registerCourse(mapOf(test::yard()), seen(test::yard(), 0.01), even,
-                                                kSince_s, {1e-4, 1e-4, 1e-5, 1e-5}, 1, {});
+    const ScanTrajectory even = constantTwist(poseAt(0, 0, 0));
+    const auto found =
+        odometry::registerTrajectory(mapOf(test::yard()), seen(test::yard(), 0.01), even, kSince_s,
+                                     {1e-4, 1e-4, 1e-5, 1e-5}, 1, {});
     for (const double time_s : {-0.05, 0.0, 0.05})
         EXPECT_LT((found.at(time_s).matrix() - even.at(time_s).matrix()).norm(), 1e-2);
 }
 
 TEST(CourseRegistration, WithTooFewPointsTheCourseStays) {
-    const Course even = evenCourse(poseAt(0, 0, 0));
+    const ScanTrajectory even = constantTwist(poseAt(0, 0, 0));
     const TimedPoints none{Eigen::Matrix3Xd(3, 0), {}},
         far{Eigen::Matrix3Xd::Constant(3, 500, 900), std::vector<double>(500, 0.01)};
     for (const auto& scan : {none, far}) {
         const auto found =
-            odometry::registerCourse(mapOf(test::yard()), scan, even, kSince_s, kOfHand, 1, {});
+            odometry::registerTrajectory(mapOf(test::yard()), scan, even, kSince_s, kOfHand, 1, {});
         EXPECT_EQ(found.at(0.03).matrix(), even.at(0.03).matrix());
     }
 }
