@@ -146,7 +146,7 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     report(estimate, before, view, step);
 }
 
-/** From the latest scan on. The motion at the end of that scan is asked for once. */
+/** The motion after the latest scan. Its end twist, where that is known, is used once. */
 Extrapolation PlaneOdometry::predictMotion(double duration_s) {
     Extrapolation extrapolation(prediction_.predict(duration_s), duration_s);
     const bool isKnown = !isLost(state_) && !std::holds_alternative<Degenerate>(state_);

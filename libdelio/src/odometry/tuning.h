@@ -1,8 +1,8 @@
 #pragma once
 #include "delio/core/odometry_options.h"
 
-/** Numbers that decide how the odometry works and that are the same for every sensor and scene
- *  tried: they are no options. Metres, seconds and radians unless a name says otherwise. */
+/** Numbers that decide how the odometry works and that no profile sets: they are no options.
+ *  Metres, seconds and radians unless a name says otherwise. */
 namespace delio::odometry {
 /** Spacings and limits of PlaneOdometry. All but the acceleration are for streets and scale with
  *  the place. */
@@ -12,7 +12,7 @@ struct SpacingTuning {
     double point_spacing = 1.0;  //!< points that are registered to points
     double doubt_spacing = 10;   //!< degenerate scans enter the map once in such a distance
     double first_speed = 40;     //!< m/s; an unknown motion is searched up to this speed
-    double acceleration = 15;    //!< m/s^2; of an emergency stop with some margin
+    double acceleration = 15;    //!< m/s^2; of the hardest start or stop
 };
 
 /** How points and planes are weighed against each other (LocalMap). */
@@ -30,10 +30,10 @@ struct LocalMapTuning {
 struct SegmentTuning {
     double cell = 0.4;          //!< of the ground plane; points in cells that touch are connected
     double radius = 60;         //!< of the area about the sensor
-    double above_ground = 0.3;  //!< lowest point: the tyres' contact and kerbs stay out
-    double height = 2.8;        //!< of what stands: vans pass, crowns of trees do not
+    double above_ground = 0.3;  //!< so much above the lowest points about it a point stands
+    double height = 2.8;        //!< points higher above the ground are left out
     double max_length = 12;     //!< longer is a wall or a hedge
-    unsigned min_points = 5;    //!< fewer are noise
+    unsigned min_points = 5;    //!< fewer are no segment
 };
 
 /** Registration to planes. */

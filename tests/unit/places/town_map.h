@@ -6,7 +6,7 @@
 #include "places/descriptor.h"
 #include "test_data.h"
 
-/** Maps of the town of loops_test. */
+/** Maps of the town in town.h. */
 namespace delio::localisation_test {
 using namespace delio::places_test;
 
