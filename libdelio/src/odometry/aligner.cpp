@@ -129,7 +129,7 @@ void tell(const PlaneEstimate& estimate, double agreement, bool searched, double
     out.executionTime = seconds;
     if (auto* icp = dynamic_cast<mrpt::slam::CICP::TReturnInfo*>(&out)) {
         icp->nIterations = estimate.rotation.iterations;
-        icp->goodness = estimate.share;
+        icp->goodness = estimate.inlierRatio;
         icp->quality = std::min(estimate.rotation.observability.minCoeff(),
                                 estimate.translation.observability.minCoeff());
     }

@@ -102,9 +102,10 @@ PointEstimate relocalised(const LocalMap& map, const ScanView& view, const Expec
 class Best {
  public:
     void consider(const PointEstimate& other) {
-        if (other.valid && (!estimate.valid || other.share > estimate.share)) estimate = other;
+        if (other.valid && (!estimate.valid || other.inlierRatio > estimate.inlierRatio))
+            estimate = other;
     }
-    bool has(double share) const { return estimate.valid && estimate.share >= share; }
+    bool has(double share) const { return estimate.valid && estimate.inlierRatio >= share; }
 
     PointEstimate estimate;
 };
@@ -114,7 +115,8 @@ Placement placeScan(const LocalMap& map, const ScanView& view, const Expectation
                     const ScaledOptions& options) {
     const auto& points = view.coarse;
     constexpr double kUsual = 0.75, kUsualAtFirst = 0.25;
-    const double usual = expected.usualShare, likely = usual > 0 ? kUsual * usual : kUsualAtFirst;
+    const double usual = expected.usualInlierRatio,
+                 likely = usual > 0 ? kUsual * usual : kUsualAtFirst;
     // A prediction that is off by more than any kernel (a hand's swings) is no start.
     const bool isTurned = expected.isShaken && !expected.isGuess;
     Best best{expected.isGuess

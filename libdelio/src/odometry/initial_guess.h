@@ -51,7 +51,7 @@ struct Expectation {
     double start_m = 0;              //!< how far a guess may be off, in the level plane
     double reach_m = 0;              //!< within which surfaces look for what points do not find
     double kernel_m = 0;             //!< how far predictions are off
-    double usualShare = 0;           //!< of points on those of the map; 0: not known
+    double usualInlierRatio = 0;     //!< of points on those of the map; 0: not known
 };
 
 /** What is known of a scan's place before planes refine it. */

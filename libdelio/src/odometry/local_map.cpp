@@ -159,7 +159,7 @@ PlaneEstimate LocalMap::byPoints(const PointEstimate& placed,
     translation.covariance = std::pow(options_.point_sigma, 2) * Eigen::Matrix3d::Identity();
     translation.residual_m = placed.residual_m;
     translation.unobservedAxes = Eigen::Matrix3d::Identity();
-    estimate.share = placed.share;
+    estimate.inlierRatio = placed.inlierRatio;
     return estimate;
 }
 
@@ -211,9 +211,9 @@ bool LocalMap::believes(const PlaneEstimate& found, const PointEstimate& placed)
            angleOf(off.linear()) <= options_.max_deviation_deg * kDeg;
 }
 
-PlaneEstimate LocalMap::refine(const ScanView& view, const PointEstimate& placed,
-                               const Eigen::Isometry3d& predicted,
-                               const std::optional<Eigen::Isometry3d>& latest) const {
+PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate& placed,
+                                       const Eigen::Isometry3d& predicted,
+                                       const std::optional<Eigen::Isometry3d>& latest) const {
     const auto byPlanes = [&](const PointEstimate& from) {
         const auto prior =
             Prior::of(from.pose, options_.point_sigma, turnCovariance(view.coarse, from));
@@ -226,7 +226,7 @@ PlaneEstimate LocalMap::refine(const ScanView& view, const PointEstimate& placed
     constexpr unsigned kPatience = 2;
     for (unsigned i = 0; i < kPatience && found.valid && !believes(found, from); ++i) {
         const auto there = place(view.coarse, found.pose(), pointOptions_.least_kernel);
-        if (!there.valid || there.share <= from.share) break;
+        if (!there.valid || there.inlierRatio <= from.inlierRatio) break;
         from = there;
         found = byPlanes(from);
     }

@@ -60,9 +60,9 @@ class LocalMap {
      *  points alone say that the scan stands where the map's `latest` does, the axis is unobserved,
      *  too, unless surfaces that face it confirm that: a sensor's own rings lie on each other
      *  anywhere. (None: the map is another drive's.) */
-    PlaneEstimate refine(const ScanView& view, const PointEstimate& placed,
-                         const Eigen::Isometry3d& predicted,
-                         const std::optional<Eigen::Isometry3d>& latest) const;
+    PlaneEstimate registerPlanes(const ScanView& view, const PointEstimate& placed,
+                                 const Eigen::Isometry3d& predicted,
+                                 const std::optional<Eigen::Isometry3d>& latest) const;
 
     /** Share of the points that lie within `distance` (metres) of one of the map's, 0 to 1. */
     double shareAt(const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,

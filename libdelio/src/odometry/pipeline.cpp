@@ -38,11 +38,11 @@ bool isStanding(const Step& step, double duration_s) {
 std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate& placed) {
     const bool byPlanes = estimate.valid && estimate.rotation.observability[2] > 0;
     const auto& rotation = estimate.rotation;
-    return {{"inlier_ratio", placed.share},
+    return {{"inlier_ratio", placed.inlierRatio},
             {"kernel_m", placed.kernel_m},
             {"iterations", static_cast<double>(placed.iterations)},
             {"converged", static_cast<double>(placed.converged)},
-            {"plane_inlier_ratio", byPlanes ? estimate.share : 0},
+            {"plane_inlier_ratio", byPlanes ? estimate.inlierRatio : 0},
             {"plane_iterations", byPlanes ? static_cast<double>(rotation.iterations) : 0},
             {"plane_converged", byPlanes ? static_cast<double>(rotation.converged) : 0}};
 }
@@ -200,8 +200,8 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     const StageTimer timer(step, "planes");
     if (!placed.valid) return predictedEstimate(predicted);
     view.thinned = voxelCentroids(view.fine, options_.spacing.scan_spacing).cast<double>();
-    auto found = map_.refine(view, placed, predicted, reference_.pose);
-    if (step.deskewed) deskewAgain(cloud, since_s, placed.share, view, found);
+    auto found = map_.registerPlanes(view, placed, predicted, reference_.pose);
+    if (step.deskewed) deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
     return found;
 }
 
@@ -241,12 +241,12 @@ void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& 
     if (prediction_.hasMotion()) {
         // A scan that fits badly where it was not expected may be at a wrong pose.
         constexpr double kForget = 0.1, kAsUsual = 0.75;
-        const bool isDoubtful = placed.share < kAsUsual * usualInlierRatio_ &&
+        const bool isDoubtful = placed.inlierRatio < kAsUsual * usualInlierRatio_ &&
                                 stepBetween(predicted, placed.pose).norm() > kernel_m();
         if (!isDoubtful)
-            usualInlierRatio_ = usualInlierRatio_ == 0
-                                    ? placed.share
-                                    : (1 - kForget) * usualInlierRatio_ + kForget * placed.share;
+            usualInlierRatio_ = usualInlierRatio_ == 0 ? placed.inlierRatio
+                                                       : (1 - kForget) * usualInlierRatio_ +
+                                                             kForget * placed.inlierRatio;
         kernel_.observe(pose_, predicted);
         unevenness_.observe(reference_.pose.inverse() * pose_, prediction_.predict(since_s));
     }
@@ -255,7 +255,7 @@ void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& 
 
 /** What is known of the next scan's pose, `since_s` after the latest registered scan. */
 Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, double since_s,
-                                       bool believed) const {
+                                       bool timeIsKnown) const {
     const auto& spacing = options_.spacing;
     const auto& registration = options_.registration;
     // A longer way has to be found by surfaces.
@@ -268,11 +268,11 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, doubl
         isLost(state_) || std::holds_alternative<Degenerate>(state_) || !expected.motionIsKnown;
     expected.start_m = expected.motionIsKnown ? std::min(gained_m, driven_m) : driven_m;
     expected.reach_m =
-        believed ? std::min(plane_tuning::kSearchSpeed_mps * since_s, registration.search_radius)
-                 : registration.search_radius;
+        timeIsKnown ? std::min(plane_tuning::kSearchSpeed_mps * since_s, registration.search_radius)
+                    : registration.search_radius;
     expected.kernel_m = kernel_m();
     expected.isShaken = kernel_.isKnown() && expected.kernel_m >= options_.points.first_kernel;
-    expected.usualShare = usualInlierRatio_;
+    expected.usualInlierRatio = usualInlierRatio_;
     return expected;
 }
 

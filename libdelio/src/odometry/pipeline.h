@@ -53,7 +53,7 @@ class PlaneOdometry : public Odometry {
                 Step& step) const;
 
     Expectation expectation(const Eigen::Isometry3d& predicted, double since_s,
-                            bool believed) const;
+                            bool timeIsKnown) const;
     void learn(const PointEstimate& placed, const Eigen::Isometry3d& predicted, double since_s);
 
     // De-skewing by the motion that was found (pipeline_deskew.cpp).

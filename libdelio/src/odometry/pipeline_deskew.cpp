@@ -32,7 +32,7 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewPair(const PointCloud& firs
         auto next = registerAlong(trajectory, known, map_, cloud, view, options_);
         if (!next) break;
         known.pose = next->estimate.pose();
-        const bool better = !best || next->share > best->share;
+        const bool better = !best || next->inlierRatio > best->inlierRatio;
         worse = better ? 0 : worse + 1;
         if (better) best = std::move(next);
     }
@@ -48,7 +48,7 @@ void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double 
     constexpr double kNoise = 0.02;  // of an inlier ratio
     const KnownEnds known{reference_.pose, since_s, estimate.pose()};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
-        return found && found->share >= inlierRatio - kNoise;
+        return found && found->inlierRatio >= inlierRatio - kNoise;
     };
     std::optional<ScanOnTrajectory> found;
     const auto* first = std::get_if<FirstScan>(&state_);

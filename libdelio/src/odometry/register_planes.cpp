@@ -345,7 +345,7 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
     settle(now.matches, now.pose, prior, estimate);
     estimate.rotation.iterations = now.iterations;
     estimate.rotation.converged = converged;
-    estimate.share = matcher.shareAt(now.pose, options.last_kernel);
+    estimate.inlierRatio = matcher.shareAt(now.pose, options.last_kernel);
     return estimate;
 }
 }  // namespace delio::odometry

@@ -36,7 +36,7 @@ struct PlaneEstimate {
     RotationEstimate rotation;        //!< sensor to map
     TranslationEstimate translation;  //!< in the map's axes
     /** Inlier ratio: of the points in voxels with a plane those that lie on it, 0 to 1. */
-    double share = 0;
+    double inlierRatio = 0;
     bool valid = false;  //!< false: too few correspondences; it is the prediction
 
     /** Sensor to map. */

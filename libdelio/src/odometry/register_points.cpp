@@ -154,7 +154,7 @@ void judge(Pairing& pairing, const PointRegistrationOptions& options, PointEstim
         ++estimate.matches;
     }
     const auto matches = static_cast<double>(estimate.matches);
-    estimate.share =
+    estimate.inlierRatio =
         matches / static_cast<double>(std::max<Eigen::Index>(pairing.points().cols(), 1));
     estimate.residual_m = matches > 0 ? std::sqrt(squares / matches) : 0;
 }
@@ -186,7 +186,7 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
         if (isLast) break;
     }
     judge(pairing, options, estimate);
-    estimate.valid = estimate.share >= options.min_share;
+    estimate.valid = estimate.inlierRatio >= options.min_share;
     return estimate;
 }
 

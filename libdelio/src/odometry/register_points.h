@@ -11,7 +11,7 @@ namespace delio::odometry {
 struct PointEstimate {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
     /** Inlier ratio: of the points those within the last kernel of one of the map's, 0 to 1. */
-    double share = 0;
+    double inlierRatio = 0;
     double residual_m = 0;    //!< root mean square distance of these
     std::size_t matches = 0;  //!< pairs that it stands on
     unsigned iterations = 0;  //!< in all

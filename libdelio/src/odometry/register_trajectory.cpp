@@ -167,8 +167,8 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
     again.coarse = firstOfVoxels(again.fine, options.spacing.point_spacing).cast<double>();
     const auto placed = map.place(again.coarse, trajectory.at(0), options.points.least_kernel);
     if (!placed.valid) return {};
-    auto estimate = map.refine(again, placed, known.pose, known.reference);
-    return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.share};
+    auto estimate = map.registerPlanes(again, placed, known.pose, known.reference);
+    return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.inlierRatio};
 }
 
 Extrapolation::Extrapolation(const ScanTrajectory& trajectory, double over_s)

@@ -54,7 +54,7 @@ struct ScanOnTrajectory {
     ScanView view;              //!< thinned, too
     PlaneEstimate estimate;     //!< of its pose at the stamp
     ScanTrajectory trajectory;  //!< sensor to map, times from the stamp
-    double share = 0;           //!< of its points on those of the map
+    double inlierRatio = 0;     //!< of its points on those of the map
 };
 
 /** Undistorts `cloud`, what is dynamic in `view` left out, and registers it as a whole. None where

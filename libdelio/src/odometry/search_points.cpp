@@ -213,8 +213,8 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     // drive with the car beside it.
     constexpr double kAsMuch = 0.7;
     const double width = options.last_kernel, start = options.first_kernel / 2,
-                 leastOfAll = kAsMuch * best.share;
-    if (wide.valid && wide.share >= leastOfAll && shareOf(wide, width) > shareOf(best, width))
+                 leastOfAll = kAsMuch * best.inlierRatio;
+    if (wide.valid && wide.inlierRatio >= leastOfAll && shareOf(wide, width) > shareOf(best, width))
         best = wide;
     // Another start has to explain clearly more; which of them does is told within half the width:
     // in the whole, the ground of a road fits metres beside, too.
@@ -228,10 +228,11 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     const auto starts = bestOf(startsAbout(guess, reach, upright, start, map, part), kBest, map,
                                part, start / 2, least);
     for (const auto& found : placesFrom(map, part, starts, start, options)) {
-        if (!found.valid || found.share <= least || isAmong(judged, found.pose, width)) continue;
+        if (!found.valid || found.inlierRatio <= least || isAmong(judged, found.pose, width))
+            continue;
         judged.push_back(found.pose);
         const auto all = registerToPoints(map, points, found.pose, options.least_kernel, options);
-        if (!all.valid || all.share < leastOfAll || shareOf(all, width) <= least) continue;
+        if (!all.valid || all.inlierRatio < leastOfAll || shareOf(all, width) <= least) continue;
         const double share = shareOf(all, width / 2);
         if (share <= most) continue;
         most = share;
@@ -256,8 +257,8 @@ PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
     for (auto next = starts.begin(); next != starts.end();) {
         const auto last = next + std::min(kTogether, starts.end() - next);
         for (const auto& found : placesFrom(map, part, {next, last}, start, options))
-            if (found.valid && (!best.valid || found.share > best.share)) best = found;
-        if (best.valid && best.share >= enough) break;
+            if (found.valid && (!best.valid || found.inlierRatio > best.inlierRatio)) best = found;
+        if (best.valid && best.inlierRatio >= enough) break;
         next = last;
     }
     if (!best.valid) return best;

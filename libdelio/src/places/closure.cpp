@@ -123,7 +123,7 @@ Closure closureOf(const ClosureEnd& from, const ClosureEnd& to, const Eigen::Iso
         return closure;
     }
     closure.level = found.pose();
-    closure.inlierRatio = found.share;
+    closure.inlierRatio = found.inlierRatio;
     closure.overlap = from.map.overlap(to.map, closure.level);
     closure.increment = ofVehicle(incrementOf(found.rotation, found.translation),
                                   isometry(from.submap.level, Eigen::Vector3d::Zero()),

@@ -34,11 +34,11 @@ class AScanInAYard : public testing::Test {
     Eigen::Isometry3d refined(const Eigen::Isometry3d& placedAt, double share) const {
         odometry::PointEstimate placed;
         placed.pose = placedAt;
-        placed.share = share;
+        placed.inlierRatio = share;
         placed.matches = 500;
         placed.residual_m = 0.1;
         placed.valid = true;
-        return map.refine(view, placed, placedAt, poseAt(1, 0, 0)).pose();
+        return map.registerPlanes(view, placed, placedAt, poseAt(1, 0, 0)).pose();
     }
 
     ScaledOptions options;
@@ -51,8 +51,9 @@ class AScanInAYard : public testing::Test {
 TEST_F(AScanInAYard, IsRefinedByPlanes) {
     const auto placed = map.place(view.coarse, there * poseAt(0.2, 0.2, 0), 1);
     ASSERT_TRUE(placed.valid);
-    EXPECT_LT(metresBetween(map.refine(view, placed, placed.pose, poseAt(1, 0, 0)).pose(), there),
-              0.01);
+    EXPECT_LT(
+        metresBetween(map.registerPlanes(view, placed, placed.pose, poseAt(1, 0, 0)).pose(), there),
+        0.01);
 }
 
 // Farther than planes are believed, but there more points fit than where they were placed.

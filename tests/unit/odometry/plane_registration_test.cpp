@@ -227,7 +227,7 @@ TEST(PlaneRegistration, FindsAScanInTheMap) {
     ASSERT_TRUE(found.valid);
     EXPECT_LT(degreesBetween(found.rotation.rotation, truth.linear()), 0.05);
     EXPECT_LT((found.translation.translation - Eigen::Vector3d(0.8, 0.1, 0.02)).norm(), 0.01);
-    EXPECT_GT(found.share, 0.9);
+    EXPECT_GT(found.inlierRatio, 0.9);
     EXPECT_EQ(found.rotation.unobservedAxes.cols() + found.translation.unobservedAxes.cols(), 0);
     EXPECT_EQ(found.rotation.covariance.llt().info(), Eigen::Success);
     EXPECT_EQ(found.translation.covariance.llt().info(), Eigen::Success);

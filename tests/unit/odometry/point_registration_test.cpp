@@ -37,7 +37,7 @@ TEST(PointRegistration, FindsAScanOfFewRings) {
     ASSERT_TRUE(found.valid);
     EXPECT_LT((found.pose.translation() - truth.translation()).norm(), 0.1);
     EXPECT_LT(degreesBetween(found.pose.linear(), truth.linear()), 0.5);
-    EXPECT_GT(found.share, 0.3);
+    EXPECT_GT(found.inlierRatio, 0.3);
 }
 
 // Decoupled: the rotation is taken about the centroids, wherever the scan is.
@@ -56,7 +56,7 @@ TEST(PointRegistration, TheSamePointsComeBackExactly) {
                                                   Eigen::Isometry3d::Identity(), 0.5, options);
     ASSERT_TRUE(found.valid);
     EXPECT_LT((found.pose.matrix() - truth.matrix()).norm(), 1e-5);  // the map keeps floats
-    EXPECT_EQ(found.share, 1);
+    EXPECT_EQ(found.inlierRatio, 1);
 }
 
 TEST(PointRegistration, WithTooFewPairsThePredictionStays) {
