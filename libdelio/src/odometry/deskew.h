@@ -25,7 +25,7 @@ struct ScanView {
     std::vector<std::uint8_t> dynamic;  //!< 1 for each of them that belongs to a dynamic object
     Eigen::Matrix3Xf fine;              //!< thinned for the map
     Eigen::Matrix3Xd thinned;           //!< thinned for registration by planes
-    Eigen::Matrix3Xd coarse;            //!< thinned for registration by points, all of the scan
+    Eigen::Matrix3Xd coarse;            //!< thinned for registration by points
 };
 
 /** Undistorted by `trajectory` (see deskew()) where the points have times; not thinned yet,

@@ -8,6 +8,8 @@
 #include <iterator>
 #include <limits>
 
+#include "odometry/above_ground.h"
+
 namespace delio::odometry {
 namespace {
 constexpr float kMetres = 0.5F, kShare = 0.3F;
@@ -49,59 +51,6 @@ void Outlines::findAlike(const std::pair<std::size_t, std::size_t>& numbers,
 }
 
 namespace {
-/** Square cells on the ground plane about the origin. */
-class Grid {
- public:
-    Grid(double cell, double radius)
-        : cell_(static_cast<float>(cell)),
-          half_(static_cast<int>(std::ceil(radius / cell))),
-          width_(2 * half_ + 1) {}
-
-    std::size_t size() const { return cells(width_) * cells(width_); }
-    /** The cell's number, or size() outside. */
-    std::size_t at(float x, float y) const {
-        const int i = static_cast<int>(std::lround(x / cell_)) + half_;
-        const int j = static_cast<int>(std::lround(y / cell_)) + half_;
-        return inside(i, j) ? number(i, j) : size();
-    }
-    template <typename Visit>
-    void forNeighbours(std::size_t cell, const Visit& visit) const {
-        const int i = static_cast<int>(cell) / width_, j = static_cast<int>(cell) % width_;
-        for (int a = i - 1; a <= i + 1; ++a)
-            for (int b = j - 1; b <= j + 1; ++b)
-                if (inside(a, b)) visit(number(a, b));
-    }
-
- private:
-    bool inside(int i, int j) const { return i >= 0 && j >= 0 && i < width_ && j < width_; }
-    static std::size_t cells(int count) { return static_cast<std::size_t>(count); }
-    std::size_t number(int i, int j) const { return cells(i) * cells(width_) + cells(j); }
-
-    float cell_;
-    int half_, width_;
-};
-
-/** Height of each point above the lowest ones in its cell of a metre and those about it. */
-std::vector<float> heights(const Eigen::Matrix3Xf& points, double radius) {
-    constexpr float kNone = std::numeric_limits<float>::max();
-    const Grid grid(1, radius);
-    std::vector<float> lowest(grid.size() + 1, kNone), about = lowest;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        float& low = lowest[grid.at(points(0, i), points(1, i))];
-        low = std::min(low, points(2, i));
-    }
-    for (std::size_t cell = 0; cell < grid.size(); ++cell)
-        if (lowest[cell] != kNone)
-            grid.forNeighbours(cell, [&](std::size_t neighbour) {
-                about[cell] = std::min(about[cell], lowest[neighbour]);
-            });
-    std::vector<float> result(static_cast<std::size_t>(points.cols()));
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-        result[static_cast<std::size_t>(i)] =
-            points(2, i) - about[grid.at(points(0, i), points(1, i))];
-    return result;
-}
-
 constexpr std::int32_t kNone = -1;
 
 /** The points that stand above the ground, cell by cell: from each to the next one of its cell. (A
@@ -111,8 +60,8 @@ struct Chains {
     std::vector<std::size_t> filled;  //!< cells, in the order of their first points
 };
 
-Chains chainsOf(const Eigen::Matrix3Xf& points, const std::vector<float>& above, const Grid& grid,
-                const SegmentTuning& options) {
+Chains chainsOf(const Eigen::Matrix3Xf& points, const std::vector<float>& above,
+                const LevelGrid& grid, const SegmentTuning& options) {
     Chains chains{std::vector<std::int32_t>(grid.size(), kNone),
                   std::vector<std::int32_t>(above.size(), kNone),
                   {}};
@@ -136,8 +85,8 @@ Chains chainsOf(const Eigen::Matrix3Xf& points, const std::vector<float>& above,
 }  // namespace
 
 std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentTuning& options) {
-    const auto above = heights(points, options.radius);
-    const Grid grid(options.cell, options.radius);
+    const auto above = heightsAboveGround(points, options.radius);
+    const LevelGrid grid(options.cell, options.radius);
     const Chains cells = chainsOf(points, above, grid, options);
     std::vector<std::uint8_t> taken(grid.size());
     std::vector<Segment> segments;

@@ -120,7 +120,7 @@ Placement placeScan(const LocalMap& map, const ScanView& view, const Expectation
     // A prediction that is off by more than any kernel (a hand's swings) is no start.
     const bool isTurned = expected.isShaken && !expected.isGuess;
     Best best{expected.isGuess
-                  ? map.placeAnywhere(points, expected.pose, expected.start_m, expected.upright)
+                  ? map.placeAnywhere(points, expected.pose, expected.start, expected.upright)
               : isTurned ? map.placeTurned(points, expected.pose, likely)
                          : map.place(points, expected.pose, expected.kernel_m)};
     const bool isTurnedIfShaken = isTurned || !expected.isShaken;

@@ -99,6 +99,21 @@ void LocalMap::add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose
                          [&] { points_.forgetFarFrom(swept_m_); });
 }
 
+void LocalMap::addScan(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose) {
+    constexpr std::size_t kMemory = 100;
+    const double apart = pointOptions_.last_kernel / 2;
+    add(points, pose);
+    if (!origins_.empty() && (origins_.back() - pose.translation()).norm() < apart) return;
+    origins_.push_back(pose.translation());
+    if (origins_.size() > kMemory) origins_.pop_front();
+}
+
+bool LocalMap::isWhereAScanWas(const Eigen::Vector3d& place) const {
+    return std::any_of(origins_.begin(), origins_.end(), [&](const Eigen::Vector3d& origin) {
+        return (place - origin).norm() <= pointOptions_.last_kernel;
+    });
+}
+
 void LocalMap::erase(const Eigen::Matrix3Xf& points) {
     const Eigen::Matrix3Xd wanted = points.cast<double>();
     tbb::parallel_invoke([&] { planes_.erase(wanted); }, [&] { points_.erase(wanted); });
@@ -108,6 +123,7 @@ void LocalMap::clear(const Eigen::Vector3d& up) {
     up_ = up;
     planes_.clear(up);
     points_.clear();
+    origins_.clear();
 }
 
 PointEstimate LocalMap::place(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
@@ -116,7 +132,7 @@ PointEstimate LocalMap::place(const Eigen::Matrix3Xd& coarse, const Eigen::Isome
 }
 
 PointEstimate LocalMap::placeAnywhere(const Eigen::Matrix3Xd& coarse,
-                                      const Eigen::Isometry3d& predicted, double reach,
+                                      const Eigen::Isometry3d& predicted, const SearchReach& reach,
                                       const Eigen::Matrix3f& upright) const {
     return searchPoints(points_, coarse, predicted, reach, upright, pointOptions_);
 }
@@ -171,17 +187,19 @@ paper::SurfaceNormals surfacesOf(const ScanView& view, double probe) {
     return paper::estimateNormals(view.fine, options);
 }
 
-/** For each axis that the planes do not constrain: where the points do not either, the prediction
- *  is taken and the axis is reported as unobserved. Where points say that the scan is where the
- *  latest one was, their answer stays; it is reported as unobserved unless surfaces that face the
- *  axis confirm the standstill. */
+/** For each axis that the planes do not constrain, or hardly where an earlier scan was: where the
+ * points do not either, the prediction is taken and the axis is reported as unobserved. Where
+ * points say that the scan is where an earlier one was, their answer stays; it is reported as
+ * unobserved unless surfaces that face the axis confirm the standstill. */
 void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
-                                const std::optional<Eigen::Isometry3d>& latest,
                                 PlaneEstimate& found) const {
     auto& translation = found.translation;
-    if (translation.unobservedAxes.cols() == 0) return;
-    const bool rests = latest && (translation.translation - latest->translation()).norm() <=
-                                     pointOptions_.last_kernel;
+    const bool rests = isWhereAScanWas(translation.translation);
+    Eigen::Matrix3Xd doubtful = translation.unobservedAxes;
+    constexpr double kThin = 0.006;  // of the planes' weight; smooth tunnels show up to 0.005
+    if (doubtful.cols() == 0 && rests && translation.observability[0] < kThin)
+        doubtful = found.weakestAxis;
+    if (doubtful.cols() == 0) return;
     paper::SurfaceNormals surfaces;
     if (rests) surfaces = surfacesOf(view, options_.probe);
     const auto stands = [&](const Eigen::Vector3d& axis) {
@@ -191,8 +209,8 @@ void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& p
                                 pointOptions_.last_kernel / 2});
     };
     Eigen::Matrix3Xd unseen(3, 0);
-    for (Eigen::Index i = 0; i < translation.unobservedAxes.cols(); ++i) {
-        const Eigen::Vector3d axis = translation.unobservedAxes.col(i);
+    for (Eigen::Index i = 0; i < doubtful.cols(); ++i) {
+        const Eigen::Vector3d axis = doubtful.col(i);
         const Eigen::Matrix3d along = axis * axis.transpose();
         if (!pointsSee(points_, view.coarse, found.pose(), axis, options_.probe, pointOptions_))
             translation.translation += along * (predicted.translation() - translation.translation);
@@ -212,8 +230,7 @@ bool LocalMap::believes(const PlaneEstimate& found, const PointEstimate& placed)
 }
 
 PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate& placed,
-                                       const Eigen::Isometry3d& predicted,
-                                       const std::optional<Eigen::Isometry3d>& latest) const {
+                                       const Eigen::Isometry3d& predicted) const {
     const auto byPlanes = [&](const PointEstimate& from) {
         const auto prior =
             Prior::of(from.pose, options_.point_sigma, turnCovariance(view.coarse, from));
@@ -232,7 +249,7 @@ PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate
     }
     if (!believes(found, from)) found = byPoints(from, turnCovariance(view.coarse, from));
     found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
-    settleUnobserved(view, predicted, latest, found);
+    settleUnobserved(view, predicted, found);
     return found;
 }
 }  // namespace delio::odometry

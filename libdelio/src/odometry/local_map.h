@@ -1,6 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
-#include <optional>
+#include <deque>
 #include <vector>
 #include "delio/core/odometry_options.h"
 
@@ -9,6 +9,7 @@
 #include "odometry/point_map.h"
 #include "odometry/register_planes.h"
 #include "odometry/register_points.h"
+#include "odometry/search_points.h"
 #include "odometry/tuning.h"
 #include "paper/normals.h"
 
@@ -31,6 +32,8 @@ class LocalMap {
 
     /** Takes `points` (metres, sensor's frame) in, where `pose` puts them. */
     void add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
+    /** The same of an earlier scan of this drive. Its rings look the same from where it was. */
+    void addScan(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
     /** `points`: in the map's frame; they turned out to move, and what is there goes. */
     void erase(const Eigen::Matrix3Xf& points);
     /** `up`: the unit vector that does, in the map's frame. */
@@ -44,10 +47,10 @@ class LocalMap {
     PointEstimate place(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
                         double kernel) const;
 
-    /** By points, where `predicted` is a guess that may be off by `reach` metres in the plane that
-     *  is level where `upright` turns the sensor's frame such that z is up. */
+    /** By points, where `predicted` is a guess that may be off by `reach`; the plane is level
+     *  where `upright` turns the sensor's frame such that z is up. */
     PointEstimate placeAnywhere(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
-                                double reach, const Eigen::Matrix3f& upright) const;
+                                const SearchReach& reach, const Eigen::Matrix3f& upright) const;
 
     /** By points, where the rotation of `predicted` may be off by up to 30 deg about any axis,
      * until a share of `enough` fits. */
@@ -57,12 +60,11 @@ class LocalMap {
     /** By planes, from where the points were placed; from where planes lead once more, if more
      *  points fit there. An axis that the planes see no better than the
      *  points stays where these put it, if they see it, else where the prediction does. Where
-     *  points alone say that the scan stands where the map's `latest` does, the axis is unobserved,
-     *  too, unless surfaces that face it confirm that: a sensor's own rings lie on each other
-     *  anywhere. (None: the map is another drive's.) */
+     *  points alone say that the scan is where an earlier scan of the drive was, the axis is
+     *  unobserved, too, unless surfaces that face it confirm that: a sensor's own rings lie on each
+     *  other anywhere. */
     PlaneEstimate registerPlanes(const ScanView& view, const PointEstimate& placed,
-                                 const Eigen::Isometry3d& predicted,
-                                 const std::optional<Eigen::Isometry3d>& latest) const;
+                                 const Eigen::Isometry3d& predicted) const;
 
     /** Share of the points that lie within `distance` (metres) of one of the map's, 0 to 1. */
     double shareAt(const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
@@ -77,8 +79,8 @@ class LocalMap {
     PlaneEstimate byPoints(const PointEstimate& placed,
                            const Eigen::Matrix3d& turnCovariance) const;
     void settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
-                          const std::optional<Eigen::Isometry3d>& latest,
                           PlaneEstimate& found) const;
+    bool isWhereAScanWas(const Eigen::Vector3d& place) const;
 
     LocalMapTuning options_;
     PlaneRegistrationOptions planeOptions_;
@@ -86,6 +88,7 @@ class LocalMap {
     PlaneMap planes_;
     PointMap points_;
     Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();      //!< unit vector, map's frame
+    std::deque<Eigen::Vector3d> origins_;                //!< of the drive's latest scans
     Eigen::Vector3d swept_m_ = Eigen::Vector3d::Zero();  //!< where what is far was dropped last
 };
 

@@ -47,7 +47,7 @@ PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
     compare(registerToPoints(from.map, points, found, kernel, registration));
     if (most < options.min_share || !agree(best.pose, found, options)) {
         compare(registerToPoints(from.map, points, predicted, kernel, registration));
-        compare(searchPoints(from.map, points, rest, reach, to.upright, registration));
+        compare(searchPoints(from.map, points, rest, {reach, 0}, to.upright, registration));
     }
     const auto least = options.min_moved * static_cast<double>(points.cols());
     best.valid = static_cast<double>(moved.cols()) >= least && most >= options.min_share &&

@@ -164,7 +164,7 @@ VoxelNumbers PlaneOdometry::thin(ScanView& view) {
                              voxels = numberVoxels(view.points, spacings.map_spacing);
                              view.fine = centroidsOf(view.points, voxels);
                              view.coarse =
-                                 firstOfVoxels(view.fine, spacings.point_spacing).cast<double>();
+                                 pointsToRegister(view.fine, upright_, spacings.point_spacing);
                          });
     return voxels;
 }
@@ -200,7 +200,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     const StageTimer timer(step, "planes");
     if (!placed.valid) return predictedEstimate(predicted);
     view.thinned = voxelCentroids(view.fine, options_.spacing.scan_spacing).cast<double>();
-    auto found = map_.registerPlanes(view, placed, predicted, reference_.pose);
+    auto found = map_.registerPlanes(view, placed, predicted);
     if (step.deskewed) deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
     return found;
 }
@@ -266,7 +266,8 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, doubl
     expected.motionIsKnown = prediction_.hasMotion();
     expected.isGuess =
         isLost(state_) || std::holds_alternative<Degenerate>(state_) || !expected.motionIsKnown;
-    expected.start_m = expected.motionIsKnown ? std::min(gained_m, driven_m) : driven_m;
+    expected.start.metres = expected.motionIsKnown ? std::min(gained_m, driven_m) : driven_m;
+    expected.start.turn_rad = std::min(spacing.first_turn_radps * since_s, spacing.most_turn_rad);
     expected.reach_m =
         timeIsKnown ? std::min(plane_tuning::kSearchSpeed_mps * since_s, registration.search_radius)
                     : registration.search_radius;
@@ -328,7 +329,7 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     waiting_.reset();
     dynamics_.clear();
     usualInlierRatio_ = 0;
-    map_.add(view.fine, pose_);
+    map_.addScan(view.fine, pose_);
     reference_ = {view.points, pose_, arrivals_.sinceStart_s()};
     if (!map_.isUsable()) {
         state_ = Empty{true};
@@ -348,7 +349,7 @@ void PlaneOdometry::insertLater(ScanView& view) {
 }
 
 void PlaneOdometry::insertWaiting() {
-    if (waiting_) map_.add(waiting_->points, waiting_->pose);
+    if (waiting_) map_.addScan(waiting_->points, waiting_->pose);
     waiting_.reset();
 }
 

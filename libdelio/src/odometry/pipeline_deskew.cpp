@@ -13,7 +13,7 @@ void PlaneOdometry::deskewFirst(const PointCloud& first, const ScanTrajectory& t
     ScanView view = undistorted(first, trajectory);
     odometry::thin(view, options_.spacing.map_spacing, options_.spacing.scan_spacing);
     map_.clear(upAt(reference_.pose));
-    map_.add(view.fine, reference_.pose);
+    map_.addScan(view.fine, reference_.pose);
     reference_.points = std::move(view.points);
 }
 
@@ -46,7 +46,7 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewPair(const PointCloud& firs
 void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio,
                                 ScanView& view, PlaneEstimate& estimate) {
     constexpr double kNoise = 0.02;  // of an inlier ratio
-    const KnownEnds known{reference_.pose, since_s, estimate.pose()};
+    const KnownEnds known{reference_.pose, since_s, estimate.pose(), upright_};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->inlierRatio >= inlierRatio - kNoise;
     };

@@ -284,6 +284,8 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
     auto& translation = estimate.translation;
     translation.matches = matches.size();
     translation.observability = shares(move.information, move.weight);
+    estimate.weakestAxis =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(move.information).eigenvectors().col(0);
     // Normals are known from no more independent points than residuals are; and where an edge was
     // taken for a plane, worse.
     constexpr double kEdges = 3;

@@ -37,6 +37,8 @@ struct PlaneEstimate {
     TranslationEstimate translation;  //!< in the map's axes
     /** Inlier ratio: of the points in voxels with a plane those that lie on it, 0 to 1. */
     double inlierRatio = 0;
+    /** Along which the planes constrain the translation least: a unit vector of the map's axes. */
+    Eigen::Vector3d weakestAxis = Eigen::Vector3d::UnitX();
     bool valid = false;  //!< false: too few correspondences; it is the prediction
 
     /** Sensor to map. */

@@ -36,6 +36,7 @@ struct KnownEnds {
     Eigen::Isometry3d reference;  //!< `since_s` before the stamp, sensor to map
     double since_s = 0;           //!< more than 0
     Eigen::Isometry3d pose;       //!< at the stamp, likewise
+    Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
 };
 
 /** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to

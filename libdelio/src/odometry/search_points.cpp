@@ -138,8 +138,8 @@ Starts bestOf(const Starts& starts, std::size_t most, const PointMap& map,
 }
 
 /** On a level disc about `guess`; of many those that seem best in a grid. */
-Starts startsAbout(const Eigen::Isometry3d& guess, double reach, const Eigen::Matrix3f& upright,
-                   double step, const PointMap& map, const Eigen::Matrix3Xd& points) {
+Starts discAbout(const Eigen::Isometry3d& guess, double reach, const Eigen::Matrix3f& upright,
+                 double step, const PointMap& map, const Eigen::Matrix3Xd& points) {
     constexpr std::size_t kFew = 50;
     // (Times between scans are never quite even: half a step is not worth a ring of starts.)
     const auto steps = static_cast<int>(std::lround(reach / step));
@@ -159,6 +159,22 @@ Starts startsAbout(const Eigen::Isometry3d& guess, double reach, const Eigen::Ma
         const Eigen::Vector3d level(place.x() * step, place.y() * step, 0),
             offset = upright.transpose().cast<double>() * level;
         starts.push_back(guess * Eigen::Translation3d(offset));
+    }
+    return starts;
+}
+
+/** On a level disc about `guess`, turned about the vertical. */
+Starts startsAbout(const Eigen::Isometry3d& guess, const SearchReach& reach,
+                   const Eigen::Matrix3f& upright, double step, const PointMap& map,
+                   const Eigen::Matrix3Xd& points) {
+    constexpr double kTurn_rad = 1.5 * M_PI / 180;
+    const Eigen::Vector3d up = upright.row(2).transpose().cast<double>();
+    const auto turns = static_cast<int>(std::lround(reach.turn_rad / kTurn_rad));
+    Starts starts;
+    for (int turn = -turns; turn <= turns; ++turn) {
+        const Eigen::Isometry3d turned = guess * Eigen::AngleAxisd(turn * kTurn_rad, up);
+        const auto disc = discAbout(turned, reach.metres, upright, step, map, points);
+        starts.insert(starts.end(), disc.begin(), disc.end());
     }
     return starts;
 }
@@ -197,7 +213,7 @@ bool isAmong(const Starts& places, const Eigen::Isometry3d& place, double within
 }  // namespace
 
 PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
-                           const Eigen::Isometry3d& guess, double reach,
+                           const Eigen::Isometry3d& guess, const SearchReach& reach,
                            const Eigen::Matrix3f& upright,
                            const PointRegistrationOptions& options) {
     PointEstimate best, wide;
@@ -270,6 +286,12 @@ bool pointsSee(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen:
     constexpr double kBack = 0.3;
     const Eigen::Matrix3Xd part = sample(points, kDense);
     const Eigen::Vector3d aside = probe * axis;
+    constexpr double kClear = 0.05;  // of the inlier ratio
+    const auto ratioMoved = [&](double along_m) {
+        return shareAt(map, part, Eigen::Translation3d(along_m * axis) * pose, options.last_kernel);
+    };
+    if (std::max(ratioMoved(probe), ratioMoved(-probe)) <= (1 - kClear) * ratioMoved(0))
+        return true;
     const auto found = placesFrom(
         map, part, {Eigen::Translation3d(aside) * pose, Eigen::Translation3d(-aside) * pose}, probe,
         options);

@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+
 #include "delio/core/odometry_options.h"
 
 /** Numbers that decide how the odometry works and that no profile sets: they are no options.
@@ -13,6 +15,8 @@ struct SpacingTuning {
     double doubt_spacing = 10;   //!< degenerate scans enter the map once in such a distance
     double first_speed = 40;     //!< m/s; an unknown motion is searched up to this speed
     double acceleration = 15;    //!< m/s^2; of the hardest start or stop
+    double first_turn_radps = 60 * M_PI / 180;  //!< an unknown motion is searched up to this rate
+    double most_turn_rad = 30 * M_PI / 180;     //!< and up to this turn; does not scale
 };
 
 /** How points and planes are weighed against each other (LocalMap). */

@@ -63,7 +63,7 @@ TEST(PointSearch, RingsOnTheGroundDoNotHideAMotionOfMetres) {
                                                         kOptions.least_kernel, kOptions);
         EXPECT_GT(offBy(nearest, moved), kMistaken_m) << "nothing to search for";
         const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(),
-                                                  kReach_m, Matrix3f::Identity(), kOptions);
+                                                  {kReach_m, 0}, Matrix3f::Identity(), kOptions);
         EXPECT_TRUE(found.valid);
         EXPECT_LT(offBy(found, moved), kFound_m) << moved.translation().transpose();
     }
@@ -108,14 +108,14 @@ TEST(PointSearch, TheDiscIsLevelWhereUprightSaysSo) {
         rolled *
         test::ringScan(test::yard(), Isometry3d::Identity(), kSensor, noise).points.cast<double>());
     const auto found = odometry::searchPoints(map, rolled * pair.scan, Isometry3d::Identity(),
-                                              kReach_m, rolled.transpose().cast<float>(), kOptions);
+                                              {kReach_m, 0}, rolled.transpose().cast<float>(), kOptions);
     EXPECT_LT((rolled.transpose() * found.pose.translation() - moved.translation()).norm(),
               kFound_m);
 }
 
 TEST(PointSearch, AStandingSensorStands) {
     const Pair pair = pairIn(test::yard(), Isometry3d::Identity());
-    const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), 5,
+    const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), {5, 0},
                                               Matrix3f::Identity(), kOptions);
     EXPECT_TRUE(found.valid);
     EXPECT_LT(offBy(found, Isometry3d::Identity()), 0.03);
@@ -125,7 +125,7 @@ TEST(PointSearch, AStandingSensorStands) {
 TEST(PointSearch, ASensorBetweenCarsThatDriveOnStands) {
     for (const double driven : {0.8, 1.5, 3.0}) {
         const Pair pair = pairIn(traffic(0), Isometry3d::Identity(), traffic(driven));
-        const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), 5,
+        const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), {5, 0},
                                                   Matrix3f::Identity(), kOptions);
         EXPECT_TRUE(found.valid);
         EXPECT_LT(offBy(found, Isometry3d::Identity()), 0.03) << driven;
