@@ -54,6 +54,7 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
     const auto doubts = run::doubtsOf(record.rows);
     const std::string axes = run::weakAxesOf(doubts);
     row("predicted", run::textOf(doubts.predicted, record.predicted()));
+    row("lost", run::textOf(doubts.lost, doubts.lost.scans));
     row("weakly observed",
         run::textOf(doubts.weak, doubts.weak.scans) + (axes.empty() ? "" : ", " + axes));
     if (doubts.standing.scans > 0)

@@ -32,11 +32,11 @@ std::uint64_t fingerprintOf(const mrpt::maps::CPointsMap& points) {
 }
 }  // namespace
 
-Arrival Arrivals::take(const Scan& scan) {
+Arrival Arrivals::take(const Scan& scan, double time_s) {
     const std::uint64_t fingerprint = fingerprintOf(*scan.points);
     copies_ = fingerprint != 0 && fingerprint == fingerprint_ ? copies_ + 1 : 0;
     fingerprint_ = fingerprint;
-    const Interval interval = timeline_.advance(scan.stamp_s, copies_ > 0);
+    const Interval interval = timeline_.advance(time_s, copies_ > 0);
     const bool hasTimes = !scan.times_s.empty(), isEmpty = scan.points->size() == 0;
     hadTimes_ = hadTimes_ || hasTimes;
     if (!isEmpty) untimed_ = needTimes_ && hadTimes_ && !hasTimes ? untimed_ + 1 : 0;

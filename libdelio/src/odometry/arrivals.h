@@ -24,8 +24,8 @@ class Arrivals {
     /** `needTimes`: scans are de-skewed by the times of their points. */
     explicit Arrivals(bool needTimes) : needTimes_(needTimes) {}
 
-    /** Takes the next scan. */
-    Arrival take(const Scan& scan);
+    /** Takes the next scan, which was measured at `time_s`: seconds, of the stamps' clock. */
+    Arrival take(const Scan& scan, double time_s);
 
     /** Sum of the intervals, seconds: rises with every scan, whatever the stamps do. */
     double sinceStart_s() const { return timeline_.sinceStart_s(); }

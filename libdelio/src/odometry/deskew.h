@@ -13,12 +13,12 @@ namespace delio::odometry {
 std::vector<float> azimuthTimes(const Eigen::Matrix3Xf& points, double sweep_s);
 
 /** The points (metres, sensor's frame at each point's own time) as the sensor would have seen them
- *  all at once at its stamp. `times_s`: of each point, seconds from the stamp; of the trajectory,
- * too, which maps the sensor's frame to what it is at the stamp. */
+ *  all at once at the scan's time. `times_s`: of each point, seconds from then; of the trajectory,
+ * too, which maps the sensor's frame to what it is then. */
 Eigen::Matrix3Xf deskew(const Eigen::Matrix3Xf& points, const std::vector<float>& times_s,
                         const ScanTrajectory& trajectory);
 
-/** A scan as it is registered against a map: undistorted, in the sensor's frame at the stamp,
+/** A scan as it is registered against a map: undistorted, in the sensor's frame at the scan's time,
  *  dynamic objects left out of the thinned points. Metres. */
 struct ScanView {
     Eigen::Matrix3Xf points;            //!< all

@@ -277,7 +277,7 @@ void PaperOdometry::takeIncrement(const PaperRegistration& registration, double 
 Step PaperOdometry::process(const Scan& scan) {
     requireConsistent(scan);
     Step step;
-    const Arrival arrival = arrivals_.take(scan);
+    const Arrival arrival = arrivals_.take(scan, scan.stamp_s);
     const Interval& interval = arrival.interval;
     step.interrupted = interval.kind == IntervalKind::kUnknown;
     if (step.interrupted) prediction_.forget();  // whether it went on meanwhile is not known

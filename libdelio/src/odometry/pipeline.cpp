@@ -60,9 +60,6 @@ Step PlaneOdometry::process(const Scan& scan) {
     requireConsistent(scan);
     Step step;
     step.times_ms = noTimes();
-    const Arrival arrival = arrivals_.take(scan);
-    const Interval& interval = arrival.interval;
-    unregistered_s_ += interval.elapsed_s;
     seenScale_ = given_.tracker.scale > 0 ? given_.tracker.scale : scaleOf(scan);
     const bool isEmpty = std::holds_alternative<Empty>(state_);
     if (isEmpty) takeScale(seenScale_);
@@ -70,8 +67,12 @@ Step PlaneOdometry::process(const Scan& scan) {
     {
         const StageTimer timer(step, "preprocess");
         cloud = preprocess(scan, options_.scan);
+        countFromMiddle(cloud);
         if (isEmpty) upright_ = uprightOf(scan.sensorPose, cloud.points);
     }
+    const Arrival arrival = arrivals_.take(scan, scan.stamp_s - cloud.stamp_s);
+    const Interval& interval = arrival.interval;
+    unregistered_s_ += interval.elapsed_s;
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
     step.interrupted = !isEmpty && interval.kind == IntervalKind::kUnknown;
@@ -81,14 +82,17 @@ Step PlaneOdometry::process(const Scan& scan) {
     }
     if (!isEmpty) step.reason = reasonToSkip(arrival, prediction_);
 
+    const bool motionWasKnown = !isLost(state_);
     if (isEmpty)
         begin(cloud, step);
     else if (!step.reason.empty())
         skip(cloud, interval, step);
     else
         track(cloud, interval, step);
+    carryToStamp(cloud.stamp_s, !motionWasKnown && !step.predicted, step);
 
     step.standing = isStanding(step, interval.duration_s);
+    step.lost = isLostAfter(step);
     if (!step.predicted) unregistered_s_ = 0;
     if (!isLost(state_) && isOtherScale()) {
         takeScale(seenScale_);
@@ -97,6 +101,13 @@ Step PlaneOdometry::process(const Scan& scan) {
     step.details.emplace_back("scale", scale_);
     step.used.indices = std::move(cloud.indices);
     return step;
+}
+
+/** The first scan is where the drive begins. A scan whose axis is not observed goes on as before,
+ *  where it is known how. */
+bool PlaneOdometry::isLostAfter(const Step& step) const {
+    if (std::holds_alternative<Degenerate>(state_)) return !prediction_.hasMotion();
+    return step.predicted && missesOf(state_) > 0;
 }
 
 /** The method: a scan against the map of earlier scans. */
@@ -110,7 +121,8 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     ScanView view;
     {
         const StageTimer timer(step, "undistort");
-        view = undistorted(cloud, extrapolation.motion());
+        motion_ = extrapolation.motion();
+        view = undistorted(cloud, motion_);
     }
     VoxelNumbers voxels;
     {
@@ -131,7 +143,6 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     }
     const auto estimate = registerByPlanes(cloud, placed, predicted, since_s, view, step);
 
-    const Eigen::Isometry3d before = pose_;
     pose_ = estimate.valid ? estimate.pose() : predicted;
     {
         const StageTimer timer(step, "map_update");
@@ -143,7 +154,7 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     if (!estimate.valid)
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";
     step.details = detailsOf(estimate, placed);
-    report(estimate, before, view, step);
+    report(estimate, view, step);
 }
 
 /** The motion after the latest scan. Its end twist, where that is known, is used once. */
@@ -281,6 +292,7 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, doubl
 void PlaneOdometry::begin(const PointCloud& cloud, Step& step) {
     const bool isFirst = !std::get<Empty>(state_).hasSeenScans;
     ScanView view;
+    motion_ = Twist{};
     {
         const StageTimer timer(step, "map_update");
         view = beginMap(cloud, false);
@@ -290,26 +302,24 @@ void PlaneOdometry::begin(const PointCloud& cloud, Step& step) {
     if (std::holds_alternative<Empty>(state_))
         step.reason = cloud.points.cols() == 0 ? "no points" : "too few points";
     step.details = detailsOf({}, {});
-    report(predictedEstimate(pose_), pose_, view, step);
+    report(predictedEstimate(pose_), view, step);
 }
 
 /** A scan that says nothing about the motion: its pose is the prediction, and tracking goes on from
  *  the scan before. */
 void PlaneOdometry::skip(const PointCloud& cloud, const Interval& interval, Step& step) {
     const Extrapolation extrapolation = predictMotion(interval.duration_s);
-    const Eigen::Isometry3d before = pose_;
     pose_ = pose_ * extrapolation.at(interval.duration_s);
-    ScanView view = undistorted(cloud, extrapolation.motion());
+    motion_ = extrapolation.motion();
+    ScanView view = undistorted(cloud, motion_);
     step.details = detailsOf({}, {});
-    report(predictedEstimate(pose_), before, view, step);
+    report(predictedEstimate(pose_), view, step);
 }
 
-/** Of a scan at pose_; `before`: the pose of the scan before it. */
-void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3d& before,
-                           ScanView& view, Step& step) const {
+/** Of a scan at pose_. */
+void PlaneOdometry::report(const PlaneEstimate& estimate, ScanView& view, Step& step) const {
     const auto dynamic = std::count(view.dynamic.begin(), view.dynamic.end(), std::uint8_t{1});
     step.increment = incrementOf(estimate.rotation, estimate.translation);
-    step.increment.pose = normalised(before.inverse() * pose_);
     step.quality = qualityOf(estimate.rotation, estimate.translation);
     step.predicted = !step.reason.empty();
     const auto points = std::max<double>(1, static_cast<double>(view.dynamic.size()));
@@ -317,6 +327,22 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, const Eigen::Isometry3
     step.details.emplace_back("dynamic_share", static_cast<double>(dynamic) / points);
     step.used.points = std::move(view.points);
     step.used.dynamic = std::move(view.dynamic);
+}
+
+/** The step from the stamp of the scan before to this one's, which is `stamp_s` from the scan's
+ * time. `hasFoundMotion`: the motion, which was not known before, is that of the scan before, too.
+ */
+void PlaneOdometry::carryToStamp(double stamp_s, bool hasFoundMotion, Step& step) {
+    const double time_s = arrivals_.sinceStart_s();
+    const Eigen::Isometry3d moved = motion_.at(stamp_s);
+    Eigen::Isometry3d before = stamped_.pose;
+    if (hasFoundMotion && stamped_.stamp_s != 0)
+        before = pose_ * motion_.at(stamped_.time_s + stamped_.stamp_s - time_s);
+    stamped_ = {pose_ * moved, stamp_s, time_s};
+    step.increment.pose = normalised(before.inverse() * stamped_.pose);
+    if (stamp_s == 0) return;
+    const Eigen::Isometry3f toStamp = moved.inverse().cast<float>();
+    step.used.points = (toStamp.linear() * step.used.points).colwise() + toStamp.translation();
 }
 
 /** A new map of this scan, at pose_. */

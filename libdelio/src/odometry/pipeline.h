@@ -18,11 +18,19 @@ struct PlacedPoints {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
 };
 
+/** A scan at its stamp. */
+struct Stamped {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
+    double stamp_s = 0;                                      //!< from the scan's time
+    double time_s = 0;                                       //!< of the scan, since the start
+};
+
 /** Scan-to-map odometry, rotation and translation decoupled. A scan is preprocessed, predicted,
  *  de-skewed, registered to the points of earlier scans, freed of dynamic objects, and registered
  *  to the planes of earlier scans (LocalMap). Scans whose points have times are de-skewed twice: by
  *  the predicted motion, and by the motion that was found. Where three scans in a row that are not
- *  empty are not found in the map, a new map begins at the prediction. */
+ *  empty are not found in the map, a new map begins at the prediction. Poses are those at
+ *  the scans' times (see countFromMiddle()), steps are those between the stamps. */
 class PlaneOdometry : public Odometry {
  public:
     /** Before the first scan. */
@@ -49,8 +57,9 @@ class PlaneOdometry : public Odometry {
                 const Eigen::Isometry3d& predicted, double since_s, bool hasSight, ScanView& view,
                 const Step& step);
     void miss(const PointCloud& cloud);
-    void report(const PlaneEstimate& estimate, const Eigen::Isometry3d& before, ScanView& view,
-                Step& step) const;
+    bool isLostAfter(const Step& step) const;
+    void report(const PlaneEstimate& estimate, ScanView& view, Step& step) const;
+    void carryToStamp(double stamp_s, bool hasFoundMotion, Step& step);
 
     Expectation expectation(const Eigen::Isometry3d& predicted, double since_s,
                             bool timeIsKnown) const;
@@ -96,7 +105,9 @@ class PlaneOdometry : public Odometry {
     DynamicObjects dynamics_;
     ReferenceScan reference_;
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
-    double unregistered_s_ = 0;  //!< since the latest scan that was registered
+    ScanTrajectory motion_{Twist{}};  //!< during the latest scan, seen from pose_
+    Stamped stamped_;                 //!< the latest scan at its stamp
+    double unregistered_s_ = 0;       //!< since the latest scan that was registered
     /** The latest scan, until it enters the map: the next scan is thinned meanwhile. */
     std::optional<PlacedPoints> waiting_;
 

@@ -65,6 +65,7 @@ void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double 
     if (!found || (!isPair && !fits(found))) return;
     estimate = found->estimate;
     view = std::move(found->view);
-    extrapolation_ = Extrapolation(found->trajectory.seenFrom(0), since_s / 8);
+    motion_ = found->trajectory.seenFrom(0);
+    extrapolation_ = Extrapolation(motion_, since_s / 8);
 }
 }  // namespace delio::odometry

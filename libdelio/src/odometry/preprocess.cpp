@@ -14,6 +14,28 @@
 #include "odometry/rings.h"
 
 namespace delio::odometry {
+namespace {
+/** Middle of the times, without the few that are outliers. */
+float middleOf(std::vector<float> times_s) {
+    constexpr double kOutliers = 0.01;  // at either end
+    const auto last = static_cast<std::ptrdiff_t>(times_s.size()) - 1,
+               low = static_cast<std::ptrdiff_t>(kOutliers * static_cast<double>(last)),
+               high = last - low;
+    const auto first = times_s.begin();
+    std::nth_element(first, first + high, times_s.end());
+    std::nth_element(first, first + low, first + high);
+    return (times_s[static_cast<std::size_t>(low)] + times_s[static_cast<std::size_t>(high)]) / 2;
+}
+
+}  // namespace
+
+void countFromMiddle(PointCloud& cloud) {
+    if (cloud.times_s.empty()) return;
+    const float middle_s = middleOf(cloud.times_s);
+    for (float& time_s : cloud.times_s) time_s -= middle_s;
+    cloud.stamp_s = -double{middle_s};
+}
+
 PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     requireConsistent(scan);
     const auto& x = scan.points->getPointsBufferRef_x();

@@ -13,7 +13,8 @@ namespace delio::odometry {
 struct PointCloud {
     Eigen::Matrix3Xf points;             //!< metres, in the sensor's frame, in the sensor's order
     std::vector<std::uint16_t> rings;    //!< of each point, as its source numbers them, or empty
-    std::vector<float> times_s;          //!< of each point from the stamp; empty: all at the stamp
+    std::vector<float> times_s;          //!< of each point from the scan's time; empty: all then
+    double stamp_s = 0;                  //!< the stamp, from the scan's time
     std::vector<std::uint32_t> indices;  //!< of each point in the scan
     std::size_t notFinite = 0;   //!< points dropped because a coordinate was NaN or infinite
     std::size_t outOfRange = 0;  //!< points dropped by min_range and max_range
@@ -23,6 +24,10 @@ struct PointCloud {
  *  `vertical_correction_deg` (range kept): KITTI's HDL-64E needs 0.205 deg (IMLS-SLAM, KISS-ICP).
  */
 PointCloud preprocess(const Scan& scan, const PreprocessOptions& options);
+
+/** Makes the middle of the points' times the scan's time, which was the stamp: drivers stamp the
+ *  begin of a turn, its end, or the arrival of the message. Without times it stays the stamp. */
+void countFromMiddle(PointCloud& cloud);
 
 /** Why preprocess() leaves no point of a scan, in words; empty where it leaves some. */
 std::string whyNoneIsLeft(const Scan& scan, const PreprocessOptions& options);

@@ -17,14 +17,14 @@ namespace delio::odometry {
 /** Points as a moving sensor saw them, one after the other. */
 struct TimedPoints {
     Eigen::Matrix3Xd points;      //!< metres, sensor's frame at each point's own time
-    std::vector<double> times_s;  //!< of each point, from the scan's stamp
+    std::vector<double> times_s;  //!< of each point, from the scan's time
 };
 
 /** The motion (sensor to map) during a scan, from the planes that its points lie on, each at its
  *  own time: continuous-time registration. `trajectory` is where it begins: `since_s` before the
- * stamp the pose is known and stays; from there on it is bent by a polynomial of third degree, from
- *  correspondences that are made anew while the kernel narrows from `kernel` (metres) to
- *  last_kernel. Planes and prior are fused by their information. With too few points on planes it
+ * scan's time the pose is known and stays; from there on it is bent by a polynomial of third
+ * degree, from correspondences that are made anew while the kernel narrows from `kernel` (metres)
+ * to last_kernel. Planes and prior are fused by their information. With too few points on planes it
  *  stays as it is. */
 ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
                                   const ScanTrajectory& trajectory, double since_s,
@@ -33,14 +33,14 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
 
 /** What is known of the motion during a scan whose points have times. */
 struct KnownEnds {
-    Eigen::Isometry3d reference;  //!< `since_s` before the stamp, sensor to map
+    Eigen::Isometry3d reference;  //!< `since_s` before the scan's time, sensor to map
     double since_s = 0;           //!< more than 0
-    Eigen::Isometry3d pose;       //!< at the stamp, likewise
+    Eigen::Isometry3d pose;       //!< at the scan's time, likewise
     Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
 };
 
 /** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to
- *  map, times from the stamp. */
+ *  map, times from the scan's. */
 ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud);
 
 /** The same, bent as far as it is known to be uneven, such that static points, which `view` is told
@@ -53,8 +53,8 @@ ScanTrajectory refinedTrajectory(const PlaneMap& map, const KnownEnds& known,
 /** A scan as it was seen on a trajectory, and where it is then. */
 struct ScanOnTrajectory {
     ScanView view;              //!< thinned, too
-    PlaneEstimate estimate;     //!< of its pose at the stamp
-    ScanTrajectory trajectory;  //!< sensor to map, times from the stamp
+    PlaneEstimate estimate;     //!< of its pose at the scan's time
+    ScanTrajectory trajectory;  //!< sensor to map, times from the scan's
     double inlierRatio = 0;     //!< of its points on those of the map
 };
 
@@ -69,14 +69,14 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
 class Extrapolation {
  public:
     Extrapolation() = default;
-    /** At constant twist, by `increment` in `duration_s` (more than 0) from the stamp on. */
+    /** At constant twist, by `increment` in `duration_s` (more than 0) from the scan's time on. */
     Extrapolation(const Eigen::Isometry3d& increment, double duration_s)
         : end_s_(duration_s), end_(increment), motion_(Twist::of(increment, duration_s)) {}
-    /** `trajectory`: during the scan, times and frame those of its stamp. The motion is that of its
+    /** `trajectory`: during the scan, times and frame those of its time. The motion is that of its
      * last `over_s`. */
     Extrapolation(const ScanTrajectory& trajectory, double over_s);
 
-    /** The sensor at `time_s` from the stamp: maps its frame then to the one at the stamp. */
+    /** The sensor at `time_s` from the scan's time: maps its frame then to the one at that time. */
     Eigen::Isometry3d at(double time_s) const { return end_ * motion_.after(time_s - end_s_); }
     /** Its twist. */
     const Twist& motion() const { return motion_; }

@@ -44,6 +44,7 @@ Doubts doubtsOf(const std::vector<RunRow>& rows) {
     Doubts doubts;
     doubts.pairs = rows.empty() ? 0 : rows.size() - 1;
     doubts.predicted = stretchesOf(rows, [](const RunRow& row) { return row.predicted; });
+    doubts.lost = stretchesOf(rows, [](const RunRow& row) { return row.lost; });
     doubts.weak = stretchesOf(rows, isWeak);
     for (std::size_t i = 1; i < rows.size(); ++i) {
         const RunRow& row = rows[i];
@@ -56,6 +57,17 @@ Doubts doubtsOf(const std::vector<RunRow>& rows) {
     doubts.interrupted = stretchesOf(rows, [](const RunRow& row) { return row.interrupted; });
     doubts.standing = stretchesOf(rows, [](const RunRow& row) { return row.standing; });
     return doubts;
+}
+
+bool isLost(const Doubts& doubts) {
+    constexpr double kMost = 0.1;
+    return static_cast<double>(doubts.lost.scans) > kMost * static_cast<double>(doubts.pairs);
+}
+
+const char* stateOf(const RunRow& row) {
+    if (row.lost) return "lost";
+    if (row.predicted) return "predicted";
+    return isWeak(row) ? "weak" : "tracked";
 }
 
 std::string textOf(const Stretches& found, std::size_t scans) {
@@ -93,6 +105,12 @@ std::vector<std::string> warningsOf(const Doubts& doubts) {
             "; the vehicle's axes): what they see looks the same anywhere on these axes, "
             "so that the motion there is the prediction, or a rest that may be none; "
             "take it from another sensor (wheels, GNSS, gyroscope)");
+    if (doubts.lost.scans > 0)
+        warnings.push_back(
+            ofAll(doubts.lost, doubts.pairs) +
+            " were lost: where the sensor went meanwhile is not known, and the poses "
+            "before and after them do not belong together; the column state of "
+            "scans.csv names them");
     if (doubts.interrupted.scans > 0)
         warnings.push_back(ofAll(doubts.interrupted, doubts.pairs) +
                            " follow a pause, or a clock that was set: the motion before them was "

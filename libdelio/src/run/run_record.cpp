@@ -70,6 +70,7 @@ RunRow rowOf(const Scan& scan, const ScanReport& report, double read_ms, const R
     row.moved_m = step.increment.pose.translation().norm();
     row.turned_rad = angleOf(step.increment.pose.linear());
     row.predicted = step.predicted;
+    row.lost = step.lost;
     row.searched = step.searched;
     row.interrupted = step.interrupted;
     row.standing = step.standing;

@@ -146,6 +146,11 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     const Doubts doubts = doubtsOf(record.rows);
     summary.predicted = countOf(record, &RunRow::predicted);
     summary.longest_predicted = doubts.predicted.longest;
+    summary.lost = doubts.lost.scans;
+    summary.longest_lost = doubts.lost.longest;
+    summary.tracked = static_cast<std::size_t>(
+        std::count_if(record.rows.begin(), record.rows.end(),
+                      [](const RunRow& row) { return std::string("tracked") == stateOf(row); }));
     summary.weakly_observed = doubts.weak.scans;
     summary.longest_weakly_observed = doubts.weak.longest;
     summary.interrupted = doubts.interrupted.scans;
@@ -197,6 +202,9 @@ void writeSummary(const Summary& s, const std::string& path) {
     write(yaml, "scans", s.scans);
     write(yaml, "predicted", s.predicted);
     write(yaml, "longest_predicted", s.longest_predicted);
+    write(yaml, "lost", s.lost);
+    write(yaml, "longest_lost", s.longest_lost);
+    write(yaml, "tracked", s.tracked);
     write(yaml, "weakly_observed", s.weakly_observed);
     write(yaml, "longest_weakly_observed", s.longest_weakly_observed);
     write(yaml, "weakly_observed_along", s.weakly_observed_along);
@@ -253,6 +261,9 @@ Summary readSummary(const std::string& path) {
         s.scans = numberOf<std::size_t>(node["scans"]);
         s.predicted = numberOf<std::size_t>(node["predicted"]);
         s.longest_predicted = numberOf<std::size_t>(node["longest_predicted"], 0);
+        s.lost = numberOf<std::size_t>(node["lost"], 0);
+        s.longest_lost = numberOf<std::size_t>(node["longest_lost"], 0);
+        s.tracked = numberOf<std::size_t>(node["tracked"], 0);
         s.weakly_observed = numberOf<std::size_t>(node["weakly_observed"], 0);
         s.longest_weakly_observed = numberOf<std::size_t>(node["longest_weakly_observed"], 0);
         s.weakly_observed_along = countsIn(node["weakly_observed_along"]);

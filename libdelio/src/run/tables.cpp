@@ -12,6 +12,7 @@
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/files/output_file.h"
+#include "delio/run/doubts.h"
 #include "formats/table_cells.h"
 
 namespace delio::run {
@@ -54,6 +55,7 @@ io::ScanRow scanRowOf(const RunRow& row) {
     put("searched", row.searched ? "1" : "0");
     put("interrupted", row.interrupted ? "1" : "0");
     put("standing", row.standing ? "1" : "0");
+    put("state", stateOf(row));
     return cells;
 }
 

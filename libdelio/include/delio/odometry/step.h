@@ -61,6 +61,9 @@ struct Step {
     Increment increment;
     bool predicted = false;    //!< the scan could not be registered: `increment` is the prediction
     std::string reason;        //!< why; empty where it was registered
+    /** Where the sensor went since it was tracked last is not known: the scan was not found in the
+     *  map, or an axis has not been observed since the motion was known last. */
+    bool lost = false;
     bool searched = false;     //!< not only from the prediction: all about it
     bool interrupted = false;  //!< a pause or a clock that was set: the time before it is not known
     /** Registered along and about every axis, and slower than 0.1 m/s and 2 deg/s. */

@@ -18,6 +18,7 @@ struct Stretches {
 struct Doubts {
     std::size_t pairs = 0;  //!< scans that have one before them
     Stretches predicted;    //!< not registered: the motion model's
+    Stretches lost;         //!< Step::lost
     Stretches weak;         //!< registered, but an axis was not observed
     /** Of these the scans with an open axis of the translation that is nearest to the vehicle's x,
      * y and z. */
@@ -30,6 +31,12 @@ struct Doubts {
 
 /** Counts them. */
 Doubts doubtsOf(const std::vector<RunRow>& rows);
+
+/** True where more than a tenth of the scans were lost: the trajectory is not to be used. */
+bool isLost(const Doubts& doubts);
+
+/** State of a scan, as scans.csv names it: tracked, weak, predicted or lost. */
+const char* stateOf(const RunRow& row);
 
 /** "38, at most 30 in a row (from scan 12)"; `scans`: in place of those that were counted. */
 std::string textOf(const Stretches& found, std::size_t scans);

@@ -48,6 +48,7 @@ struct RunRow {
     double moved_m = 0;        //!< by the sensor since the scan before
     double turned_rad = 0;     //!< the same
     bool predicted = false;    //!< Step::predicted
+    bool lost = false;         //!< Step::lost
     bool searched = false;     //!< Step::searched
     bool interrupted = false;  //!< Step::interrupted
     bool standing = false;     //!< Step::standing

@@ -22,6 +22,9 @@ struct Summary {
     std::size_t deskewed = 0;                 //!< of which so many had times
     std::size_t predicted = 0;                //!< scans that were not registered
     std::size_t longest_predicted = 0;        //!< of them in a row
+    std::size_t lost = 0;                     //!< where the sensor went is not known
+    std::size_t longest_lost = 0;             //!< of them in a row
+    std::size_t tracked = 0;                  //!< registered along every axis
     std::size_t weakly_observed = 0;          //!< registered, with an axis that was not seen
     std::size_t longest_weakly_observed = 0;  //!< of them in a row
     /** Of these those with an axis along which nothing was seen, nearest to the vehicle's x, y and
