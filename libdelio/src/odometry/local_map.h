@@ -62,9 +62,10 @@ class LocalMap {
      *  points stays where these put it, if they see it, else where the prediction does. Where
      *  points alone say that the scan is where an earlier scan of the drive was, the axis is
      *  unobserved, too, unless surfaces that face it confirm that: a sensor's own rings lie on each
-     *  other anywhere. */
+     *  other anywhere. Where the motion is not known, this holds for axes that the planes hardly
+     *  constrain, too. */
     PlaneEstimate registerPlanes(const ScanView& view, const PointEstimate& placed,
-                                 const Eigen::Isometry3d& predicted) const;
+                                 const Eigen::Isometry3d& predicted, bool motionIsKnown) const;
 
     /** Share of the points that lie within `distance` (metres) of one of the map's, 0 to 1. */
     double shareAt(const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
@@ -79,7 +80,7 @@ class LocalMap {
     PlaneEstimate byPoints(const PointEstimate& placed,
                            const Eigen::Matrix3d& turnCovariance) const;
     void settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
-                          PlaneEstimate& found) const;
+                          bool motionIsKnown, PlaneEstimate& found) const;
     bool isWhereAScanWas(const Eigen::Vector3d& place) const;
 
     LocalMapTuning options_;

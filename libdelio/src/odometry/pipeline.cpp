@@ -103,10 +103,11 @@ Step PlaneOdometry::process(const Scan& scan) {
     return step;
 }
 
-/** The first scan is where the drive begins. A scan whose axis is not observed goes on as before,
- *  where it is known how. */
+/** Degenerate scans go on as before, where it is known how. */
 bool PlaneOdometry::isLostAfter(const Step& step) const {
-    if (std::holds_alternative<Degenerate>(state_)) return !prediction_.hasMotion();
+    constexpr unsigned kPatience = 3;
+    if (const auto* degenerate = std::get_if<Degenerate>(&state_))
+        return !prediction_.hasMotion() && degenerate->scans >= kPatience;
     return step.predicted && missesOf(state_) > 0;
 }
 
@@ -211,7 +212,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     const StageTimer timer(step, "planes");
     if (!placed.valid) return predictedEstimate(predicted);
     view.thinned = voxelCentroids(view.fine, options_.spacing.scan_spacing).cast<double>();
-    auto found = map_.registerPlanes(view, placed, predicted);
+    auto found = map_.registerPlanes(view, placed, predicted, prediction_.hasMotion());
     if (step.deskewed) deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
     return found;
 }
@@ -221,10 +222,12 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
                            const Eigen::Isometry3d& predicted, double since_s, bool hasSight,
                            ScanView& view, const Step& step) {
     const bool isDegenerate = estimate.translation.unobservedAxes.cols() > 0;
+    const auto* latest = std::get_if<Degenerate>(&state_);
+    const unsigned degenerateScans = latest ? latest->scans : 0;
     if (step.interrupted)
         state_ = Lost{};  // the speed is not known
     else if (isDegenerate)
-        state_ = Degenerate{};
+        state_ = Degenerate{degenerateScans + 1};
     else
         state_ = Tracking{};
     // A degenerate scan may be at a wrong pose, and the next ones would confirm it: few of them

@@ -167,7 +167,7 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
     again.coarse = pointsToRegister(again.fine, known.upright, options.spacing.point_spacing);
     const auto placed = map.place(again.coarse, trajectory.at(0), options.points.least_kernel);
     if (!placed.valid) return {};
-    auto estimate = map.registerPlanes(again, placed, known.pose);
+    auto estimate = map.registerPlanes(again, placed, known.pose, known.motionIsKnown);
     return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.inlierRatio};
 }
 

@@ -24,7 +24,9 @@ struct Tracking {};
 
 /** The latest scan was registered, but the scene does not constrain the translation along every
  *  axis: the pose along the others is the prediction. */
-struct Degenerate {};
+struct Degenerate {
+    unsigned scans = 1;  //!< in a row, up to this one
+};
 
 /** The latest scan was not found in the map, or the time before it is not known: the next one may
  *  be metres off the prediction. */

@@ -38,7 +38,7 @@ class AScanInAYard : public testing::Test {
         placed.matches = 500;
         placed.residual_m = 0.1;
         placed.valid = true;
-        return map.registerPlanes(view, placed, placedAt).pose();
+        return map.registerPlanes(view, placed, placedAt, true).pose();
     }
 
     ScaledOptions options;
@@ -52,7 +52,7 @@ TEST_F(AScanInAYard, IsRefinedByPlanes) {
     const auto placed = map.place(view.coarse, there * poseAt(0.2, 0.2, 0), 1);
     ASSERT_TRUE(placed.valid);
     EXPECT_LT(
-        metresBetween(map.registerPlanes(view, placed, placed.pose).pose(), there),
+        metresBetween(map.registerPlanes(view, placed, placed.pose, true).pose(), there),
         0.01);
 }
 
