@@ -59,9 +59,18 @@ Doubts doubtsOf(const std::vector<RunRow>& rows) {
     return doubts;
 }
 
-bool isLost(const Doubts& doubts) {
-    constexpr double kMost = 0.1;
-    return static_cast<double>(doubts.lost.scans) > kMost * static_cast<double>(doubts.pairs);
+std::string whyUnreliable(const Doubts& doubts) {
+    constexpr double kLost = 0.1, kUncertain = 0.5;
+    const auto isMore = [&](std::size_t scans, double share) {
+        return static_cast<double>(scans) > share * static_cast<double>(doubts.pairs);
+    };
+    const std::size_t uncertain = doubts.weak.scans + doubts.predicted.scans;
+    if (isMore(doubts.lost.scans, kLost))
+        return mrpt::format("lost in %zu of %zu scans", doubts.lost.scans, doubts.pairs);
+    if (isMore(uncertain, kUncertain))
+        return mrpt::format("%zu of %zu scans were observed weakly or predicted", uncertain,
+                            doubts.pairs);
+    return {};
 }
 
 const char* stateOf(const RunRow& row) {

@@ -280,9 +280,8 @@ void Run::finish(bool complete) {
     for (const auto& warning : warningsOf(doubts)) warn(warning);
     if (doubts.pairs > 0 && doubts.predicted.scans == doubts.pairs)
         fail("no scan could be registered: " + record_.rows[1].reason);
-    else if (isLost(doubts))
-        fail("lost in " + std::to_string(doubts.lost.scans) + " of " +
-             std::to_string(doubts.pairs) + " scans: the trajectory is not to be relied on");
+    else if (const auto why = whyUnreliable(doubts); !why.empty())
+        fail(why + ": the trajectory is not to be relied on");
     record_.complete = complete;
     slam_.close();
     optimise();

@@ -263,6 +263,38 @@ TEST(PlaneOdometry, WhatSwingsWhileItSpinsIsUndistortedAsItSwings) {
     EXPECT_LT(degrees[degrees.size() / 2], 0.1);
 }
 
+// Drivers stamp the begin of a turn, its end, or the arrival of the message.
+TEST(PlaneOdometry, TheStampMayLieOutsideTheScan) {
+    const auto driven = [](double time_s) { return poseAt(8 * time_s, 0, 0, 0.5 * time_s); };
+    for (const double late_s : {-0.1, -0.05, 0.05, 0.11}) {
+        test::Noise noise;
+        PlaneOdometry odometry(accurate());
+        for (int i = 0; i < 10; ++i) {
+            Scan scan = sweptScan(0.1 * i, driven, noise);
+            scan.stamp_s += late_s;
+            for (float& time_s : scan.times_s) time_s -= static_cast<float>(late_s);
+            const auto result = odometry.process(scan);
+            EXPECT_FALSE(result.predicted) << i;
+            if (i == 0) continue;
+            const Isometry3d truth = driven(scan.stamp_s - 0.1).inverse() * driven(scan.stamp_s);
+            EXPECT_LT(metresBetween(result.increment.pose, truth), i == 1 ? 0.04 : 0.02)
+                << late_s << " s, scan " << i;
+            EXPECT_LT(degreesBetween(result.increment.pose, truth), 0.2) << late_s << " s " << i;
+        }
+    }
+}
+
+// In a smooth corridor nothing shows how fast it drives.
+TEST(PlaneOdometry, AStartInWhichAnAxisStaysUnobservedIsLost) {
+    test::Noise noise;
+    PlaneOdometry odometry(accurate());
+    for (int i = 0; i < 6; ++i) {
+        Scan scan = test::scanOf(pointsSeenFrom(test::corridor(), poseAt(i, 0, 0), noise));
+        scan.stamp_s = 0.1 * i;
+        EXPECT_EQ(odometry.process(scan).lost, i >= 3) << i;
+    }
+}
+
 TEST(PlaneOdometry, AHundredScansOfStandstill) {
     test::Noise noise;
     PlaneOdometry odometry(accurate());

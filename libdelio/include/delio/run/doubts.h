@@ -32,8 +32,9 @@ struct Doubts {
 /** Counts them. */
 Doubts doubtsOf(const std::vector<RunRow>& rows);
 
-/** True where more than a tenth of the scans were lost: the trajectory is not to be used. */
-bool isLost(const Doubts& doubts);
+/** Why the trajectory is not to be relied on: more than a tenth of the scans were lost, or more
+ * than half were observed weakly or predicted. Empty where it is. */
+std::string whyUnreliable(const Doubts& doubts);
 
 /** State of a scan, as scans.csv names it: tracked, weak, predicted or lost. */
 const char* stateOf(const RunRow& row);
