@@ -3,7 +3,6 @@
 #include <mrpt/graphs/CNetworkOfPoses.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -134,9 +133,9 @@ FileContent readContent(const std::string& path) {
     return content;
 }
 
-/** The unit quaternion of a rotation with w >= 0, such that a file that is loaded and saved again has
- *  the same bytes: three components are rounded to 2^-48 (4e-15), which is more than the way to a
- *  matrix and back changes them, and the fourth follows from these. */
+/** The unit quaternion of a rotation with w >= 0, such that a file that is loaded and saved again
+ * has the same bytes: three components are rounded to 2^-48 (4e-15), which is more than the way to
+ * a matrix and back changes them, and the fourth follows from these. */
 Eigen::Quaterniond repeatableQuaternion(const Eigen::Matrix3d& R) {
     constexpr double kGrid = 0x1p48;
     // One component is 0.5 or more. Rotations by 90, 120 and 180 deg are not near this threshold.

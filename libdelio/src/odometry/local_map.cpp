@@ -218,8 +218,7 @@ PlaneEstimate LocalMap::refine(const Eigen::Matrix3Xd& thinned, const PointEstim
                             planeOptions_);
 }
 
-PlaneEstimate LocalMap::refine(const Eigen::Matrix3Xd& thinned,
-                               const PointEstimate& placed) const {
+PlaneEstimate LocalMap::refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed) const {
     return refine(thinned, placed,
                   std::pow(options_.point_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity(),
                   pointOptions_.last_kernel);

@@ -155,7 +155,7 @@ Eigen::Vector3d stepFromPlanes(const Correspondences& matches, const Eigen::Isom
     const Eigen::Vector3d gradient =
         equations.gradient + prior.translation * (t - prior.pose.translation());
     const Eigen::Matrix3d& H = equations.information;
-    Eigen::Matrix3d information;  // symmetric to the last bit
+    Eigen::Matrix3d information;               // symmetric to the last bit
     information << H(0, 0), H(0, 1), H(2, 0),  //
         H(0, 1), H(1, 1), H(1, 2),             //
         H(2, 0), H(1, 2), H(2, 2);
