@@ -7,18 +7,14 @@
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/stock_objects.h>
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
-#include <unordered_set>
+#include <set>
 
-#include "core/voxel_grid.h"
 #include "delio/core/error.h"
 #include "delio/map/colouring.h"
 #include "delio/picture/figures.h"
-#include "odometry/preprocess.h"
-#include "paper/line_cloud.h"
-#include "paper/normals.h"
-#include "paper/outlier_removal.h"
-#include "picture/line_scenes.h"
 
 namespace delio {
 using mrpt::img::TColor;
@@ -60,22 +56,23 @@ void setCamera(COpenGLViewport& viewport, float azimuth_deg, float elevation_deg
 }  // namespace
 
 struct LiveView::Window {
-    explicit Window(const PaperOdometryOptions& o) : options(o), window("DeLiO", 1280, 800) {}
+    explicit Window(const PaperOdometryOptions& o)
+        : options(o), stages(o), window("DeLiO", 1280, 800) {}
 
     void prepare();
     void showInsets(const Scan& scan, const Eigen::Isometry3d& increment, COpenGLScene& scene);
     void showMap(const Scan& scan, const Eigen::Isometry3d& pose, COpenGLScene& scene);
 
     PaperOdometryOptions options;
+    picture::PaperStages stages;
     mrpt::gui::CDisplayWindow3D window;
     mrpt::opengl::CPointCloudColoured::Ptr map = mrpt::opengl::CPointCloudColoured::Create();
     mrpt::opengl::CPointCloud::Ptr current = mrpt::opengl::CPointCloud::Create();
     mrpt::opengl::CSetOfLines::Ptr way = mrpt::opengl::CSetOfLines::Create();
     mrpt::opengl::CSetOfObjects::Ptr vehicle = mrpt::opengl::stock_objects::CornerXYZSimple(2, 3);
-    std::unordered_set<std::uint64_t> taken;
+    std::set<std::array<long, 3>> taken;  //!< voxels that have a point of the shown map
     Eigen::Isometry3d lastMapped = Eigen::Isometry3d::Identity(), last = lastMapped;
     bool first = true;
-    paper::LineCloud lines;  //!< of the scan before
 };
 
 void LiveView::Window::prepare() {
@@ -110,18 +107,9 @@ void LiveView::Window::prepare() {
 
 void LiveView::Window::showInsets(const Scan& scan, const Eigen::Isometry3d& increment,
                                   COpenGLScene& scene) {
-    const auto cloud = odometry::preprocess(scan, options.scan);
-    const auto normals = paper::estimateNormals(cloud.points, options.normals);
-    replaceContent(
-        *scene.getViewport("sphere"),
-        *picture::sphereScene({paper::removeOutliers(normals, options.outliers).directions}, {}));
-    auto drawn = paper::drawLines(cloud.points, odometry::neighbouringRings(cloud), options.lines);
-    if (!first) {
-        const auto unrotated = paper::rotated(drawn, increment.linear());
-        replaceContent(*scene.getViewport("lines"),
-                       *picture::matchScene(lines, unrotated, increment.translation()));
-    }
-    lines = std::move(drawn);
+    const auto drawn = stages.add(scan, increment);
+    replaceContent(*scene.getViewport("sphere"), *drawn.pattern);
+    if (drawn.matches) replaceContent(*scene.getViewport("lines"), *drawn.matches);
 }
 
 void LiveView::Window::showMap(const Scan& scan, const Eigen::Isometry3d& pose, COpenGLScene&) {
@@ -141,7 +129,8 @@ void LiveView::Window::showMap(const Scan& scan, const Eigen::Isometry3d& pose, 
         const Eigen::Vector3d p(double{x[i]}, double{y[i]}, double{z[i]});
         if (!(p.norm() >= least && p.norm() <= most)) continue;
         const Eigen::Vector3d q = sensor * p;
-        if (!taken.insert(voxelKey(q, kMapVoxel_m)).second) continue;
+        const auto cell = [&](int axis) { return std::lround(q[axis] / kMapVoxel_m); };
+        if (!taken.insert({cell(0), cell(1), cell(2)}).second) continue;
         const TColor c = map::colourAt(map::Colormap::Turbo,
                                        kHeights.fractionAt(q.z() - sensor.translation().z()));
         map->insertPoint({static_cast<float>(q.x()), static_cast<float>(q.y()),

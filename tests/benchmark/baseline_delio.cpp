@@ -1,10 +1,10 @@
 #include "baseline.h"
+#include "coupled_registration.h"
 #include "delio/core/geometry.h"
 #include "delio/slam/listeners.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"
 #include "odometry/rings.h"
-#include "paper/coupled_registration.h"
 
 namespace delio::benchmark {
 namespace {

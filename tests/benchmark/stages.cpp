@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "coupled_registration.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/evaluation/metrics.h"
@@ -16,7 +17,6 @@
 #include "delio/recordings/scan_reader.h"
 #include "delio/slam/options.h"
 #include "odometry/paper_odometry.h"
-#include "paper/coupled_registration.h"
 #include "paper/pattern_registration.h"
 
 namespace {

@@ -89,7 +89,6 @@ std::string lastLine(const std::string& file) {
 
 constexpr std::array<unsigned, 8> kColours = {0x0072b2, 0xe69f00, 0x009e73, 0xaa4499,
                                               0x56b4e9, 0x6b4c1e, 0x222222, 0x999933};
-constexpr unsigned kWhiteShare_percent = 68;
 
 constexpr std::size_t kFewest = 3;    // segments that make a point
 constexpr double kSpeedStep_mps = 2;  // between points, and half of what one covers
@@ -271,7 +270,8 @@ Chart overTimeChart(const std::vector<StepErrors>& all, const std::string& name,
         return rows;
     };
     for (const auto& own : all)
-        chart.curve("", line(paleColourOf(own.estimate), 0.5), rowsOf(own, own.errors, false));
+        chart.curve("", line("#ad" + colourOf(own.estimate).substr(1), 0.5),
+                    rowsOf(own, own.errors, false));
     for (const auto& own : all)
         chart.curve(own.comparison->row.name, line(colourOf(own.estimate), 1.6),
                     rowsOf(own, runningMedian(own.errors), false));
@@ -372,16 +372,6 @@ void drawCharts(const std::vector<Chart>& charts, const std::string& folder) {
 
 std::string colourOf(std::size_t estimate) {
     return mrpt::format("#%06x", kColours[estimate % kColours.size()]);
-}
-
-std::string paleColourOf(std::size_t estimate) {
-    const unsigned colour = kColours[estimate % kColours.size()];
-    unsigned pale = 0;
-    for (const unsigned shift : {16U, 8U, 0U}) {
-        const unsigned part = (colour >> shift) & 0xFF;
-        pale |= ((part * (100 - kWhiteShare_percent) + 255 * kWhiteShare_percent) / 100) << shift;
-    }
-    return mrpt::format("#%06x", pale);
 }
 
 std::vector<CurvePoint> errorOverLength(const std::vector<const Comparison*>& sequences) {

@@ -48,9 +48,6 @@ void drawCharts(const std::vector<Chart>& charts, const std::string& folder);
  *  ground truth. */
 std::string colourOf(std::size_t estimate);
 
-/** The same colour mixed with white, for curves in the background. */
-std::string paleColourOf(std::size_t estimate);
-
 constexpr const char* kTruthColour = "#e03131";
 
 /** Mean errors of the segments of about one length, or one speed. */

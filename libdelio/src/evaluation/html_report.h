@@ -14,6 +14,9 @@ struct Section {
     std::vector<std::string> maps;  //!< address of each member's map; empty: it has none
 };
 
+/** With so many decimals; "-" where it is not available. */
+std::string numberOrDash(double value, int decimals);
+
 /** Writes the page. `plotFolder` holds NAME.svg of every chart. `averages`: the rows "avg". */
 void writeHtml(const std::vector<Group>& byEstimate, const std::vector<Section>& sections,
                const std::vector<Chart>& overview, const std::vector<ReportRow>& averages,

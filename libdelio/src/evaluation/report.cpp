@@ -1,5 +1,7 @@
 #include "delio/evaluation/report.h"
 
+#include <mrpt/core/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -10,7 +12,6 @@
 #include <string>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
 #include "delio/files/output_file.h"
 #include "delio/files/output_folder.h"
 #include "evaluation/charts.h"
@@ -22,20 +23,16 @@ namespace fs = std::filesystem;
 namespace {
 using Cells = std::vector<std::string>;
 
-std::string number(double value, int decimals) {
-    return std::isfinite(value) ? fixed(value, decimals) : "-";
-}
-
 Cells cellsOf(const ReportRow& row, int decimals) {
     return {row.name,
             row.sequence,
-            number(row.length_m, decimals),
+            numberOrDash(row.length_m, decimals),
             std::to_string(row.kitti.segments),
-            number(row.kitti.t_percent, decimals),
-            number(row.kitti.r_deg_per_100m, decimals),
-            number(row.ape_m, decimals),
-            number(row.rpe_m, decimals),
-            number(row.rpe_deg, decimals)};
+            numberOrDash(row.kitti.t_percent, decimals),
+            numberOrDash(row.kitti.r_deg_per_100m, decimals),
+            numberOrDash(row.ape_m, decimals),
+            numberOrDash(row.rpe_m, decimals),
+            numberOrDash(row.rpe_deg, decimals)};
 }
 
 void writeLine(const Cells& cells, std::ostream& out) {
@@ -73,23 +70,13 @@ std::string prefixOf(const std::string& sequence, std::set<std::string>& taken) 
 
 /** A file's address in a page of `folder`: relative, so that both can be moved or sent together. */
 std::string addressOf(const fs::path& file, const fs::path& folder) {
-    constexpr const char* kDigits = "0123456789ABCDEF";
     std::string address;
     for (const char c : fs::proximate(file, folder).generic_string()) {
         const auto code = static_cast<unsigned char>(c);
-        if (code < 0x80 && (std::isalnum(code) || std::strchr("-._~/", c)))
-            address += c;
-        else
-            address += {'%', kDigits[code >> 4], kDigits[code & 15]};
+        const bool isPlain = code < 0x80 && (std::isalnum(code) || std::strchr("-._~/", c));
+        address += isPlain ? std::string(1, c) : mrpt::format("%%%02X", code);
     }
     return address;
-}
-
-std::vector<std::string> mapsOf(const Group& sequence, const fs::path& folder) {
-    std::vector<std::string> addresses;
-    for (const auto* member : sequence.members)
-        addresses.push_back(member->mapPage.empty() ? "" : addressOf(member->mapPage, folder));
-    return addresses;
 }
 
 void dropEmpty(std::vector<Chart>& charts) {
@@ -111,10 +98,11 @@ void writeLengthsTsv(const std::vector<ReportRow>& rows, std::ostream& out) {
               out);
     for (const auto& row : rows)
         for (const auto& errors : row.kitti.perLength)
-            writeLine({row.name, row.sequence, number(errors.length_m, kTsvDecimals),
-                       std::to_string(errors.segments), number(errors.t_percent, kTsvDecimals),
-                       number(errors.r_deg_per_100m, kTsvDecimals)},
-                      out);
+            writeLine(
+                {row.name, row.sequence, numberOrDash(errors.length_m, kTsvDecimals),
+                 std::to_string(errors.segments), numberOrDash(errors.t_percent, kTsvDecimals),
+                 numberOrDash(errors.r_deg_per_100m, kTsvDecimals)},
+                out);
 }
 
 void writeTable(const std::vector<ReportRow>& rows, std::ostream& out) {
@@ -156,8 +144,11 @@ void writeReportFolder(const std::vector<Comparison>& comparisons,
     std::vector<Section> sections;
     std::vector<Chart> overview = overviewCharts(byEstimate), all;
     for (const auto& sequence : bySequence) {
-        sections.push_back({sequence, sequenceCharts(sequence, prefixOf(sequence.name, taken)),
-                            mapsOf(sequence, folder)});
+        sections.push_back(
+            {sequence, sequenceCharts(sequence, prefixOf(sequence.name, taken)), {}});
+        for (const auto* member : sequence.members)
+            sections.back().maps.push_back(
+                member->mapPage.empty() ? "" : addressOf(member->mapPage, folder));
         auto& charts = sections.back().charts;
         dropEmpty(charts);
         all.insert(all.end(), charts.begin(), charts.end());

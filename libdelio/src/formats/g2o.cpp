@@ -3,7 +3,6 @@
 #include <mrpt/graphs/CNetworkOfPoses.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -134,30 +133,22 @@ FileContent readContent(const std::string& path) {
     return content;
 }
 
-Eigen::Quaterniond quaternionOf(const Eigen::Matrix3d& R) {
-    Eigen::Quaterniond q(R);
-    q.normalize();
-    if (q.w() < 0) q.coeffs() *= -1;
-    return q;
-}
-
-/** A quaternion that comes out again when its rotation matrix is turned into one: rounding moves
- *  it by a last digit or two, so it is sent round until it repeats, and of a cycle the smallest is
- *  taken. A file that is saved, loaded and saved again so has the same bytes. */
+/** The unit quaternion of a rotation with w >= 0, such that a file that is loaded and saved again
+ * has the same bytes: three components are rounded to 2^-48 (4e-15), which is more than the way to
+ * a matrix and back changes them, and the fourth follows from these. */
 Eigen::Quaterniond repeatableQuaternion(const Eigen::Matrix3d& R) {
-    const auto less = [](const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
-        return std::lexicographical_compare(a.coeffs().data(), a.coeffs().data() + 4,
-                                            b.coeffs().data(), b.coeffs().data() + 4);
-    };
-    std::vector<Eigen::Quaterniond> seen{quaternionOf(R)};
-    for (int i = 0; i < 1000; ++i) {
-        const auto next = quaternionOf(seen.back().normalized().toRotationMatrix());
-        const auto first = std::find_if(seen.begin(), seen.end(),
-                                        [&](const auto& q) { return q.coeffs() == next.coeffs(); });
-        if (first != seen.end()) return *std::min_element(first, seen.end(), less);
-        seen.push_back(next);
-    }
-    return seen.back();
+    constexpr double kGrid = 0x1p48;
+    // One component is 0.5 or more. Rotations by 90, 120 and 180 deg are not near this threshold.
+    constexpr double kLarge = 0.45;
+    Eigen::Vector4d q = Eigen::Quaterniond(R).normalized().coeffs();  // x y z w
+    Eigen::Index fourth = 3;
+    while (fourth > 0 && std::abs(q[fourth]) < kLarge) --fourth;
+    if (q[fourth] < 0) q = -q;
+    q[fourth] = 0;
+    q = (kGrid * q).array().round() / kGrid;
+    q[fourth] = std::sqrt(1 - q.squaredNorm());
+    if (q[3] < 0) q = -q;
+    return Eigen::Quaterniond(Eigen::Vector4d(q.array() + 0.0));  // no -0
 }
 
 void writeNumber(std::ostream& out, double number) { out << ' ' << digitsOf(number); }

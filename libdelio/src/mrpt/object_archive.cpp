@@ -15,6 +15,48 @@
 
 namespace delio::io {
 namespace {
+/** Classes of what a sensor saw, and of where it was, beside the observations; without "mrpt::". */
+constexpr std::string_view kOfScans =
+    " maps::CColouredPointsMap maps::CPointsMapXYZI maps::CSimplePointsMap "
+    "maps::CWeightedPointsMap maps::TMapGenericParams math::CMatrixB math::CMatrixD "
+    "math::CMatrixF img::CImage img::TCamera img::TStereoCamera obs::CActionCollection "
+    "obs::CActionRobotMovement2D obs::CActionRobotMovement3D obs::CSensoryFrame "
+    "poses::CPoint2D poses::CPoint3D poses::CPointPDFGaussian poses::CPose2D "
+    "poses::CPose3D poses::CPose3DPDFGaussian poses::CPose3DPDFGaussianInf "
+    "poses::CPose3DPDFParticles poses::CPose3DPDFSOG poses::CPose3DQuat "
+    "poses::CPose3DQuatPDFGaussian poses::CPose3DQuatPDFGaussianInf "
+    "poses::CPosePDFGaussian poses::CPosePDFGaussianInf poses::CPosePDFParticles "
+    "poses::CPosePDFSOG ";
+
+/** Shapes that hold what they show; not models that are read from other files. */
+constexpr std::string_view kOfScenes =
+    " img::CImage img::TCamera math::CMatrixB math::CMatrixD math::CMatrixF "
+    "obs::CObservation2DRangeScan opengl::CArrow opengl::CAxis opengl::CBox "
+    "opengl::CCamera opengl::CColorBar opengl::CCylinder opengl::CDisk "
+    "opengl::CEllipsoid2D opengl::CEllipsoid3D opengl::CFrustum opengl::CGridPlaneXY "
+    "opengl::CGridPlaneXZ opengl::COctoMapVoxels opengl::COpenGLScene "
+    "opengl::COpenGLViewport opengl::CPlanarLaserScan opengl::CPointCloud "
+    "opengl::CPointCloudColoured opengl::CSetOfLines opengl::CSetOfObjects "
+    "opengl::CSetOfTriangles opengl::CSimpleLine opengl::CSphere opengl::CText "
+    "opengl::CText3D opengl::CTexturedPlane opengl::CSetOfTexturedTriangles poses::CPose3D ";
+
+/** Whether such a file may hold objects of this class of MRPT. What is not needed is not made: some
+ *  of MRPT's classes open other files, or crash on damaged ones. */
+bool isKnown(std::string_view className, FileOf file) {
+    constexpr std::string_view kMrpt = "mrpt::", kObservation = "obs::CObservation";
+    if (className.substr(0, kMrpt.size()) != kMrpt) return false;
+    className.remove_prefix(kMrpt.size());
+    const auto isIn = [&](std::string_view names) {
+        return names.find(' ' + std::string(className) + ' ') != names.npos;
+    };
+    if (file == FileOf::Scene) return isIn(kOfScenes);
+    const bool isObservation = className.size() > kObservation.size() &&
+                               className.substr(0, kObservation.size()) == kObservation &&
+                               className != "obs::CObservation3DScene";
+    return isObservation || isIn(kOfScans) ||
+           (file == FileOf::Keyframes && className == "maps::CSimpleMap");
+}
+
 constexpr unsigned kAll = std::numeric_limits<unsigned>::max();
 
 bool endsWith(std::string_view text, std::string_view end) {
@@ -66,6 +108,64 @@ bool isLikeAFloat(std::uint32_t bits) {
     float value = 0;
     std::memcpy(&value, &bits, sizeof(value));
     return std::abs(value) < 1e9F;
+}
+
+template <typename Value>
+Value readAs(GzInput& in) {
+    Value value{};
+    if (in.Read(&value, sizeof(value)) != sizeof(value))
+        throw std::runtime_error("the file ends early");
+    return value;
+}
+
+void skip(GzInput& in, std::uint64_t bytes) {
+    std::array<char, 1U << 14> unused{};
+    while (bytes > 0) {
+        const auto some = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, unused.size()));
+        if (in.Read(unused.data(), some) != some) throw std::runtime_error("the file ends early");
+        bytes -= some;
+    }
+}
+
+void skipCounted(GzInput& in) { skip(in, readAs<std::uint32_t>(in)); }
+
+void skipGrey(GzInput& in, std::uint8_t version) {
+    skip(in, 3 * sizeof(std::int32_t));  // width, height, origin
+    const auto size = readAs<std::uint32_t>(in);
+    if (version >= 9) skip(in, sizeof(std::int32_t));  // depth
+    constexpr std::uint32_t kSmall = 16 * 1024;        // these version 4 does not compress
+    bool isZip = version == 3 || (version == 4 && size > kSmall);
+    if (version >= 5) isZip = readAs<std::uint8_t>(in) != 0;
+    if (isZip)
+        skipCounted(in);
+    else
+        skip(in, size);
+}
+
+void skipColour(GzInput& in, std::uint8_t version) {
+    if (version < 7) return skipCounted(in);
+    const std::int64_t width = readAs<std::int32_t>(in), height = readAs<std::int32_t>(in);
+    if (width >= 1 && height >= 1) return skipCounted(in);  // JPEG
+    // Not compressed: the sizes are negative. Width or height of 0: nothing follows.
+    if (width < 0 && height < 0) skip(in, static_cast<std::uint64_t>(width * height) * 3);
+}
+
+/** Reads past what follows the version of a mrpt::img::CImage. Throws std::runtime_error for a
+ *  version that MRPT does not read either, and where the file ends. */
+void skipImage(GzInput& in, std::uint8_t version) {
+    constexpr std::uint8_t kOnlyWhere = 100;
+    if (version == 0) {
+        skip(in, 3 * sizeof(std::uint32_t) + 1);  // width, height, channels, origin
+        return skipCounted(in);
+    }
+    if (version == 1) return skipCounted(in);
+    if (version > 9 && version != kOnlyWhere) throw std::runtime_error("an image of no known kind");
+    if (version >= 6 && readAs<std::uint8_t>(in) != 0) return skipCounted(in);  // a file's name
+    if (version == kOnlyWhere) return;
+    if (readAs<std::uint8_t>(in) == 0)
+        skipGrey(in, version);
+    else
+        skipColour(in, version);
 }
 }  // namespace
 

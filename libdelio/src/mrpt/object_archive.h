@@ -10,15 +10,11 @@
 namespace delio::io {
 enum class FileOf { Scans, Keyframes, Scene };
 
-/** Whether such a file may hold objects of this class of MRPT (its name with namespaces). What is
- *  not needed is not made: some of MRPT's classes open other files, or crash on damaged ones. */
-bool isKnown(std::string_view className, FileOf file);
-
 /** Reads MRPT objects from a file that may be damaged, or made to do harm. MRPT makes an object of
  *  any class that a file names, makes room for as many elements as it claims before it reads any
  *  (and writes to address 0 where a cloud or a matrix gets none), and hands pictures to libjpeg,
  *  which ends the process where one is damaged. Here
- *  - classes are those that such a file needs (known_classes.h): another one throws, see refused();
+ *  - only classes that such a file needs are read: another one throws, see refused();
  *  - what claims more elements than the rest of the file can hold (of a compressed file: than such
  *    an object has) throws std::length_error. Not seen are counts in the rarer shapes of a scene,
  *    and in four classes of rawlogs that have floats of their own counts that look like floats;
@@ -85,8 +81,4 @@ class ObjectArchive : public mrpt::serialization::CArchive {
     Counts counts_;
     std::uint64_t lastCount_ = 1;  ///< the number just before, if it was one: rows of columns
 };
-
-/** Reads past what follows the version of a mrpt::img::CImage in a file. Throws
- *  std::runtime_error for a version that MRPT does not read either, and where the file ends. */
-void skipImage(GzInput& in, std::uint8_t version);
 }  // namespace delio::io

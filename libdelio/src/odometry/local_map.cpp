@@ -230,14 +230,25 @@ bool LocalMap::believes(const PlaneEstimate& found, const PointEstimate& placed)
            angleOf(off.linear()) <= options_.max_deviation_deg * kDeg;
 }
 
+PlaneEstimate LocalMap::refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed,
+                               const Eigen::Matrix3d& covariance, double kernel) const {
+    return registerToPlanes(planes_, thinned,
+                            Prior::of(placed.pose, options_.point_sigma, covariance), kernel,
+                            planeOptions_);
+}
+
+PlaneEstimate LocalMap::refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed) const {
+    return refine(thinned, placed,
+                  std::pow(options_.point_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity(),
+                  pointOptions_.last_kernel);
+}
+
 PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate& placed,
                                        const Eigen::Isometry3d& predicted,
                                        bool motionIsKnown) const {
     const auto byPlanes = [&](const PointEstimate& from) {
-        const auto prior =
-            Prior::of(from.pose, options_.point_sigma, turnCovariance(view.coarse, from));
-        return registerToPlanes(planes_, view.thinned, prior, planeOptions_.last_kernel,
-                                planeOptions_);
+        return refine(view.thinned, from, turnCovariance(view.coarse, from),
+                      planeOptions_.last_kernel);
     };
     PointEstimate from = placed;
     auto found = byPlanes(from);
@@ -253,5 +264,11 @@ PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate
     found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
     settleUnobserved(view, predicted, motionIsKnown, found);
     return found;
+}
+
+LocalMap mapOfManyScans() {
+    PlaneMapOptions planes;
+    planes.ground_levels = 0;  // many scans leave no gaps
+    return {{}, planes, {}, {}, {}};
 }
 }  // namespace delio::odometry

@@ -57,6 +57,13 @@ class LocalMap {
     PointEstimate placeTurned(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
                               double enough) const;
 
+    /** By planes alone, from where the points were placed. `covariance`: of the rotation that they
+     *  found, rad^2, right tangent; `kernel` (metres): the first one. */
+    PlaneEstimate refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed,
+                         const Eigen::Matrix3d& covariance, double kernel) const;
+    /** The same of a cloud of many scans: points see all rotations of it alike. */
+    PlaneEstimate refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed) const;
+
     /** By planes, from where the points were placed; from where planes lead once more, if more
      *  points fit there. An axis that the planes see no better than the
      *  points stays where these put it, if they see it, else where the prediction does. Where
@@ -92,6 +99,9 @@ class LocalMap {
     std::deque<Eigen::Vector3d> origins_;                //!< of the drive's latest scans
     Eigen::Vector3d swept_m_ = Eigen::Vector3d::Zero();  //!< where what is far was dropped last
 };
+
+/** An empty map for clouds of many scans, with the default options. */
+LocalMap mapOfManyScans();
 
 /** A direction of the map's frame along which a scan may stand still. */
 struct StandstillTest {

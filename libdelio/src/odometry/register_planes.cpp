@@ -126,19 +126,6 @@ PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Is
     return result;
 }
 
-namespace {
-/** Of the information xx, yy, zz and xy, yz, zx: it is symmetric. */
-struct SymmetricSums {
-    Eigen::Vector3d squares = Eigen::Vector3d::Zero(), products = squares, gradient = squares;
-
-    void operator+=(const SymmetricSums& other) {
-        squares += other.squares;
-        products += other.products;
-        gradient += other.gradient;
-    }
-};
-}  // namespace
-
 PlaneTranslation translationFromPlanes(const Correspondences& matches,
                                        const Eigen::Isometry3d& pose, const Prior& prior) {
     const Eigen::Matrix3d R = pose.linear();
@@ -160,20 +147,18 @@ Eigen::Vector3d stepFromPlanes(const Correspondences& matches, const Eigen::Isom
                                const Prior& prior) {
     const Eigen::Matrix3d R = pose.linear();
     const Eigen::Vector3d t = pose.translation();
-    const auto sums =
-        sumOver<SymmetricSums>(matches, [&](const Correspondence& match, SymmetricSums& sum) {
-            const Eigen::Vector3d &n = match.normal, weighted = match.weight * n;
-            sum.squares += weighted.cwiseProduct(n);
-            sum.products += weighted.cwiseProduct(Eigen::Vector3d(n.y(), n.z(), n.x()));
-            sum.gradient += match.residual(R, t) * weighted;
+    using Equations = NormalEquations<3>;
+    const auto equations =
+        sumOver<Equations>(matches, [&](const Correspondence& match, Equations& sum) {
+            sum.add(match.normal, match.residual(R, t), match.weight);
         });
-    const Eigen::Vector3d &squares = sums.squares, &products = sums.products;
     const Eigen::Vector3d gradient =
-        sums.gradient + prior.translation * (t - prior.pose.translation());
-    Eigen::Matrix3d information;
-    information << squares[0], products[0], products[2],  //
-        products[0], squares[1], products[1],             //
-        products[2], products[1], squares[2];
+        equations.gradient + prior.translation * (t - prior.pose.translation());
+    const Eigen::Matrix3d& H = equations.information;
+    Eigen::Matrix3d information;               // symmetric to the last bit
+    information << H(0, 0), H(0, 1), H(2, 0),  //
+        H(0, 1), H(1, 1), H(1, 2),             //
+        H(2, 0), H(1, 2), H(2, 2);
     const Eigen::Matrix3d all = information + prior.translation * Eigen::Matrix3d::Identity();
     return -all.completeOrthogonalDecomposition().solve(gradient);
 }

@@ -10,7 +10,10 @@
 #include "delio/map/colouring.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
+#include "odometry/preprocess.h"
 #include "paper/line_registration.h"
+#include "paper/normals.h"
+#include "paper/outlier_removal.h"
 #include "picture/legend.h"
 #include "picture/line_scenes.h"
 
@@ -203,6 +206,26 @@ COpenGLScene::Ptr matchScene(const paper::LineCloud& from, const paper::LineClou
     addLegendText(*scene, 1, "lines of the second scan", kRed);
     addLegendText(*scene, 0, "midpoints of a pair", kGreen);
     return scene;
+}
+
+struct PaperStages::Lines : public paper::LineCloud {};
+
+PaperStages::PaperStages(const PaperOdometryOptions& options) : options_(options) {}
+PaperStages::~PaperStages() = default;
+
+PaperStages::Scenes PaperStages::add(const Scan& scan, const Eigen::Isometry3d& increment) {
+    const auto cloud = odometry::preprocess(scan, options_.scan);
+    const auto normals = paper::estimateNormals(cloud.points, options_.normals);
+    Scenes scenes;
+    scenes.pattern =
+        sphereScene({paper::removeOutliers(normals, options_.outliers).directions}, {});
+    auto lines = std::make_unique<Lines>(
+        Lines{paper::drawLines(cloud.points, odometry::neighbouringRings(cloud), options_.lines)});
+    if (before_)
+        scenes.matches = matchScene(*before_, paper::rotated(*lines, increment.linear()),
+                                    increment.translation());
+    before_ = std::move(lines);
+    return scenes;
 }
 
 void illustrate(const run::RunRecord& record, const map::BuiltMap& map,

@@ -11,8 +11,6 @@ namespace delio::places {
 namespace {
 constexpr double kDeg = M_PI / 180;
 constexpr double kCoarse_m = 1, kThinned_m = 0.5;  // between points that are registered
-/** What points say of where a submap lies, as an odometry takes it. */
-constexpr double kPointSigma_m = 0.05, kPointSigma_deg = 1;
 /** Of an axis that planes do not see: as good as nothing is known. */
 constexpr double kUnseen_m = 10;
 
@@ -22,12 +20,6 @@ constexpr double kMinInlierRatio = 0.5;
 /** Registered in both directions, submaps have to agree to this rotation, degrees: 0.2 m
  *  (ClosureOptions::agreed) at 25 m, which is where most of a submap's points lie. */
 constexpr double kAgreed_deg = 0.5;
-
-PlaneMapOptions denseMap() {
-    PlaneMapOptions options;
-    options.ground_levels = 0;  // many scans leave no gaps
-    return options;
-}
 
 std::uint64_t columnOf(const Eigen::Vector3d& point) {
     return voxelKey(floorOf(point.x()), floorOf(point.y()), 0);
@@ -48,14 +40,12 @@ std::vector<OptionField> ClosureOptions::fields() const {
 }
 
 RegistrableSubmap::RegistrableSubmap(const Eigen::Matrix3Xf& points)
-    : planes_(denseMap()),
-      points_(PointMapOptions{}),
+    : map_(odometry::mapOfManyScans()),
       coarse_(thinned(points, kCoarse_m)),
       thinned_(thinned(points, kThinned_m)),
       standing_(aboveGround(points)) {
     const Eigen::Matrix3Xd all = points.cast<double>();
-    planes_.add(all);
-    points_.add(all);
+    map_.add(points, Eigen::Isometry3d::Identity());
     for (Eigen::Index i = 0; i < standing_.cols(); ++i)
         filled_.insert(voxelKey(standing_.col(i), kThinned_m));
     for (Eigen::Index i = 0; i < all.cols(); ++i) {
@@ -67,16 +57,9 @@ RegistrableSubmap::RegistrableSubmap(const Eigen::Matrix3Xf& points)
 
 odometry::PlaneEstimate RegistrableSubmap::registered(const RegistrableSubmap& other,
                                                       const Eigen::Isometry3d& guess) const {
-    const PointRegistrationOptions points;
-    const PlaneRegistrationOptions planes;
-    const auto placed =
-        odometry::registerToPoints(points_, other.coarse_, guess, points.first_kernel, points);
-    if (!placed.valid) return odometry::predictedEstimate(guess, planes);
-    const auto prior =
-        odometry::Prior::of(placed.pose, kPointSigma_m,
-                            std::pow(kPointSigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity());
-    auto found =
-        odometry::registerToPlanes(planes_, other.thinned_, prior, points.last_kernel, planes);
+    const auto placed = map_.place(other.coarse_, guess, PointRegistrationOptions().first_kernel);
+    if (!placed.valid) return odometry::predictedEstimate(guess, {});
+    auto found = map_.refine(other.thinned_, placed);
     const auto& unseen = found.translation.unobservedAxes;
     found.translation.covariance += std::pow(kUnseen_m, 2) * unseen * unseen.transpose();
     return found;

@@ -9,10 +9,7 @@
 #include "delio/core/increment.h"
 #include "delio/places/loops.h"
 #include "delio/places/submap.h"
-#include "odometry/plane_map.h"
-#include "odometry/point_map.h"
-#include "odometry/register_planes.h"
-#include "odometry/register_points.h"
+#include "odometry/local_map.h"
 #include "places/descriptor.h"
 
 namespace delio::places {
@@ -35,8 +32,7 @@ struct Bending {
 };
 /** For loops: both submaps are of one drive, as its odometry left them. */
 constexpr Bending kBendingInDrive{0.05, 0.2 * M_PI / 180};
-/** For maps that are joined: one submap is of a map that was optimised. Smaller than in a drive;
- * the two values are kept apart so that results stay as they are. */
+/** For what is measured in a stored map, which was optimised: smaller than in a drive. */
 constexpr Bending kBendingInMap{0.02, 1e-3};
 
 /** A submap to which others are registered, first by points, then by planes. Its level frame. */
@@ -60,8 +56,7 @@ class RegistrableSubmap {
     double support(const RegistrableSubmap& other, const Eigen::Isometry3d& pose) const;
 
  private:
-    odometry::PlaneMap planes_;
-    odometry::PointMap points_;
+    odometry::LocalMap map_;
     Eigen::Matrix3Xd coarse_, thinned_, standing_;
     VoxelIndex filled_;         //!< by what stands
     VoxelIndex columns_;        //!< of 1 m in which anything was seen

@@ -9,9 +9,6 @@
 
 namespace delio {
 namespace {
-/** What a map is off beside the noise of a registration: it has been driven once. */
-constexpr double kMap_m = 0.02, kMap_rad = 1e-3;
-
 /** The drive's nodes in the map: from each that was measured on by the odometry, and back from the
  *  first. */
 std::vector<Eigen::Isometry3d> posesIn(const std::vector<Eigen::Isometry3d>& odometry,
@@ -37,8 +34,7 @@ graph::PoseGraph anchored(const graph::PoseGraph& graph, const std::vector<MapFi
     for (std::size_t i = 1; i < fixes.size(); ++i) {
         if (!isAnchor(fixes[i])) continue;
         graph::Edge edge{0, i, {poses[0].inverse() * poses[i], fixes[i].vehicle.covariance}};
-        edge.increment.covariance.diagonal().head<3>().array() += kMap_m * kMap_m;
-        edge.increment.covariance.diagonal().tail<3>().array() += kMap_rad * kMap_rad;
+        edge.increment.covariance.diagonal() += places::kBendingInMap.variances();
         result.addEdge(edge);
     }
     return result;

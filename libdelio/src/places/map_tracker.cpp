@@ -10,18 +10,10 @@
 #include "places/descriptor.h"
 
 namespace delio {
-namespace {
-PlaneMapOptions denseMap() {
-    PlaneMapOptions options;
-    options.ground_levels = 0;  // many scans leave no gaps
-    return options;
-}
-}  // namespace
-
 LoadedMap::LoadedMap(std::shared_ptr<const StoredMap> map)
     : stored_(std::move(map)),
       isNear_(stored_->submaps().size(), false),
-      map_({}, denseMap(), {}, {}, {}) {}
+      map_(odometry::mapOfManyScans()) {}
 
 void LoadedMap::comeNear(const Eigen::Vector3d& place) {
     constexpr double kNear_m = 60, kFar_m = 170;  // beyond the radius of what is kept

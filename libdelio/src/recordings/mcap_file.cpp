@@ -17,11 +17,8 @@ class McapFile : public MessageSource {
     /** Throws Error if it cannot be opened or is no MCAP file. */
     explicit McapFile(const std::string& path);
 
-    const std::vector<Topic>& topics() const override { return topics_; }
-    void only(const std::string& topic) override { only_ = topic; }
     std::optional<Message> next() override;
     double fraction() const override;
-    const std::string& path() const override { return path_; }
 
  private:
     struct Channel {
@@ -45,13 +42,10 @@ class McapFile : public MessageSource {
     void listByFirstChunks();
     void takeTopics();
 
-    std::string path_;
     FileInput file_;
     MemoryInput chunk_;
     std::map<std::uint16_t, std::string> schemas_;
     std::map<std::uint16_t, Channel> channels_;
-    std::vector<Topic> topics_;
-    std::optional<std::string> only_;
     std::vector<std::uint8_t> packed_, data_;
     bool dataEnded_ = false, chunkIsCut_ = false, counted_ = false;
 };
@@ -74,7 +68,7 @@ constexpr std::uint64_t kMessageStart = 22;
 std::uint32_t checksum(const std::vector<std::uint8_t>& bytes) {
     return static_cast<std::uint32_t>(crc32_z(0, bytes.data(), bytes.size()));
 }
-McapFile::McapFile(const std::string& path) : path_(path), file_(path) {
+McapFile::McapFile(const std::string& path) : MessageSource(path), file_(path) {
     std::string magic(std::min<std::uint64_t>(kMagic.size(), file_.size()), '\0');
     file_.read(magic.data(), magic.size());
     if (magic.size() < kMagic.size()) throw Error("is cut off in its first bytes");

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace delio::io {
@@ -40,16 +41,15 @@ struct Message {
  *  length. What it throws, Error, does not name the file. */
 class MessageSource {
  public:
-    MessageSource() = default;
     virtual ~MessageSource() = default;
     MessageSource(const MessageSource&) = delete;
     MessageSource& operator=(const MessageSource&) = delete;
 
     /** What there is in the bag; of one without an index, in its first 64 MiB. */
-    virtual const std::vector<Topic>& topics() const = 0;
+    const std::vector<Topic>& topics() const { return topics_; }
 
     /** Messages of other topics are passed over from here on; to be called before next(). */
-    virtual void only(const std::string& topic) = 0;
+    virtual void only(const std::string& topic) { only_ = topic; }
 
     /** The next message, or nothing at the end. Throws Error where the bag is cut off or damaged;
      *  not to be called after that. */
@@ -59,7 +59,14 @@ class MessageSource {
     virtual double fraction() const = 0;
 
     /** The file that is being read. */
-    virtual const std::string& path() const = 0;
+    const std::string& path() const { return path_; }
+
+ protected:
+    explicit MessageSource(std::string path) : path_(std::move(path)) {}
+
+    std::string path_;
+    std::vector<Topic> topics_;
+    std::optional<std::string> only_;  //!< nothing: all topics
 };
 
 /** Opens a bag, from its begin, as often as it is called. */

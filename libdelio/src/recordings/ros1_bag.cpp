@@ -15,13 +15,10 @@ class Ros1Bag : public MessageSource {
     /** Throws Error if it cannot be opened or is no such bag. */
     explicit Ros1Bag(const std::string& path);
 
-    const std::vector<Topic>& topics() const override { return topics_; }
-    void only(const std::string& topic) override { only_ = topic; }
     /** Throws Error where the bag is cut off; a bag that was never indexed ends where its last
      *  record does. */
     std::optional<Message> next() override;
     double fraction() const override;
-    const std::string& path() const override { return path_; }
 
  private:
     using Fields = std::map<std::string, std::string>;
@@ -46,13 +43,10 @@ class Ros1Bag : public MessageSource {
     bool listByIndex();
     void listByFirstChunks();
 
-    std::string path_;
     FileInput file_;
     MemoryInput chunk_;           //!< the chunk that is read, if it is compressed
     std::uint64_t chunkEnd_ = 0;  //!< in the file, if it is not
     std::map<std::uint32_t, Connection> connections_;
-    std::vector<Topic> topics_;
-    std::optional<std::string> only_;
     std::vector<std::uint8_t> packed_, data_;
 
     bool headerSeen_ = false;
@@ -107,7 +101,7 @@ std::string textOf(const std::map<std::string, std::string>& fields, const std::
     if (field == fields.end()) throw Error("is damaged: a record without '" + name + "'");
     return field->second;
 }
-Ros1Bag::Ros1Bag(const std::string& path) : path_(path), file_(path) {
+Ros1Bag::Ros1Bag(const std::string& path) : MessageSource(path), file_(path) {
     std::string magic(std::min<std::uint64_t>(kMagic.size(), file_.size()), '\0');
     file_.read(magic.data(), magic.size());
     if (magic.size() < kMagic.size()) throw Error("is cut off in its first line");

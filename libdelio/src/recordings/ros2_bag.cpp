@@ -21,11 +21,8 @@ class Ros2Database : public MessageSource {
     /** Throws Error if it cannot be opened, is no such database, or is compressed. */
     explicit Ros2Database(const std::string& path);
 
-    const std::vector<Topic>& topics() const override { return topics_; }
-    void only(const std::string& topic) override { only_ = topic; }
     std::optional<Message> next() override;
     double fraction() const override;
-    const std::string& path() const override { return path_; }
 
  private:
     /** Rows of a query, one at a time. */
@@ -58,10 +55,7 @@ class Ros2Database : public MessageSource {
     void list();
     void start();
 
-    std::string path_;
     Handle handle_;
-    std::vector<Topic> topics_;
-    std::optional<std::string> only_;
     /** Order first, contents after: no sorting of contents where there is no index. */
     Query order_, contents_;
     std::size_t rows_ = 0, read_ = 0;
@@ -141,7 +135,7 @@ Bytes Ros2Database::Query::blob(int column) {
     return {data, data ? static_cast<std::size_t>(bytes) : 0};
 }
 
-Ros2Database::Ros2Database(const std::string& path) : path_(path) {
+Ros2Database::Ros2Database(const std::string& path) : MessageSource(path) {
     checkHeader(path);
     const int code =
         sqlite3_open_v2(path.c_str(), &handle_.database, SQLITE_OPEN_READONLY, nullptr);
@@ -215,26 +209,22 @@ class Ros2Folder : public MessageSource {
      *  says that they are compressed, and as the first file's source. */
     explicit Ros2Folder(const std::string& folder);
 
-    const std::vector<Topic>& topics() const override { return topics_; }
     void only(const std::string& topic) override;
     std::optional<Message> next() override;
     double fraction() const override;
-    const std::string& path() const override { return path_; }
 
  private:
     void readMetadata(const std::string& yaml);
     void open();
 
-    std::string folder_, path_;
+    std::string folder_;
     std::vector<std::string> files_;
-    std::vector<Topic> topics_;
-    std::optional<std::string> only_;
     std::unique_ptr<MessageSource> source_;
     std::size_t done_ = 0;
 };
 
-Ros2Folder::Ros2Folder(const std::string& folder) : folder_(folder) {
-    path_ = (fs::path(folder) / "metadata.yaml").string();
+Ros2Folder::Ros2Folder(const std::string& folder)
+    : MessageSource((fs::path(folder) / "metadata.yaml").string()), folder_(folder) {
     if (!fs::is_regular_file(path_)) throw Error("has no metadata.yaml");
     try {
         readMetadata(path_);

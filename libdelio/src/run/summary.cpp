@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
-#include <string_view>
+#include <type_traits>
 
 #include "core/percentile.h"
 #include "delio/core/error.h"
@@ -74,26 +74,6 @@ std::string wordsOf(const std::vector<std::string>& words) {
     return text;
 }
 
-void write(YAML::Emitter& yaml, const char* key, const std::string& text) {
-    yaml << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << text << YAML::Auto;
-}
-/** Counts are written as such: 100000 as a double would be 1e+05, which is no whole number. */
-template <typename Number>
-void write(YAML::Emitter& yaml, const std::string& key, Number value) {
-    yaml << YAML::Key << key << YAML::Value << digitsOf(value);
-}
-void write(YAML::Emitter& yaml, const char* key, const Summary::Figures& figures) {
-    yaml << YAML::Key << key << YAML::Value << YAML::BeginMap;
-    for (const auto& [name, value] : figures) write(yaml, name, value);
-    yaml << YAML::EndMap;
-}
-
-void write(YAML::Emitter& yaml, const char* key, const std::array<std::size_t, 3>& counts) {
-    yaml << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginMap;
-    for (std::size_t k = 0; k < 3; ++k) write(yaml, std::string(1, "xyz"[k]), counts[k]);
-    yaml << YAML::EndMap;
-}
-
 /** As yaml-cpp's as(), which asks the locale. */
 template <typename Number>
 Number numberOf(const YAML::Node& node) {
@@ -101,22 +81,118 @@ Number numberOf(const YAML::Node& node) {
     if (!number) throw YAML::TypedBadConversion<Number>(node.Mark());
     return *number;
 }
-template <typename Number>
-Number numberOf(const YAML::Node& node, Number otherwise) {
-    return node ? numberOf<Number>(node) : otherwise;
-}
 
-std::array<std::size_t, 3> countsIn(const YAML::Node& node) {
-    if (!node) return {};
-    return {numberOf<std::size_t>(node["x"]), numberOf<std::size_t>(node["y"]),
-            numberOf<std::size_t>(node["z"])};
-}
+/** Writes fields under their keys. */
+struct Writer {
+    YAML::Emitter& yaml;
 
-Summary::Figures figuresIn(const YAML::Node& node) {
-    Summary::Figures figures;
-    for (const auto& entry : node)
-        figures.emplace_back(entry.first.as<std::string>(), numberOf<double>(entry.second));
-    return figures;
+    /** A group of fields that not every summary has; `key`: of one that it always has. */
+    bool hasGroup(const char*, bool isThere) const { return isThere; }
+
+    void operator()(const char* key, const std::string& text) const {
+        yaml << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << text << YAML::Auto;
+    }
+    void operator()(const char* key, bool flag) const {
+        yaml << YAML::Key << key << YAML::Value << flag;
+    }
+    /** Counts are written as such: 100000 as a double would be 1e+05, which is no whole number. */
+    template <typename Number>
+    void operator()(const char* key, Number value) const {
+        yaml << YAML::Key << key << YAML::Value << digitsOf(value);
+    }
+    void operator()(const char* key, const Summary::Figures& figures) const {
+        yaml << YAML::Key << key << YAML::Value << YAML::BeginMap;
+        for (const auto& [name, value] : figures) (*this)(name.c_str(), value);
+        yaml << YAML::EndMap;
+    }
+    void operator()(const char* key, const std::array<std::size_t, 3>& counts) const {
+        yaml << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginMap;
+        for (std::size_t k = 0; k < 3; ++k) (*this)(std::string(1, "xyz"[k]).c_str(), counts[k]);
+        yaml << YAML::EndMap;
+    }
+    void operator()(const char* key, const std::vector<std::string>& lines) const {
+        yaml << YAML::Key << key << YAML::Value;
+        if (lines.empty()) yaml << YAML::Flow;
+        yaml << YAML::BeginSeq;
+        for (const auto& line : lines) yaml << YAML::DoubleQuoted << line;
+        yaml << YAML::EndSeq;
+    }
+};
+
+/** Reads them; a key that is missing is an exception of yaml-cpp. */
+struct Reader {
+    const YAML::Node& node;
+
+    bool hasGroup(const char* key, bool) const { return static_cast<bool>(node[key]); }
+
+    template <typename Value>
+    void operator()(const char* key, Value& value) const {
+        const YAML::Node found = node[key];
+        if constexpr (std::is_same_v<Value, Summary::Figures>) {
+            for (const auto& entry : found)
+                value.emplace_back(entry.first.as<std::string>(), numberOf<double>(entry.second));
+        } else if constexpr (std::is_same_v<Value, std::array<std::size_t, 3>>) {
+            value = {numberOf<std::size_t>(found["x"]), numberOf<std::size_t>(found["y"]),
+                     numberOf<std::size_t>(found["z"])};
+        } else if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
+            value = numberOf<Value>(found);
+        } else {
+            value = found.as<Value>();
+        }
+    }
+};
+
+/** Each field under its key, in the order of the file. `Record`: a Summary, const where it is
+ *  written. */
+template <typename Record, typename Field>
+void forEachField(Record& s, const Field& field) {
+    field("version", s.version);
+    field("command", s.command);
+    field("profile", s.profile);
+    field("complete", s.complete);
+    if (field.hasGroup("fault", !s.fault.empty())) field("fault", s.fault);
+    field("scans", s.scans);
+    field("predicted", s.predicted);
+    field("longest_predicted", s.longest_predicted);
+    field("lost", s.lost);
+    field("longest_lost", s.longest_lost);
+    field("tracked", s.tracked);
+    field("weakly_observed", s.weakly_observed);
+    field("longest_weakly_observed", s.longest_weakly_observed);
+    field("weakly_observed_along", s.weakly_observed_along);
+    field("weakly_observed_about", s.weakly_observed_about);
+    field("searched", s.searched);
+    field("longest_searched", s.longest_searched);
+    field("interrupted", s.interrupted);
+    field("standing", s.standing);
+    if (field.hasGroup("loops_closed", s.searched_loops)) {
+        field("loop_candidates", s.loop_candidates);
+        field("loops_closed", s.loops_closed);
+        field("loop_search_ms", s.loop_search_ms);
+    }
+    if (field.hasGroup("stored_map", !s.stored_map.empty())) {
+        field("stored_map", s.stored_map);
+        field("in_map", s.in_map);
+        field("outside_map", s.outside_map);
+        field("not_found_in_map", s.not_found_in_map);
+    }
+    field("path_m", s.path_m);
+    field("vertical_correction_deg", s.vertical_correction_deg);
+    field("deskewed", s.deskewed);
+    field("ms_per_scan", s.ms_per_scan);
+    field("ms_per_scan_of_stages", s.ms_per_scan_of_stages);
+    field("latency_ms", s.latency_ms);
+    field("map_ms_per_scan", s.map_ms_per_scan);
+    field("optimisation_ms", s.optimisation_ms);
+    field("optimisation_iterations", s.optimisation_iterations);
+    field("optimisation_cost_before", s.optimisation_cost_before);
+    field("optimisation_cost_after", s.optimisation_cost_after);
+    field("map_and_pictures_ms", s.map_and_pictures_ms);
+    field("peak_rss_mb", s.peak_rss_mb);
+    field("warnings", s.warnings);
+    if (field.hasGroup("metrics", !s.metrics.empty())) field("metrics", s.metrics);
+    if (field.hasGroup("metrics_before_optimisation", !s.metrics_before_optimisation.empty()))
+        field("metrics_before_optimisation", s.metrics_before_optimisation);
 }
 }  // namespace
 
@@ -149,8 +225,9 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.lost = doubts.lost.scans;
     summary.longest_lost = doubts.lost.longest;
     summary.tracked = static_cast<std::size_t>(
-        std::count_if(record.rows.begin(), record.rows.end(),
-                      [](const RunRow& row) { return std::string("tracked") == stateOf(row); }));
+        std::count_if(record.rows.begin(), record.rows.end(), [](const RunRow& row) {
+            return std::string_view("tracked") == stateOf(row);
+        }));
     summary.weakly_observed = doubts.weak.scans;
     summary.longest_weakly_observed = doubts.weak.longest;
     summary.interrupted = doubts.interrupted.scans;
@@ -191,60 +268,10 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     return summary;
 }
 
-void writeSummary(const Summary& s, const std::string& path) {
+void writeSummary(const Summary& summary, const std::string& path) {
     YAML::Emitter yaml;
     yaml << YAML::BeginMap;
-    write(yaml, "version", s.version);
-    write(yaml, "command", s.command);
-    write(yaml, "profile", s.profile);
-    yaml << YAML::Key << "complete" << YAML::Value << s.complete;
-    if (!s.fault.empty()) write(yaml, "fault", s.fault);
-    write(yaml, "scans", s.scans);
-    write(yaml, "predicted", s.predicted);
-    write(yaml, "longest_predicted", s.longest_predicted);
-    write(yaml, "lost", s.lost);
-    write(yaml, "longest_lost", s.longest_lost);
-    write(yaml, "tracked", s.tracked);
-    write(yaml, "weakly_observed", s.weakly_observed);
-    write(yaml, "longest_weakly_observed", s.longest_weakly_observed);
-    write(yaml, "weakly_observed_along", s.weakly_observed_along);
-    write(yaml, "weakly_observed_about", s.weakly_observed_about);
-    write(yaml, "searched", s.searched);
-    write(yaml, "longest_searched", s.longest_searched);
-    write(yaml, "interrupted", s.interrupted);
-    write(yaml, "standing", s.standing);
-    if (s.searched_loops) {
-        write(yaml, "loop_candidates", s.loop_candidates);
-        write(yaml, "loops_closed", s.loops_closed);
-        write(yaml, "loop_search_ms", s.loop_search_ms);
-    }
-    if (!s.stored_map.empty()) {
-        write(yaml, "stored_map", s.stored_map);
-        write(yaml, "in_map", s.in_map);
-        write(yaml, "outside_map", s.outside_map);
-        write(yaml, "not_found_in_map", s.not_found_in_map);
-    }
-    write(yaml, "path_m", s.path_m);
-    write(yaml, "vertical_correction_deg", s.vertical_correction_deg);
-    write(yaml, "deskewed", s.deskewed);
-    write(yaml, "ms_per_scan", s.ms_per_scan);
-    write(yaml, "ms_per_scan_of_stages", s.ms_per_scan_of_stages);
-    write(yaml, "latency_ms", s.latency_ms);
-    write(yaml, "map_ms_per_scan", s.map_ms_per_scan);
-    write(yaml, "optimisation_ms", s.optimisation_ms);
-    write(yaml, "optimisation_iterations", s.optimisation_iterations);
-    write(yaml, "optimisation_cost_before", s.optimisation_cost_before);
-    write(yaml, "optimisation_cost_after", s.optimisation_cost_after);
-    write(yaml, "map_and_pictures_ms", s.map_and_pictures_ms);
-    write(yaml, "peak_rss_mb", s.peak_rss_mb);
-    yaml << YAML::Key << "warnings" << YAML::Value;
-    if (s.warnings.empty()) yaml << YAML::Flow;
-    yaml << YAML::BeginSeq;
-    for (const auto& warning : s.warnings) yaml << YAML::DoubleQuoted << warning;
-    yaml << YAML::EndSeq;
-    if (!s.metrics.empty()) write(yaml, "metrics", s.metrics);
-    if (!s.metrics_before_optimisation.empty())
-        write(yaml, "metrics_before_optimisation", s.metrics_before_optimisation);
+    forEachField(summary, Writer{yaml});
     yaml << YAML::EndMap;
     io::replaceTextFile(path, [&](std::ostream& out) { out << yaml.c_str() << "\n"; });
 }
@@ -252,51 +279,10 @@ void writeSummary(const Summary& s, const std::string& path) {
 Summary readSummary(const std::string& path) {
     try {
         const YAML::Node node = YAML::LoadFile(path);
-        Summary s;
-        s.version = node["version"].as<std::string>();
-        s.command = node["command"].as<std::string>();
-        s.profile = node["profile"].as<std::string>();
-        s.complete = node["complete"].as<bool>();
-        s.fault = node["fault"].as<std::string>("");
-        s.scans = numberOf<std::size_t>(node["scans"]);
-        s.predicted = numberOf<std::size_t>(node["predicted"]);
-        s.longest_predicted = numberOf<std::size_t>(node["longest_predicted"], 0);
-        s.lost = numberOf<std::size_t>(node["lost"], 0);
-        s.longest_lost = numberOf<std::size_t>(node["longest_lost"], 0);
-        s.tracked = numberOf<std::size_t>(node["tracked"], 0);
-        s.weakly_observed = numberOf<std::size_t>(node["weakly_observed"], 0);
-        s.longest_weakly_observed = numberOf<std::size_t>(node["longest_weakly_observed"], 0);
-        s.weakly_observed_along = countsIn(node["weakly_observed_along"]);
-        s.weakly_observed_about = countsIn(node["weakly_observed_about"]);
-        s.searched = numberOf<std::size_t>(node["searched"], 0);
-        s.longest_searched = numberOf<std::size_t>(node["longest_searched"], 0);
-        s.interrupted = numberOf<std::size_t>(node["interrupted"], 0);
-        s.standing = numberOf<std::size_t>(node["standing"], 0);
-        s.searched_loops = static_cast<bool>(node["loops_closed"]);
-        s.loop_candidates = numberOf<std::size_t>(node["loop_candidates"], 0);
-        s.loops_closed = numberOf<std::size_t>(node["loops_closed"], 0);
-        s.loop_search_ms = numberOf<double>(node["loop_search_ms"], 0);
-        s.stored_map = node["stored_map"].as<std::string>("");
-        s.in_map = numberOf<std::size_t>(node["in_map"], 0);
-        s.outside_map = numberOf<std::size_t>(node["outside_map"], 0);
-        s.not_found_in_map = numberOf<std::size_t>(node["not_found_in_map"], 0);
-        s.deskewed = numberOf<std::size_t>(node["deskewed"]);
-        s.path_m = numberOf<double>(node["path_m"]);
-        s.vertical_correction_deg = numberOf<double>(node["vertical_correction_deg"]);
-        s.ms_per_scan = numberOf<double>(node["ms_per_scan"]);
-        s.ms_per_scan_of_stages = figuresIn(node["ms_per_scan_of_stages"]);
-        s.latency_ms = figuresIn(node["latency_ms"]);
-        s.map_ms_per_scan = numberOf<double>(node["map_ms_per_scan"]);
-        s.optimisation_ms = numberOf<double>(node["optimisation_ms"]);
-        s.optimisation_iterations = numberOf<unsigned>(node["optimisation_iterations"]);
-        s.optimisation_cost_before = numberOf<double>(node["optimisation_cost_before"]);
-        s.optimisation_cost_after = numberOf<double>(node["optimisation_cost_after"]);
-        s.map_and_pictures_ms = numberOf<double>(node["map_and_pictures_ms"]);
-        s.peak_rss_mb = numberOf<double>(node["peak_rss_mb"]);
-        s.warnings = node["warnings"].as<std::vector<std::string>>();
-        s.metrics = figuresIn(node["metrics"]);
-        s.metrics_before_optimisation = figuresIn(node["metrics_before_optimisation"]);
-        return s;
+        Summary summary;
+        forEachField(summary, Reader{node});
+        summary.searched_loops = static_cast<bool>(node["loops_closed"]);
+        return summary;
     } catch (const std::exception& e) {
         throw Error("cannot understand '" + path + "': " + plainMessage(e));
     }

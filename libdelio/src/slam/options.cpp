@@ -38,6 +38,19 @@ CConfigFileMemory configOf(const std::string& text) {
         throw Error("options cannot be understood: " + plainMessage(e));
     }
 }
+
+/** The stages of everything that listens to the odometry. */
+template <class List, class AnyOptions>
+List listenerStages(AnyOptions& o) {
+    return {{"graph", &o.graph},
+            {"map", &o.map},
+            {"removal", &o.map.removal},
+            {"submaps", &o.submaps},
+            {"loops", &o.loops},
+            {"closures", &o.closures},
+            {"place_search", &o.placeSearch},
+            {"localisation", &o.localisation}};
+}
 }  // namespace
 
 Options Options::ofProfile(const std::string& name) {
@@ -75,30 +88,16 @@ void Options::adaptTo(const io::DriveMeta& meta) {
 }
 
 StageList Options::allStages() {
-    StageList all{{"odometry", &method},
-                  {"graph", &graph},
-                  {"map", &map},
-                  {"removal", &map.removal},
-                  {"submaps", &submaps},
-                  {"loops", &loops},
-                  {"closures", &closures},
-                  {"place_search", &placeSearch},
-                  {"localisation", &localisation}};
-    for (const auto& stage : stagesOf(planes)) all.push_back(stage);
-    for (const auto& stage : stagesOf(paper)) all.push_back(stage);
+    StageList all{{"odometry", &method}};
+    for (const auto& stages : {listenerStages<StageList>(*this), stagesOf(planes), stagesOf(paper)})
+        all.insert(all.end(), stages.begin(), stages.end());
     return all;
 }
 
 ConstStageList Options::stages() const {
     auto used = stagesOf(*this);
-    used.emplace_back("graph", &graph);
-    used.emplace_back("map", &map);
-    used.emplace_back("removal", &map.removal);
-    used.emplace_back("submaps", &submaps);
-    used.emplace_back("loops", &loops);
-    used.emplace_back("closures", &closures);
-    used.emplace_back("place_search", &placeSearch);
-    used.emplace_back("localisation", &localisation);
+    const auto others = listenerStages<ConstStageList>(*this);
+    used.insert(used.end(), others.begin(), others.end());
     return used;
 }
 

@@ -65,6 +65,23 @@ TEST(G2o, SavedLoadedAndSavedAgainHasTheSameBytes) {
         EXPECT_EQ(loaded.information(i), graph.information(i));
 }
 
+TEST(G2o, RotationsByRoundAndByTinyAnglesHaveTheSameBytesWhenSavedAgain) {
+    graph::PoseGraph graph;
+    for (const double degrees : {0.0, 1e-9, 1e-4, 0.18, 90.0, 120.0, 179.9999999, 180.0})
+        for (const Eigen::Vector3d& axis :
+             {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, -1, 0), Eigen::Vector3d(1, -1, 1),
+              Eigen::Vector3d(5.236e-4, -0.94868, 0.31623), Eigen::Vector3d(-0.2, 0.1, -0.4)})
+            graph.addNode(isometry(rotationExp(degrees * M_PI / 180 * axis.normalized()),
+                                   Eigen::Vector3d::Zero()));
+    const test::TemporaryFolder folder;
+    io::saveG2o(graph, folder / "a.g2o");
+    const auto loaded = io::loadG2o(folder / "a.g2o");
+    io::saveG2o(loaded, folder / "b.g2o");
+    EXPECT_EQ(test::readText(folder / "a.g2o"), test::readText(folder / "b.g2o"));
+    for (std::size_t i = 0; i < graph.poses().size(); ++i)
+        EXPECT_LT((loaded.poses()[i].linear() - graph.poses()[i].linear()).norm(), 1e-14);
+}
+
 TEST(G2o, RotationInformationIsThatOfHalfAngles) {
     const test::TemporaryFolder folder;
     test::writeText(folder / "a.g2o", kVertices +

@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "paper/coupled_registration.h"
 #include "ring_scan.h"
 
 namespace {
@@ -182,26 +181,6 @@ TEST(LineRegistration, TheSearchForgivesAPredictionThatIsTwoMetresOff) {
         EXPECT_TRUE(found.valid);
         EXPECT_LT((found.translation - truth).norm(), 0.03) << off.transpose();
     }
-}
-
-TEST(CoupledRegistration, FindsAKnownPose) {
-    Eigen::Isometry3d truth = Eigen::Isometry3d::Identity();
-    truth.translation() = Eigen::Vector3d(0.3, 0.1, 0);
-    const auto from = linesAt(test::room(), {0, 0, 0});
-    const auto unturned = linesAt(test::room(), truth.translation());
-    truth.linear() = test::rotationAbout({0, 0, 1}, 1);
-    const auto to = paper::rotated(unturned, truth.linear().transpose());
-    LineRegistrationOptions options;
-    options.max_iterations = 200;
-    const auto found = paper::registerCoupled(from, to, truth, options);
-    EXPECT_TRUE(found.valid);
-    EXPECT_LT((found.pose.translation() - truth.translation()).norm(), 0.05);
-    EXPECT_LT(test::degreesBetween(found.pose.linear(), truth.linear()), 0.3);
-    EXPECT_TRUE((found.pose.linear() * found.pose.linear().transpose()).isIdentity(1e-9));
-    options.min_matches = 1000000;
-    const auto none = paper::registerCoupled(from, to, truth, options);
-    EXPECT_FALSE(none.valid);
-    EXPECT_TRUE(none.pose.isApprox(truth));
 }
 
 TEST(LineRegistration, AlongACorridorThePredictionStays) {

@@ -117,14 +117,4 @@ TEST(BandViewports, AWholePictureIsAsMrptDrawsIt) {
             << position[0] << " " << position[1];
     }
 }
-
-TEST(BandViewports, AreWhereTheyWereInTheEnd) {
-    for (const auto& position : kPositions) {
-        const auto scene = sceneWith(position);
-        { picture::BandViewports(*scene, kHeight, 60).show(30); }
-        Position after{};
-        scene->getViewport("other")->getViewportPosition(after[0], after[1], after[2], after[3]);
-        EXPECT_EQ(after, position);
-    }
-}
 }  // namespace

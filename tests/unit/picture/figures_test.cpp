@@ -12,6 +12,7 @@
 #include "delio/picture/scene.h"
 #include "picture/view.h"
 #include "picture_support.h"
+#include "poses.h"
 #include "ring_scan.h"
 #include "test_data.h"
 
@@ -67,6 +68,25 @@ TEST(FiguresScene, LinesAndTheirPairsAreDrawn) {
     }
     // Without lines there is nothing to see, and nothing breaks.
     EXPECT_NO_THROW(picture::lineScene({Eigen::Matrix3Xf(3, 0), Eigen::Matrix3Xf(3, 0), {}, 0}));
+}
+
+TEST(PaperStages, DrawEachScanAndPairItsLinesWithThoseOfTheScanBefore) {
+    picture::PaperStages stages{PaperOdometryOptions()};
+    test::Noise noise;
+    const auto scanAt = [&](const Eigen::Isometry3d& pose) {
+        return test::scanOf(
+            test::ringScan(test::yard(), pose, {48, 900, -24, 8, 0.01}, noise).points);
+    };
+    const auto moved = test::poseAt(0.5, 0, 0);
+    const auto first = stages.add(scanAt(test::poseAt(0, 0, 0)), test::poseAt(0, 0, 0)),
+               second = stages.add(scanAt(moved), moved);
+    for (const auto& scenes : {first, second}) {
+        const auto view = picture::sphereView(1);
+        EXPECT_GT(colouredByThird(picture::picture(*scenes.pattern, view))[1], 100);
+    }
+    EXPECT_FALSE(first.matches);
+    ASSERT_TRUE(second.matches);
+    EXPECT_EQ(second.matches->getViewport()->size(), 3U);  // lines of either scan, and the pairs
 }
 
 bool isRed(const test::Rgb& p) { return p[0] > 120 && p[1] < p[0] / 3 && p[2] < p[0] / 3; }

@@ -1,10 +1,13 @@
 #pragma once
 #include <mrpt/opengl/COpenGLScene.h>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "delio/core/odometry_options.h"
+#include "delio/odometry/scan.h"
 #include "delio/picture/render.h"
 #include "delio/run/run_folder.h"
 
@@ -17,6 +20,32 @@ mrpt::opengl::COpenGLScene::Ptr sphereScene(const std::vector<Eigen::Matrix3Xf>&
 
 /** The spheres of sphereScene() as a reader of the paper looks at them: from behind and above. */
 SnapshotOptions sphereView(std::size_t spheres);
+
+/** What the paper's stages make of scan after scan, as scenes for a live view. */
+class PaperStages {
+ public:
+    /** What there is to see of a scan. */
+    struct Scenes {
+        /** The pattern of its normals without outliers, as sphereScene() draws it. */
+        mrpt::opengl::COpenGLScene::Ptr pattern;
+        /** Its lines paired with those of the scan before; null at the first scan. */
+        mrpt::opengl::COpenGLScene::Ptr matches;
+    };
+
+    /** The stages' options, which are copied. */
+    explicit PaperStages(const PaperOdometryOptions& options);
+    ~PaperStages();
+    PaperStages(const PaperStages&) = delete;
+    PaperStages& operator=(const PaperStages&) = delete;
+
+    /** The next scan. `increment`: maps the scan's frame to that of the scan before, metres. */
+    Scenes add(const Scan& scan, const Eigen::Isometry3d& increment);
+
+ private:
+    struct Lines;
+    PaperOdometryOptions options_;
+    std::unique_ptr<Lines> before_;  //!< null at the first scan
+};
 
 /** The pictures of a run: map.3Dscene and map.png where there are points, map_removal.png
  *  where something dynamic was taken out of them, before (in red what was) beside after in the same

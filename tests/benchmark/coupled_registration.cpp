@@ -1,4 +1,4 @@
-#include "paper/coupled_registration.h"
+#include "coupled_registration.h"
 
 #include <Eigen/Dense>
 #include <vector>
