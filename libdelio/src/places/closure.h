@@ -17,7 +17,7 @@
 
 namespace delio::places {
 /** Fraction of what stands in one submap that may be where the other saw bare ground. With 0.3
- *  benchmark_loops closes no wrong loop (share/doc/loops.md). */
+ *  benchmark_loops closes no wrong loop (share/doc/method/loops.md). */
 constexpr double kMaxFreeSpaceConflict = 0.3;
 
 /** Error of a registration of two submaps beside its noise: drift within a submap bends it. */
