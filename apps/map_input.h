@@ -14,7 +14,7 @@ struct MapInput {
     std::vector<std::vector<Eigen::Isometry3d>> ways;  //!< a list of poses a drive
     std::vector<Eigen::Isometry3d> keyframes;
     std::string name;        //!< of the drive, or of the file
-    map::MapPoints dynamic;  //!< what was taken out of it, where that was kept
+    map::MapPoints dynamic;  //!< removed dynamic points, if they were kept
     /** Poses of the sensor, with stamps as MapPoint::time_s has them; empty: not known. */
     io::Trajectory sensor;
     /** Poses of the first way between which a loop was closed. */

@@ -48,8 +48,8 @@ DriveWriter::DriveWriter(const DriveRequest& request, const Scene& scene, const 
 
 int DriveWriter::write() {
     if (traffic_.size() < request_.movers)
-        cli::warn("the road has room for " + std::to_string(traffic_.size()) + " movers, not for " +
-                  std::to_string(request_.movers));
+        cli::warn("the road only has room for " + std::to_string(traffic_.size()) +
+                  " road users instead of " + std::to_string(request_.movers));
     {
         cli::Progress progress("simulating", drive_.scans());
         for (std::size_t scan = 0; scan < drive_.scans(); ++scan) {

@@ -132,8 +132,8 @@ std::string unexpectedIn(TCLAP::CmdLineInterface& cmd, const TCLAP::ArgException
     };
     if (!word.empty() && word.front() == '-') return "unknown option '" + word + "'; see --help";
     return "unexpected argument '" + word + "'; " +
-           (has("i") && has("o") ? "inputs are given with -i and outputs with -o (see --help)"
-                                 : "every argument belongs to an option (see --help)");
+           (has("i") && has("o") ? "give inputs with -i and outputs with -o (see --help)"
+                                 : "give every argument with an option (see --help)");
 }
 
 std::string helpOf(TCLAP::CmdLineInterface& cmd, const HelpText& text) {
@@ -149,13 +149,13 @@ std::string helpOf(TCLAP::CmdLineInterface& cmd, const HelpText& text) {
     for (const auto& [command, purpose] : text.examples)
         help += "  " + purpose + ":\n      $ " + command + "\n";
     constexpr std::size_t kCodes = 7;
-    return help + listed("Exit status",
-                         {{std::to_string(kExitSuccess), "success"},
-                          {std::to_string(kExitFailedRun),
-                           "failed run; one line on stderr says what, where and what to do"},
-                          {std::to_string(kExitBadCommandLine), "bad command line"},
-                          {std::to_string(kExitInterrupted), "interrupted; " + text.interrupted}},
-                         kCodes);
+    return help +
+           listed("Exit status",
+                  {{std::to_string(kExitSuccess), "success"},
+                   {std::to_string(kExitFailedRun), "the run failed; stderr says why, in one line"},
+                   {std::to_string(kExitBadCommandLine), "wrong command line"},
+                   {std::to_string(kExitInterrupted), "interrupted: " + text.interrupted}},
+                  kCodes);
 }
 }  // namespace
 

@@ -174,9 +174,8 @@ void setSquare(Chart& chart, const std::vector<Chart::Rows>& curves) {
 }
 
 Chart trajectoryChart(const Group& sequence, const std::string& prefix) {
-    Chart chart(prefix + "trajectory",
-                "Trajectory from above, all from the first pose (circle) on");
-    chart.label("to the right [m]", "ahead [m]");
+    Chart chart(prefix + "trajectory", "Trajectory from above, aligned at the first pose (circle)");
+    chart.label("right [m]", "forward [m]");
     const auto seenFromAbove = [](const std::vector<Place>& places) {
         Chart::Rows rows;
         for (const auto& p : places) rows.push_back({p.right, p.ahead});
@@ -197,7 +196,7 @@ Chart trajectoryChart(const Group& sequence, const std::string& prefix) {
 }
 
 Chart heightChart(const Group& sequence, const std::string& prefix) {
-    Chart chart(prefix + "height", "Height over the distance driven");
+    Chart chart(prefix + "height", "Height over travelled distance");
     chart.label("distance [m]", "height [m]");
     chart.set("set autoscale xfix");
     const auto overDistance = [](const std::vector<Place>& places,
@@ -250,14 +249,12 @@ Chart overTimeChart(const std::vector<StepErrors>& all, const std::string& name,
         const auto& flags = e.comparison->predicted;
         return std::find(flags.begin(), flags.end(), true) != flags.end();
     });
-    Chart chart(
-        name,
-        what + " error from scan to scan, and its running median" +
-            (anyPredicted ? "; triangles are scans that were predicted, not registered" : ""));
+    Chart chart(name, what + " error per scan, and its running median" +
+                          (anyPredicted ? "; triangles: predicted scans" : ""));
     chart.set("set autoscale xfix");
     const bool assumed = std::any_of(
         all.begin(), all.end(), [](const StepErrors& e) { return e.comparison->timesAreAssumed; });
-    chart.label(assumed ? "time, at ten scans a second [s]" : "time [s]",
+    chart.label(assumed ? "time, assuming 10 scans per second [s]" : "time [s]",
                 "error [" + unit + "], log. scale");
     chart.set("set logscale y");
     chart.set("set format y '%g'");
@@ -355,9 +352,7 @@ void drawCharts(const std::vector<Chart>& charts, const std::string& folder) {
     std::error_code ignored;
     fs::remove(log, ignored);
     if (exitCode == -1)
-        throw Error(
-            "gnuplot, which draws the report's plots, is not installed; install the "
-            "package gnuplot-nox (apt-get install gnuplot-nox)");
+        throw Error("the report needs gnuplot; install it with: apt-get install gnuplot-nox");
     bool all = exitCode == 0;
     for (const auto& chart : charts)
         for (const char* extension : {".svg", ".png"}) {
@@ -366,8 +361,7 @@ void drawCharts(const std::vector<Chart>& charts, const std::string& folder) {
             all = all && !fault && size > 0;
         }
     if (!all)
-        throw Error("gnuplot could not draw the plots" +
-                    (reason.empty() ? ": is the disk full?" : ": " + reason));
+        throw Error("gnuplot failed" + (reason.empty() ? ": the disk may be full" : ": " + reason));
 }
 
 std::string colourOf(std::size_t estimate) {

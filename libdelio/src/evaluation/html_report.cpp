@@ -191,8 +191,8 @@ void writeSteps(const Page& page, const std::vector<Section>& sections) {
     std::vector<std::string> groups, names;
     std::vector<std::size_t> estimates;
     std::vector<Column> columns = {
-        {"transl. median [m]", 4, {}}, {"95 % [m]", 4, {}},   {"max [m]", 3, {}},
-        {"rot. median [deg]", 4, {}},  {"95 % [deg]", 4, {}}, {"max [deg]", 3, {}},
+        {"transl. median [m]", 4, {}}, {"p95 [m]", 4, {}},   {"max [m]", 3, {}},
+        {"rot. median [deg]", 4, {}},  {"p95 [deg]", 4, {}}, {"max [deg]", 3, {}},
         {"predicted scans", 0, {}}};
     for (const auto& section : sections)
         for (std::size_t i = 0; i < section.sequence.members.size(); ++i) {
@@ -237,15 +237,15 @@ void writeHead(const std::vector<Group>& byEstimate, const ReportNotes& notes, s
     out << "<span class=\"swatch\" style=\"background:" << kTruthColour
         << "\"></span>ground truth</p>\n<p class=\"note\">" << htmlText(notes.program)
         << ". Segments of " << htmlText(notes.lengths)
-        << " m from every tenth pose on. Bold: the lowest of a sequence.</p>\n";
+        << " m from every tenth pose on. Bold: best of each sequence.</p>\n";
 }
 
 void writeKittiErrors(const Page& page, const Lines& lines, bool unlike, std::ostream& out) {
-    out << "<h2>KITTI's metric</h2>\n<p class=\"note\">Mean error of segments, per length. The "
-           "mean of sequences is the plain one, however long they are.</p>\n";
+    out << "<h2>KITTI's metric</h2>\n<p class=\"note\">Mean error over segments, relative to their "
+           "length. The mean over sequences is unweighted.</p>\n";
     if (unlike)
-        out << "<p><b>The estimates cover different sequences: do not compare their means, nor "
-               "their curves over all sequences.</b></p>\n";
+        out << "<p><b>The estimates cover different sequences: their means and their curves over "
+               "all sequences cannot be compared.</b></p>\n";
     page.table(
         lines.groups, lines.names, lines.estimates,
         {column("translation [%]", 3, lines, [](const auto& r) { return r.kitti.t_percent; }),
@@ -258,13 +258,13 @@ void writeKittiErrors(const Page& page, const Lines& lines, bool unlike, std::os
     const bool anySegments = std::any_of(lines.rows.begin(), lines.rows.end(),
                                          [](const auto& r) { return r.kitti.segments > 0; });
     if (!anySegments)
-        out << "<p>The drive is too short for segments of these lengths: give shorter ones with "
+        out << "<p>The drive is too short for segments of these lengths; give shorter ones with "
                "--lengths.</p>\n";
 }
 
 void writePoseErrors(const Page& page, const Lines& lines, std::size_t delta, std::ostream& out) {
     out << "<h2>Absolute and relative pose error</h2>\n<p class=\"note\">APE: RMSE of the "
-           "positions after rigid alignment. RPE: RMSE of the motion over "
+           "positions after rigid alignment. RPE: RMSE of the relative motion over "
         << delta << (delta == 1 ? " pose" : " poses") << ".</p>\n";
     page.table(lines.groups, lines.names, lines.estimates,
                {column("APE [m]", 3, lines, [](const auto& r) { return r.ape_m; }),
@@ -300,11 +300,11 @@ void writeHtml(const std::vector<Group>& byEstimate, const std::vector<Section>&
     writeHead(byEstimate, notes, out);
     writeKittiErrors(page, lines, unlike, out);
     if (!overview.empty()) {
-        out << "<h3>Over length and speed of the segments</h3>\n";
+        out << "<h3>Errors over segment length and speed</h3>\n";
         page.plots(overview);
     }
     writePoseErrors(page, lines, notes.delta, out);
-    out << "<h2>From scan to scan</h2>\n";
+    out << "<h2>Error per scan</h2>\n";
     writeSteps(page, sections);
     writeSequences(page, sections, out);
     out << "</body>\n</html>\n";

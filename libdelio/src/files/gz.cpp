@@ -78,7 +78,7 @@ std::uint64_t unpackedSize(const std::string& path) {
     const bool isPacked = in.compressed();
     if (isPacked) in.skipToEnd(kMostBytes);
     const auto size = isPacked ? in.getPosition() : in.getTotalBytesCount();
-    if (size > kMostBytes) throw Error("'" + path + "' is too large for what is in one scan");
+    if (size > kMostBytes) throw Error("'" + path + "' is too large for one scan");
     return size;
 }
 

@@ -44,7 +44,7 @@ ScanTable readScanTable(const std::string& path) {
         if (scan < 0 || scan > 1e9 || scan != std::floor(scan) ||
             (!table.scans.empty() && scan <= static_cast<double>(table.scans.back())))
             throw Error("'" + path + "', line " + std::to_string(line) +
-                        ": the numbers of the scans do not rise");
+                        ": scan numbers must increase");
         table.scans.push_back(static_cast<std::size_t>(scan));
         table.stamps_s.push_back(values[1]);
         table.predicted.push_back(values[2] != 0);
@@ -73,7 +73,7 @@ void writeScanTable(std::size_t rows, const std::function<ScanRow(std::size_t)>&
             const ScanRow row = rowAt(i);
             if (!sameColumns(row, first))
                 throw Error("cannot write '" + path + "': scan " + std::to_string(row.scan) +
-                            " has other columns than the first");
+                            " has other columns than the first scan");
             out << scanTableLine(row);
         }
     });

@@ -107,8 +107,8 @@ Plane planeOfGround(const MapPoints& points, const Isometry3d& vehicle) {
                 fit(on, plane);
     }
     if (!found)
-        throw Error("there is no ground within " + std::to_string(static_cast<int>(kReach_m)) +
-                    " m of the map's first pose that it could be levelled by");
+        throw Error("no ground found within " + std::to_string(static_cast<int>(kReach_m)) +
+                    " m of the map's first pose to level the map");
     return {Vector3d(vehicle.linear() * plane.normal()),
             Vector3d(vehicle * Vector3d(-plane.offset() * plane.normal()))};
 }

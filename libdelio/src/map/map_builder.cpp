@@ -71,20 +71,20 @@ Eigen::Matrix3Xf finitePoints(const CPointsMap& points) {
 
 std::vector<OptionField> MapOptions::fields() const {
     return {
-        {"keyframe_distance", &MapOptions::keyframeDistance_m, "a keyframe every so many metres", 0,
+        {"keyframe_distance", &MapOptions::keyframeDistance_m, "m; distance between keyframes", 0,
          1e6},
-        {"keyframe_angle_deg", &MapOptions::keyframeAngle_deg,
-         "and after every turn by so many degrees", 0, 360},
+        {"keyframe_angle_deg", &MapOptions::keyframeAngle_deg, "deg; rotation between keyframes", 0,
+         360},
         {"voxel_size", &MapOptions::voxelSize_m,
-         "edge in metres of the voxels of which one point is kept; 0 keeps every point; where "
-         "absent: in small places less, down to a quarter",
+         "m; voxel size of the map, one point per voxel; 0: keep every point; if not set: 0.2, in "
+         "small places down to a quarter of that",
          0, 1e3},
         {"min_range", &MapOptions::minRange_m,
-         "metres; points nearer to the sensor (the car itself) are left out; where absent: in "
-         "small places less, down to a quarter",
+         "m; points closer to the sensor (the vehicle itself) are ignored; if not set: 2.5, in "
+         "small places down to a quarter of that",
          0, 1e6},
-        {"max_range", &MapOptions::maxRange_m,
-         "metres; points farther from the sensor are left out", 0, 1e6},
+        {"max_range", &MapOptions::maxRange_m, "m; points farther from the sensor are ignored", 0,
+         1e6},
     };
 }
 

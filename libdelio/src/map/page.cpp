@@ -27,10 +27,11 @@ std::string readScript(const std::filesystem::path& file, const std::string& pag
     read << in.rdbuf();
     std::string text = read.str();
     if (text.empty())
-        throw Error("cannot write '" + page + "': a part of three.js, which draws it, is not at '" +
-                    file.string() + "'; install Debian's libjs-three");
+        throw Error("cannot write '" + page + "': three.js is missing at '" + file.string() +
+                    "'; install the package libjs-three");
     if (text.find("</script") != std::string::npos || text.find("<!--") != std::string::npos)
-        throw Error("cannot write '" + page + "': '" + file.string() + "' cannot stand in a page");
+        throw Error("cannot write '" + page + "': '" + file.string() +
+                    "' cannot be embedded in a page");
     return text + '\n';
 }
 

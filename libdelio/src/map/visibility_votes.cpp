@@ -28,14 +28,13 @@ void count(std::uint16_t& counter) {
 }  // namespace
 
 std::vector<OptionField> RemovalOptions::fields() const {
-    return {
-        {"enabled", &RemovalOptions::enabled,
-         "true: once the drive is over, what scans looked through is taken out of the map"},
-        {"voxel_size", &RemovalOptions::voxelSize_m,
-         "m; edge of the voxels that scans are asked of", 0.02, 10},
-        {"cell_deg", &RemovalOptions::cell_deg, "deg; directions are told apart by this", 0.1, 10},
-        {"spacing", &RemovalOptions::spacing_m,
-         "m; between the scans that are asked (standing, one in half a second)", 0, 100}};
+    return {{"enabled", &RemovalOptions::enabled,
+             "true: after the drive, remove map points that other scans saw through"},
+            {"voxel_size", &RemovalOptions::voxelSize_m, "m; voxel size of the removal", 0.02, 10},
+            {"cell_deg", &RemovalOptions::cell_deg, "deg; angular resolution of the range images",
+             0.1, 10},
+            {"spacing", &RemovalOptions::spacing_m,
+             "m; distance between the scans that vote (while standing: one per 0.5 s)", 0, 100}};
 }
 
 std::size_t VisibilityVotes::Block::rankOf(unsigned number) const {

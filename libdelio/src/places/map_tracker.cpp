@@ -87,10 +87,10 @@ double sigma_m(const Increment& pose) {
 
 std::vector<OptionField> LocalisationOptions::fields() const {
     using Me = LocalisationOptions;
-    return {{"drift", &Me::drift,
-             "share of the path by which the odometry may be off outside the map (standard "
-             "deviation)",
-             1e-6, 1}};
+    return {
+        {"drift", &Me::drift,
+         "assumed odometry drift outside the map, as a fraction of the path (standard deviation)",
+         1e-6, 1}};
 }
 
 MapTracker::MapTracker(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& search,
@@ -125,7 +125,7 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
     const double usual = (now_.where == Whereabouts::kInMap ? 0.8 : 0.85) * now_.usualInlierRatio;
     local_.follow(predicted.pose.translation());
     const auto& map = local_.map();
-    fix.reason = points.cols() == 0 ? "no points" : "the map has nothing here";
+    fix.reason = points.cols() == 0 ? "no points" : "no map points here";
     if (!map.isUsable() || points.cols() == 0) return {};
     const odometry::ScanView view = viewOf(points);
     const auto placed = map.place(view.coarse, predicted.pose,
@@ -137,7 +137,7 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
     const auto standing = places::aboveGround((level * view.thinned).cast<float>());
     if (standing.cols() > 0)
         fix.inlierRatio = map.shareAt(standing, found.pose() * turned(level.transpose()), kMeets_m);
-    fix.reason = "does not look like the map";
+    fix.reason = "inlier ratio too low";
     if (!found.valid || fix.inlierRatio < std::max(kMinInlierRatio, usual)) return {};
     fix.reason.clear();
     // Along what the map does not show the odometry goes on, and so does what it is off.
@@ -231,7 +231,7 @@ std::optional<Increment> MapTracker::search(const Eigen::Matrix3d& level, MapFix
     fix.reason = found.reason;
     if (!found.reason.empty()) return {};
     Increment there{found.pose * turned(level), Matrix6::Zero()};
-    fix.reason = "found farther off than it may be";
+    fix.reason = "found farther away than possible";
     if (known && (there.pose.translation() - known->pose.translation()).norm() > reach) return {};
     there.covariance.diagonal() << Eigen::Vector3d::Constant(kFound_m * kFound_m),
         Eigen::Vector3d::Constant(kFound_rad * kFound_rad);
@@ -242,7 +242,7 @@ std::optional<Increment> MapTracker::search(const Eigen::Matrix3d& level, MapFix
 MapFix MapTracker::add(const Increment& increment, const Eigen::Matrix3Xf& points,
                        const Eigen::Vector3d& up) {
     MapFix fix;
-    fix.reason = "not searched for at this scan";
+    fix.reason = "no search at this scan";
     const Eigen::Matrix3d level = odometry::turnedUp(up).cast<double>();
     const double moved_m = increment.pose.translation().norm();
     now_.odometry = now_.odometry * increment.pose;

@@ -48,13 +48,13 @@ std::string recordedDescription(const std::string& topic, const OpenSource& open
  *  file, where there is none, there are several, or that one has no scans; it lists what there
  *  is. */
 Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
-    if (topics.empty()) throw Error("holds no messages");
+    if (topics.empty()) throw Error("contains no messages");
     std::vector<Topic> scans;
     for (const Topic& topic : topics)
         if (scanTypeOf(topic) != ScanType::kNone) scans.push_back(topic);
-    if (scans.empty()) throw Error("holds no topic with scans, but " + listed(topics));
+    if (scans.empty()) throw Error("contains no topic with LiDAR scans, only " + listed(topics));
     if (asked.empty() && scans.size() > 1)
-        throw Error("holds scans of several topics: choose one with --sensor-label: " +
+        throw Error("contains several topics with scans; choose one with --sensor-label: " +
                     listed(scans));
     if (asked.empty()) return scans.front();
     const auto found = std::find_if(scans.begin(), scans.end(),
@@ -64,10 +64,10 @@ Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
     for (const Topic& topic : scans)
         if (endsIn(topic.name, "/" + asked)) ending.push_back(topic);
     if (ending.size() > 1)
-        throw Error("holds scans of several topics '" + asked + "': choose one of " +
+        throw Error("contains several topics that match '" + asked + "'; choose one of " +
                     listed(ending));
     if (ending.empty())
-        throw Error("holds no scans of the topic '" + asked + "', but of " + listed(scans));
+        throw Error("contains no scans of the topic '" + asked + "', only of " + listed(scans));
     return ending.front();
 }
 
@@ -79,7 +79,7 @@ SideFile ousterDescription(const ScanSource& source, const std::string& topic,
     if (!source.sensorFile.empty()) {
         SideFile file = sideFile(source.sensorFile);
         if (file.text.empty())
-            throw Error("needs the sensor's description, but '" + source.sensorFile +
+            throw Error("needs the sensor's metadata, but '" + source.sensorFile +
                         "' is missing or empty");
         return file;
     }

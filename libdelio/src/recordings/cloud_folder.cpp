@@ -84,18 +84,18 @@ fs::path kittiFolderIn(const fs::path& folder, int levels = 2) {
 FilesByExtension::value_type onlyKindOf(const FilesByExtension& files, const fs::path& folder) {
     if (files.empty()) {
         const fs::path drive = kittiFolderIn(folder);
-        throw Error("'" + folder.string() + "' holds no .pcd, .ply, .bin, .txt or .csv: no scans" +
+        throw Error("'" + folder.string() +
+                    "' contains no .pcd, .ply, .bin, .txt or .csv: no scans" +
                     (drive.empty() ? ""
-                                   : ", but KITTI's drives in folders of their own: give one of "
-                                     "them, as '" +
+                                   : ", only folders of KITTI drives; give one of them, such as '" +
                                          drive.string() + "'"));
     }
     if (files.size() == 1) return *files.begin();
     std::string kinds;
     for (const auto& [extension, ofKind] : files)
         kinds += (kinds.empty() ? "" : ", ") + std::to_string(ofKind.size()) + " " + extension;
-    throw Error("'" + folder.string() + "' holds files of several kinds (" + kinds +
-                "); leave those of one kind in it");
+    throw Error("'" + folder.string() + "' contains several kinds of files (" + kinds +
+                "); keep only one kind");
 }
 }  // namespace
 

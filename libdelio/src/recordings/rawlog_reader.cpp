@@ -51,7 +51,7 @@ void readPointExtras(const std::string& stem, Scan& scan) {
     constexpr float kLongest_s = 1;  // no LiDAR turns slower than so
     for (const float time_s : scan.times_s)
         if (std::abs(time_s) > kLongest_s)
-            throw Error("'" + stem + ".time' has a time of " + digitsOf(time_s) +
+            throw Error("'" + stem + ".time' has a point time of " + digitsOf(time_s) +
                         " s from its scan's stamp");
 }
 
@@ -70,7 +70,7 @@ RawlogReader::RawlogReader(const std::string& path, std::string label, std::stri
       chosen_(!label_.empty()),
       meta_(readDriveMeta(path_)),
       in_(std::make_unique<GzInput>(path_)) {
-    if (in_->getTotalBytesCount() == 0) throw Error("'" + path_ + "' is empty: not a rawlog");
+    if (in_->getTotalBytesCount() == 0) throw Error("'" + path_ + "' is empty");
 }
 
 RawlogReader::~RawlogReader() = default;
@@ -160,15 +160,15 @@ bool RawlogReader::readEntry() {
         if (in_->getPosition() == before && before > 0 && in_->endedWell()) return false;
         if (!archive.refused().empty())
             throw Error("'" + path_ + "' holds '" + archive.refused() + "' (byte " +
-                        std::to_string(before) + "), which is not read from a rawlog");
+                        std::to_string(before) + "), a class that is not supported in rawlogs");
         throw Error("'" + path_ + "' " +
-                    (before == 0 ? "is not a rawlog, or damaged at its very beginning"
+                    (before == 0 ? "is not a rawlog, or is damaged at its start"
                                  : "is cut off or damaged " +
                                        (count_ == 0 ? "before its first scan"
                                                     : "after scan " + std::to_string(count_ - 1)) +
                                        " (byte " + std::to_string(before) + ")") +
                     (isOfUnknownClass(e)
-                         ? ", or holds what this MRPT does not know: " + plainMessage(e)
+                         ? ", or contains something unknown to this MRPT: " + plainMessage(e)
                          : ""));
     }
     const auto accept = [&](const CObservation::Ptr& observation) {

@@ -204,11 +204,11 @@ class Decoder {
 void checkCalibration(const std::vector<LaserCalibration>& lasers) {
     if (lasers.empty())
         throw Error(
-            "a Velodyne scan without its calibration; record it with a calibration file of the "
+            "a Velodyne scan has no calibration; record it with the calibration file of the "
             "sensor");
     if (lasers.size() != 16 && lasers.size() != 32 && lasers.size() != 64)
-        throw Error("a Velodyne scan of " + std::to_string(lasers.size()) +
-                    " lasers; models of 16, 32 and 64 are known");
+        throw Error("a Velodyne scan with " + std::to_string(lasers.size()) +
+                    " lasers is not supported; 16, 32 and 64 are");
 }
 
 /** The usual step; 0 where there is none. */

@@ -287,7 +287,7 @@ Summary readSummary(const std::string& path) {
         s.metrics_before_optimisation = figuresIn(node["metrics_before_optimisation"]);
         return s;
     } catch (const std::exception& e) {
-        throw Error("cannot understand '" + path + "': " + plainMessage(e));
+        throw Error("cannot parse '" + path + "': " + plainMessage(e));
     }
 }
 }  // namespace delio::run

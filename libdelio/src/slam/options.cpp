@@ -35,7 +35,7 @@ CConfigFileMemory configOf(const std::string& text) {
     try {
         return CConfigFileMemory(text);
     } catch (const std::exception& e) {
-        throw Error("options cannot be understood: " + plainMessage(e));
+        throw Error("cannot parse the options: " + plainMessage(e));
     }
 }
 }  // namespace
@@ -45,7 +45,7 @@ Options Options::ofProfile(const std::string& name) {
     if (text == profileTexts().end()) {
         std::string known;
         for (const auto& profile : profileNames()) known += (known.empty() ? "" : ", ") + profile;
-        throw Error("there is no profile '" + name + "'; the profiles are: " + known);
+        throw Error("unknown profile '" + name + "'; choose one of: " + known);
     }
     Options options;
     options.load(text->second);
@@ -126,7 +126,7 @@ void Options::set(const std::string& assignment) {
     // A key that begins like a comment or a section would be one.
     if (equals == assignment.npos || dot > equals || dot + 1 == equals ||
         std::string("#;[").find(assignment[dot + 1]) != std::string::npos)
-        throw Error("'" + assignment + "' is not of the form section.key=value");
+        throw Error("'" + assignment + "' does not have the form section.key=value");
     load("[" + assignment.substr(0, dot) + "]\n" + assignment.substr(dot + 1) + "\n");
 }
 

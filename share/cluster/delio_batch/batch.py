@@ -88,7 +88,7 @@ class Batch:
         remove_file(self.state_file(task))
 
     def expect(self, tasks: list) -> None:
-        """These are about to be done again: what is known of them is history."""
+        """Forgets the earlier results of tasks that will be repeated."""
         for task in tasks:
             state = self.state(task)
             if state.get("state", "waiting") != "waiting":
@@ -159,7 +159,7 @@ class Batch:
 
     # ---- one at a time
     def lock(self) -> None:
-        """Makes the folder, and holds it until this process ends, in whatever way."""
+        """Creates the folder and locks it until this process ends."""
         try:
             for folder in (self.out, self.work(), self.path("logs")):
                 above = folder

@@ -27,7 +27,7 @@ class Variant:
 
 
 def read_list(path: str, null: bool) -> list:
-    """A line a drive: INPUT, and after tabs, where there are any, TRUTH and options of delio-slam."""
+    """One line per drive: INPUT, optionally followed by tabs, TRUTH and options of delio-slam."""
     try:
         if path == "-":
             data = sys.stdin.buffer.read()

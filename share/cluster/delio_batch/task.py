@@ -126,7 +126,7 @@ class Attempt:
         return 0
 
     def _scores(self) -> dict:
-        """Errors against the truth, or why there are none."""
+        """Errors against the ground truth, or the reason why they are missing."""
         if not self.task.truth:
             return {}
         lengths = self.batch.settings.get("lengths")
