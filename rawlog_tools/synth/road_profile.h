@@ -47,7 +47,7 @@ struct RoadProfile {
     double bankFrom_m, bankTo_m;  //!< ... between these
     double roughness_m;           //!< of the land, at the distance between the points of a scan
     DrivingStyle style;
-    Carrier carrier;          //!< what bears the sensor if nobody holds it in the hand
+    Carrier carrier;          //!< the vehicle, unless the sensor is hand-held
     std::vector<Ramp> ramps;  //!< the one after the other along x
     /** Where no cars drive people walk, at these sides of the centre line; at 0: along with the
      *  sensor, before and behind it. */

@@ -20,7 +20,7 @@ struct ScannerOptions {
     int threads = 1;
 };
 
-/** A scan, and what is known of each point. */
+/** A scan with properties of each point. */
 struct ScanPoints {
     std::vector<float> xyzi;    //!< KITTI's four floats, in the sensor's frame when it was measured
     std::vector<float> time_s;  //!< from the scan's stamp

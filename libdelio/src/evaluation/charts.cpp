@@ -30,8 +30,8 @@ using mrpt::format;
 namespace {
 constexpr std::size_t kLongestTitle = 32;  // characters; longer ones push the key off the plot
 
-/** As a string of gnuplot. What has a meaning to it somewhere in a string (quotes, which no
- * doubling makes safe at the beginning, backquotes, backslashes ...) is written as its code. */
+/** Quoted gnuplot string. Special characters (quotes, backquotes, backslashes ...) are written as
+ *  character codes. */
 std::string quoted(const std::string& text) {
     std::string result = "\"";
     for (const char c : text) {
@@ -78,7 +78,7 @@ int run(const std::vector<std::string>& words, const std::string& folder, const 
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/** What gnuplot says about its failure: the line with the reason is the last that is not empty. */
+/** Reason of gnuplot's failure: its last non-empty line. */
 std::string lastLine(const std::string& file) {
     std::ifstream in(file);
     std::string last;
@@ -101,7 +101,8 @@ void append(std::vector<CurvePoint>& curve, double at, const std::vector<Segment
     curve.push_back({at, mean.t_percent, mean.r_deg_per_100m});
 }
 
-// Pose files have about six digits: smaller errors are none, and a logarithmic axis needs a floor.
+// Pose files have about six digits, so smaller errors are meaningless; a logarithmic axis needs a
+// minimum.
 constexpr double kSmallestError = 1e-6;
 
 std::string line(const std::string& colour, double width) {
@@ -112,7 +113,7 @@ std::string linesAndPoints(const std::string& colour) {
     return format("with linespoints pt 7 ps 0.6 lc rgb '%s' lw 1.6", colour.c_str());
 }
 
-/** Where the moving frame is, seen from its first pose: metres to the right, ahead and up. */
+/** Position relative to the first pose: metres to the right, forward and up. */
 struct Place {
     double right = 0, ahead = 0, up = 0;
 };

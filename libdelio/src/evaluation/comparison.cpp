@@ -73,7 +73,7 @@ double stepFor(const std::vector<Eigen::Isometry3d>& poses) {
     return std::clamp(pathLength_m(poses) / (2 * kStepsToTell), kLeastStep_m, kStep_m);
 }
 
-/** Where the moving frame went from pose `a` to pose `b`, in its own axes at `a`. */
+/** Displacement from pose `a` to pose `b`, in the axes of `a`. */
 Eigen::Vector3d direction(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
     return (a.inverse() * b).translation().normalized();
 }
@@ -146,7 +146,7 @@ std::vector<double> lengthsFor(const std::vector<Eigen::Isometry3d>& reference,
     return path_m < 2 * lengths.front() ? suggestedLengths_m(path_m) : lengths;
 }
 
-/** Where the last pose is, seen from the first; the origin where there is none. */
+/** Position of the last pose relative to the first; the origin without poses. */
 Eigen::Vector3d endOf(const std::vector<Eigen::Isometry3d>& poses) {
     if (poses.empty()) return Eigen::Vector3d::Zero();
     return (poses.front().inverse() * poses.back()).translation();

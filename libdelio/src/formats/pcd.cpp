@@ -12,7 +12,7 @@
 
 namespace delio::io {
 namespace {
-/** What decompression gives: all values of the first field, then all of the second, and so on. */
+/** Decompressed data: all values of the first field, then all of the second, and so on. */
 std::vector<std::uint8_t> decompressed(RecordFile& file, std::size_t count, std::size_t stride) {
     std::array<std::uint32_t, 2> sizes{};  // compressed, and not
     const std::size_t left = file.bytesLeft();

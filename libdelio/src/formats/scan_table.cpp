@@ -29,7 +29,8 @@ ScanTable readScanTable(const std::string& path) {
                                    columnOf(heading, "predicted", path, "scans.csv")};
     ScanTable table;
     for (std::size_t line = 2; std::getline(in, text); ++line) {
-        // The reason, the last column, may hold commas: what comes after the wanted ones is free.
+        // The reason, the last column, may contain commas: columns after the needed ones are not
+        // checked.
         const auto cells = cellsOf(text);
         double values[3] = {};
         for (int i = 0; i < 3; ++i) {

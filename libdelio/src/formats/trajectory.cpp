@@ -38,7 +38,7 @@ std::vector<double> numbersOf(const std::string& text, const std::string& where)
     }
 }
 
-/** Calls `use(numbers, where)` for every line that holds any; throws if there is none. */
+/** Calls `use(numbers, where)` for every line with numbers; throws if there is no such line. */
 template <typename Use>
 void forEachLine(std::istream& in, const std::string& path, const Use& use) {
     std::string text;

@@ -81,7 +81,7 @@ std::vector<float> valuesOf(const MapPoints& points, const Value& value) {
     return values;
 }
 
-/** What is not known is 0 (map_point.h). */
+/** Unknown values are 0 (map_point.h). */
 bool isKnown(const MapPoints& points, const Value& value) {
     if (points.empty() || value.by == ColourBy::Height) return true;
     return std::any_of(points.begin(), points.end(), [&](const MapPoint& point) {

@@ -21,8 +21,8 @@ namespace {
 constexpr double kDeg = M_PI / 180;
 constexpr const char *kWhat = "scans for the map", *kOption = "--no-map";
 
-/** The points that are used: those that stand still, then those that move; of either the first one
- *  of each voxel. x y z intensity each. */
+/** Points used: first the static, then the dynamic ones, the first of each voxel. x y z intensity
+ *  each. */
 struct Thinned {
     io::Spool::Floats floats;
     std::size_t still = 0;
@@ -130,7 +130,7 @@ bool MapBuilder::isFarFromLastKeyframe(const Isometry3d& pose) const {
            angleOf(turned) >= options_.keyframeAngle_deg * kDeg;
 }
 
-/** One that stands sees what comes and goes, too. */
+/** A standing vehicle also sees objects come and go. */
 bool MapBuilder::isFarFromLastView(const Isometry3d& pose, mrpt::Clock::time_point stamp) const {
     constexpr std::chrono::duration<double> kPause(0.45);  // stamps are rounded
     return views_ == 0 || stamp - viewStamp_ >= kPause ||

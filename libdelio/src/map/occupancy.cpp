@@ -19,7 +19,7 @@ namespace {
 constexpr double kGroundCell_m = 1;
 constexpr double kDeepest_m = -0.5;    // below the ground are reflections
 constexpr double kLongestStep_m = 10;  // between poses: over more than that nobody knows the way
-// What cells hold while the grid is made.
+// Cell states during construction.
 enum Mark : COccupancyGridMap2D::cellType {
     kUnknown,
     kGround,

@@ -7,7 +7,7 @@
 
 namespace delio::map {
 namespace {
-/** As PCL does: 0x00rrggbb in the bytes of a float. */
+/** PCL's packed colour: 0x00rrggbb in the bytes of a float. */
 void packColour(const mrpt::img::TColor& colour, char* to) {
     const std::uint32_t rgb =
         std::uint32_t{colour.R} << 16 | std::uint32_t{colour.G} << 8 | colour.B;

@@ -33,7 +33,7 @@ void loadPoints(mrpt::obs::CObservation& observation, std::size_t keyframe,
     }
 }
 
-/** Of a scan that is no cloud: of a depth camera, or a 2D one. */
+/** Points of a scan that is not a cloud, such as a depth camera's or a 2D one. */
 mrpt::maps::CSimplePointsMap pointsOf(const mrpt::obs::CObservation& observation,
                                       const CPose3D& pose) {
     mrpt::maps::CSimplePointsMap points;

@@ -90,7 +90,7 @@ Eigen::Vector3f VisibilityVotes::pointOf(const Voxel& voxel, const Cell& cell) c
 
 void VisibilityVotes::look(const odometry::RangeImage& view, const Eigen::Isometry3d& sensorInWorld,
                            float reach_m) {
-    // Farther away small things stand between two rings.
+    // Farther away small objects lie between two rings.
     constexpr float kGap_m = 0.7F, kNearest_m = 2;
     const float farthest_m = std::min(reach_m, kGap_m / view.ringSpacing());
     const Eigen::Isometry3f toSensor = sensorInWorld.inverse().cast<float>();
@@ -122,8 +122,7 @@ const VisibilityVotes::Cell* VisibilityVotes::at(const Eigen::Vector3d& point) c
     return find((point.array() / options_.voxelSize_m).floor().cast<int>());
 }
 
-/** The lowest parts of what moves stand beside and below the rest; what they stand on lies below.
- */
+/** The lowest parts of dynamic objects are next to and below the rest, above the ground. */
 bool VisibilityVotes::isSurrounded(const Voxel& voxel) const {
     constexpr int kBeside = 2, kAbove = 3, kLeast = 4;
     int dynamic = 0, all = 0;

@@ -13,7 +13,7 @@
 
 namespace delio::places {
 namespace {
-/** What a drift adds to the covariance of a step: it goes with the path, not with the scans. */
+/** Covariance added by drift, which grows with the path, not with the number of scans. */
 Matrix6 driftOf(const graph::Edge& step, const LoopOptions& options) {
     constexpr double kPer_m = 100;
     const double share = step.increment.pose.translation().norm() / kPer_m,

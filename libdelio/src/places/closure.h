@@ -89,8 +89,8 @@ class FreeSpace {
     FreeSpace(const HeightImage& image, const Eigen::Matrix3Xf& points);
 
     /** Takes the cells in which the other cloud is filled from 1 to 4 m (a wall, a hedge, a trunk)
-     *  and which this one observed, and gives the fraction that this one saw as bare ground. 0 if
-     *  there are none. `pose`: other to this. */
+     *  and which this one observed, and gives the fraction that this one saw as bare ground. 0
+     *  without such cells. `pose`: other to this. */
     double conflict(const HeightImage& other, const Eigen::Isometry3d& pose) const;
 
  private:

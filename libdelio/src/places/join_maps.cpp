@@ -9,7 +9,7 @@
 
 namespace delio {
 namespace {
-/** What a map is off beside the noise of a registration: it has been driven once. */
+/** Error of a map in addition to registration noise. */
 constexpr double kMap_m = 0.02, kMap_rad = 1e-3;
 
 /** The drive's nodes in the map: from each that was measured on by the odometry, and back from the
@@ -84,7 +84,7 @@ class Both {
     places::DenseSubmapCache grounds_{6};
 };
 
-/** Where localisation puts the two submaps, registered and verified. */
+/** Registers and verifies two submaps from their localised poses. */
 void compare(Both& both, LoopCandidate& pair, const places::ClosureOptions& options) {
     constexpr double kMoved_m = 1;  // localisation is not off by that
     const auto from = both.ground(pair.from), to = both.ground(pair.to);

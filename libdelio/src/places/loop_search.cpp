@@ -44,7 +44,8 @@ void SubmapStore::add(const Eigen::Matrix3Xf& points) {
 }
 
 const std::vector<Shift>& SubmapStore::repetitions(std::size_t submap, double reach) {
-    constexpr double kApart_m = 4;  // nearer, walls along the way look alike, and are one place
+    constexpr double kApart_m =
+        4;  // nearer, walls along the road are similar, and count as one place
     constexpr std::size_t kMost = 6;
     repetitions_.resize(descriptors_.size());
     auto& shifts = repetitions_[submap];

@@ -60,8 +60,8 @@ void LoadedMap::follow(const Eigen::Vector3d& place) {
 namespace {
 constexpr unsigned kConfirmed = 3;  // scans that have to agree before a place counts as found
 constexpr unsigned kPatience = 5;   // scans that may disagree before the map counts as left
-/** Fraction of the standing points of a scan that have to stand in the map: half, as other traffic
- * and new parked cars hide the rest. */
+/** Minimum inlier ratio of a scan's points above the ground: half, because other traffic and parked
+ *  cars may hide the rest. */
 constexpr double kMinInlierRatio = 0.5;
 /** Metres of path after which a vehicle outside the map is searched for again: less shows little
  * that is new. */
@@ -121,7 +121,7 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
                                            const Eigen::Matrix3d& level, const Increment& predicted,
                                            MapFix& fix) {
     constexpr double kMeets_m = 0.3, kLeast_m = 0.5, kMost_m = 2;
-    // Posts in a row look alike, but not as much as the place.
+    // Rows of posts are similar to each other, but less than to the right place.
     const double usual = (now_.where == Whereabouts::kInMap ? 0.8 : 0.85) * now_.usualInlierRatio;
     local_.follow(predicted.pose.translation());
     const auto& map = local_.map();
@@ -140,7 +140,7 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
     fix.reason = "inlier ratio too low";
     if (!found.valid || fix.inlierRatio < std::max(kMinInlierRatio, usual)) return {};
     fix.reason.clear();
-    // Along what the map does not show the odometry goes on, and so does what it is off.
+    // Along axes that the map does not constrain, the odometry and its error continue.
     const Eigen::Matrix3d R = predicted.pose.linear();
     const Eigen::Matrix3d drifted = R * predicted.covariance.topLeftCorner<3, 3>() * R.transpose();
     const auto& unseen = found.translation.unobservedAxes;
@@ -150,8 +150,8 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
     return incrementOf(found.rotation, found.translation);
 }
 
-/** Of a scan that was compared with the map. Until the next ones have confirmed a place, what was
- *  believed before goes on beside it. */
+/** Result for a scan that was compared with the map. Until the next scans confirm a place, the
+ *  previous hypothesis is kept as well. */
 void MapTracker::judge(const std::optional<Increment>& found, double inlierRatio) {
     constexpr double kForget = 0.1;
     const bool isInMap = now_.where == Whereabouts::kInMap;
@@ -201,7 +201,7 @@ bool MapTracker::isTimeToSearch() const {
            (now_.scans <= kAtFirst || now_.unsearched_m >= spacing);
 }
 
-/** What was seen last, in the latest scan's frame, levelled. */
+/** Latest points, in the latest scan's frame, levelled. */
 Eigen::Matrix3Xf MapTracker::recentCloud(const Eigen::Matrix3d& level) const {
     const Eigen::Isometry3d here = now_.odometry * turned(level.transpose());
     Eigen::Index count = 0;

@@ -12,16 +12,16 @@ using places::Shift;
 namespace {
 constexpr double kDeg = M_PI / 180;
 
-/** As places::kMaxFreeSpaceConflict, but stricter: nothing else is known of where the cloud was
- *  taken. */
+/** Like places::kMaxFreeSpaceConflict, but stricter, because there is no other information about
+ *  the cloud's position. */
 constexpr double kMaxFreeSpaceConflict = 0.2;
 
 Eigen::Isometry3d poseOf(const Shift& shift) {
     return isometry(rotationExp(shift.yaw * Eigen::Vector3d::UnitZ()), shift.translation);
 }
 
-/** In fine, about a match: rotations first, then the shift under each. The best, and others
- *  beside it: what stands in rows looks alike from one to the next. */
+/** Fine search around a match: rotations first, then the translation for each. Returns the best and
+ *  its neighbours, because objects in rows are similar to each other. */
 std::vector<Shift> refined(const places::Descriptor& place, const places::Descriptor& cloud,
                            const Shift& seen) {
     constexpr double kTurn_rad = 7 * kDeg, kReach_m = 8, kApart_m = 2;

@@ -9,7 +9,7 @@
 
 namespace delio::places {
 namespace {
-/** Who stands still sees nothing more, drives no path and has no end of scans. */
+/** A standing vehicle adds no path and unlimited scans, so its scans are ignored. */
 bool isMuch(const Eigen::Isometry3d& moved) {
     constexpr double kMuch_m = 0.5, kMuch_rad = 0.2;
     return moved.translation().norm() >= kMuch_m || angleOf(moved.linear()) >= kMuch_rad;

@@ -25,7 +25,7 @@ bool endsIn(const std::string& text, const std::string& end) {
            text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/** What the bag says of the sensor of `topic`; empty: it does not. */
+/** Metadata of the sensor of `topic` in the bag; may be empty. */
 std::string recordedDescription(const std::string& topic, const OpenSource& open) {
     const auto bag = open();
     const Topic* found = nullptr;
@@ -44,9 +44,8 @@ std::string recordedDescription(const std::string& topic, const OpenSource& open
         return "";  // cut off before it came
     }
 }
-/** The topic that is asked for, or the only one with scans. Throws Error, which does not name the
- *  file, where there is none, there are several, or that one has no scans; it lists what there
- *  is. */
+/** The requested topic, or the only one with scans. Throws an Error that lists the topics (without
+ *  the file's name) if there is no such topic, there are several, or it has no scans. */
 Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
     if (topics.empty()) throw Error("contains no messages");
     std::vector<Topic> scans;
@@ -60,7 +59,7 @@ Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
     const auto found = std::find_if(scans.begin(), scans.end(),
                                     [&](const Topic& topic) { return topic.name == asked; });
     if (found != scans.end()) return *found;
-    std::vector<Topic> ending;  // in what was asked for, as a whole name: /lidar/points in points
+    std::vector<Topic> ending;  // `points` matches /lidar/points, as a whole name
     for (const Topic& topic : scans)
         if (endsIn(topic.name, "/" + asked)) ending.push_back(topic);
     if (ending.size() > 1)
@@ -71,9 +70,9 @@ Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
     return ending.front();
 }
 
-/** The json of the Ouster whose packets are in `topic`: the file `source.sensorFile`, what the
- *  topic .../metadata of the bag says whose name has the most in common with it, or the .json
- *  beside the bag. Throws Error where there is none of them. */
+/** The json of the Ouster whose packets are in `topic`: the file `source.sensorFile`, the bag's
+ *  topic .../metadata with the longest common prefix, or the .json next to the bag. Throws Error if
+ *  none exists. */
 SideFile ousterDescription(const ScanSource& source, const std::string& topic,
                            const OpenSource& open) {
     if (!source.sensorFile.empty()) {
@@ -146,7 +145,7 @@ class BagReader : public ScanReader {
     }
 
  private:
-    /** At the first messages. A fault is told when its scan is read. */
+    /** Called for the first messages. A fault is reported when its scan is read. */
     void lookAhead(const OpenSource& open) {
         constexpr std::size_t kMessages = 8;  // some may be empty
         try {

@@ -15,7 +15,7 @@ namespace delio::io {
 namespace {
 using Buffer = std::vector<std::uint8_t>;
 
-/** What one call of a library took and gave. */
+/** Bytes consumed and produced by one call of a decompression library. */
 struct Progress {
     std::size_t taken = 0, given = 0;
     bool ended = false;
@@ -29,8 +29,8 @@ struct Progress {
 template <typename Step>
 void unpackBy(const std::string& name, const Buffer& packed, std::uint64_t size, Buffer& out,
               const Step& step) {
-    // Memory grows with what comes out, at first by copies, then in place: large memory that is
-    // reserved takes none until it is written to.
+    // Memory grows with the decompressed data, at first by copies, then in place: large reserved
+    // memory costs nothing until it is written.
     constexpr std::uint64_t kFirst = 1 << 20, kCopied = 16 << 20;
     std::size_t taken = 0, given = 0;
     for (bool ended = false; !ended;) {
@@ -181,7 +181,7 @@ void FileInput::get(void* to, std::size_t bytes) {
 }
 
 void FileInput::pass(std::uint64_t bytes) {
-    // A seek drops what was read ahead: small steps are read.
+    // A seek discards the read-ahead buffer, so small steps are read instead.
     char scratch[4096];
     if (bytes <= sizeof(scratch))
         get(scratch, bytes);

@@ -64,7 +64,9 @@ FilesByExtension scansIn(const fs::path& folder) {
     return files;
 }
 
-/** A KITTI folder up to two levels below this one, the first by name; empty: there is none. */
+/** The first KITTI folder by name, up to two levels below this one; empty if there is no such
+ * folder.
+ */
 fs::path kittiFolderIn(const fs::path& folder, int levels = 2) {
     std::vector<fs::path> inner;
     std::error_code fault;
@@ -111,7 +113,7 @@ CloudFolder::CloudFolder(const fs::path& folder) : FilesReader("lidar") {
     lookAtTimes();
 }
 
-/** What the times of points mean is known from several scans. A fault is told when its scan is
+/** The meaning of point times is inferred from several scans. A fault is reported when its scan is
  *  read. */
 void CloudFolder::lookAtTimes() {
     constexpr std::size_t kScans = 8;  // some may be empty

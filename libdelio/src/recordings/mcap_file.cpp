@@ -131,7 +131,7 @@ void McapFile::enterChunk(std::uint64_t bytes) {
     if (taken > bytes || packedBytes > bytes - taken)
         throw Error("is damaged: a chunk is longer than its record");
     if (compression.empty()) {
-        if (isCut) {  // what is there of it is read in place
+        if (isCut) {  // read in place, as far as it exists
             chunkIsCut_ = true;
             return;
         }

@@ -18,8 +18,8 @@ namespace delio::io {
 namespace {
 /** Takes the first return, the strongest. Points come column by column, so in the order of time,
  *  and upper rows first; their intensity is the reflectivity, 255 being 1. Columns that the sensor
- *  calls invalid and pixels without a return are left out, and so is what comes of a turn after the
- *  next one began, and the packets of another sensor than the json describes. */
+ *  calls invalid and pixels without a return are left out, and so are packets of a revolution that
+ *  arrive after the next one has begun, and packets of sensors other than the json's. */
 class OusterDecoder : public PacketDecoder {
  public:
     OusterDecoder(const std::string& json, const std::string& name)
@@ -104,7 +104,8 @@ bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double r
                         "; '" + name_ + "' has " + std::to_string(info_.columns));
         const std::uint16_t number = packet.frameOf(column);
         if (frame_ && number != frame_->number) {
-            // Numbers begin anew after 65535. An older one is late, a much older one a restart.
+            // Numbers wrap after 65535. A slightly older one is late; a much older one means a
+            // restart.
             constexpr int kLate = 16;
             const auto ahead =
                 static_cast<std::int16_t>(static_cast<std::uint16_t>(number - frame_->number));

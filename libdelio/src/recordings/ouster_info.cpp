@@ -31,7 +31,7 @@ std::optional<OusterLayout> layoutOf(const std::string& profile) {
     return {};
 }
 
-/** Reads keys that stand at the top, or in one of several groups. */
+/** Reads keys at the top level or in one of several groups. */
 class Reader {
  public:
     Reader(const std::string& text, const std::string& name) : name_(name) {
@@ -58,7 +58,7 @@ class Reader {
         }
     }
 
-    /** A number, or a text of one; 0 where there is none. */
+    /** A number, or a text with a number; 0 if it is missing. */
     std::uint64_t idOf(const std::string& key) const {
         const Json* const json = lookUp(key);
         if (json && json->is_number_unsigned()) return json->get<std::uint64_t>();
@@ -269,7 +269,7 @@ SideFile ousterJsonBeside(const std::string& recording, const std::uint8_t* pack
             std::remove_if(fitting.begin(), fitting.end(),
                            [&](const SideFile& json) { return !fits(json, packet, bytes); }),
             fitting.end());
-    // Where none fits, the likeliest one says in what it does not.
+    // If none fits, the most similar one gives the error message.
     if (fitting.empty()) fitting = all;
     keepMostAlike(fitting, stem);
     if (fitting.size() == 1) return fitting.front();

@@ -33,7 +33,7 @@ std::string addressText(std::uint32_t address) {
     return text;
 }
 
-/** What tells a sensor from others of its kind: where its packets go to and come from. */
+/** Identifies a sensor among others of its kind: source and destination of its packets. */
 struct Sender {
     std::string kind;
     std::uint16_t port = 0;
@@ -85,7 +85,7 @@ class PcapReader : public ScanReader {
     std::string foundJson_;  //!< beside the recording, under another name
     std::size_t count_ = 0;
     bool pointTimes_ = false, ended_ = false;
-    std::string fault_;  //!< what ended the recording, told after the scans before
+    std::string fault_;  //!< fault that ended the recording, reported after the scans before it
 };
 
 PcapReader::PcapReader(const ScanSource& source) : source_(source), stream_(source.path) {

@@ -9,8 +9,8 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewest = 8;  // points, of which some are of another part of a turn
 
-/** Times of measured points, of a large scan a part of them. A zero is none: many drivers write it
- *  for "no time". */
+/** Times of measured points (a sample of large scans). Zeros are ignored: many drivers write 0 for
+ *  "no time". */
 std::vector<double> sampleOf(const RecordedTimes& times) {
     constexpr std::size_t kEnough = 8192;
     std::vector<double> values;

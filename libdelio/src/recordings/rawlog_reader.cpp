@@ -40,10 +40,9 @@ void readValues(const std::string& file, std::size_t count, std::vector<Value>& 
     in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(bytes));
     if (!in) throw Error("cannot read '" + file + "'");
 }
-/** Takes rings and times of the points from the files STEM.ring (uint16) and STEM.time (float32,
- *  seconds from the stamp), one value a point, where they are there; NaN: the point has no time.
- *  Throws Error where a file cannot be read or has not one value for each point, or a time is
- *  beyond 1 s. */
+/** Reads rings and times of the points from STEM.ring (uint16) and STEM.time (float32, seconds from
+ *  the stamp), one value per point, if they exist; NaN: no time. Throws Error if a file cannot be
+ *  read or has another number of values, or if a time is beyond 1 s. */
 void readPointExtras(const std::string& stem, Scan& scan) {
     const std::size_t count = scan.points->size();
     readValues(stem + ".ring", count, scan.rings);
@@ -155,8 +154,8 @@ bool RawlogReader::readEntry() {
         object = archive.next();
     } catch (const std::exception& e) {
         ended_ = true;
-        // Nothing was left to read: the end of the rawlog. Otherwise something is only half there,
-        // or is damaged and perhaps claims more than there is memory for.
+        // No bytes left: the end of the rawlog. Otherwise an object is incomplete or damaged, and
+        // may claim more memory than available.
         if (in_->getPosition() == before && before > 0 && in_->endedWell()) return false;
         if (!archive.refused().empty())
             throw Error("'" + path_ + "' holds '" + archive.refused() + "' (byte " +

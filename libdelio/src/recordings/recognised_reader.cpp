@@ -12,7 +12,7 @@ RecognisedReader::RecognisedReader(std::unique_ptr<ScanReader> source)
     recognise();
 }
 
-/** Reads the next scan of the source into `ahead_`; false where there is none. */
+/** Reads the next scan of the source into `ahead_`; false at the end. */
 bool RecognisedReader::readOne() {
     if (ended_) return false;
     try {

@@ -165,7 +165,7 @@ void Ros1Bag::enterChunk(const Record& record) {
     const std::string compression = textOf(record.fields, "compression");
     const std::uint64_t size = valueOf<std::uint32_t>(record.fields, "size");
     if (compression == "none") {
-        // Its records are read in place: what is there of a chunk that is cut off comes out.
+        // Records are read in place, so the intact part of a cut chunk is used.
         chunkEnd_ = file_.position() + record.bytes;
         return;
     }

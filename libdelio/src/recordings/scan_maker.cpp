@@ -83,8 +83,7 @@ class CloudMaker : public ScanMaker {
         return count;
     }
 
-    /** Takes out what rows are padded with. A row step that cannot be one is not believed: some
-     *  drivers leave it 0. */
+    /** Removes the padding of rows. An impossible row step is ignored: some drivers leave it 0. */
     void compact(Cloud& cloud) {
         const std::size_t row = cloud.columns * cloud.layout.step;
         if (cloud.rows < 2 || cloud.rowStep <= row) return;

@@ -15,7 +15,7 @@ bool StampOrder::isClockSet(const std::deque<Scan>& ahead) const {
     return (wasSet_ || ahead.size() >= kWindow) && std::all_of(ahead.begin(), ahead.end(), late);
 }
 
-/** Where sorted scans are as far apart as usual. One that has a wrong stamp is not. */
+/** True if sorted scans have the usual interval, which a scan with a wrong stamp has not. */
 std::size_t StampOrder::earliestOf(const std::deque<Scan>& ahead) const {
     std::size_t earliest = 0;
     for (std::size_t i = 1; i < std::min(kWindow, ahead.size()); ++i) {

@@ -35,7 +35,7 @@ constexpr std::size_t kUdpHeader = 8;
 
 bool isVlan(std::uint16_t type) { return type == 0x8100 || type == 0x88A8 || type == 0x9100; }
 
-/** Where the protocol stands in a link's header, and how long that is. */
+/** Offset of the protocol field in a link header, and the header's length. */
 struct Link {
     int type;
     std::size_t protocolAt, header;

@@ -147,7 +147,7 @@ void Run::switchOff(const FailedListener& failed, std::size_t scan) {
     drop(loops_);
 }
 
-/** Where there are none, the graph stays as it was. */
+/** Without loops the graph is unchanged. */
 void Run::closeLoops() {
     auto closed = loops_->close(record_.graph, graphOptions(record_.options, settings_));
     record_.searchedLoops = searchesLoops();
