@@ -183,7 +183,7 @@ class Attempt:
                                  seconds=round(time.time() - self.began, 3), **self._about())
         except OSError as error:
             line += f" (and its state cannot be written: {reason(error)})"
-        say(f"{self.task.label}: failed: {line} (all of it: {log})")
+        say(f"{self.task.label}: failed: {line} (see {log})")
         return code
 
 
