@@ -79,7 +79,7 @@ std::vector<ReportRow> rowsOf(const std::vector<evaluation::Comparison>& compari
     return rows;
 }
 
-/** What the user asks for. */
+/** Command-line arguments. */
 struct CommandLine {
     TCLAP::CmdLine cmd{"evaluates trajectories against a reference", ' ', kVersion};
     TCLAP::ValueArg<std::string> reference{

@@ -22,7 +22,7 @@ using namespace delio;
 
 constexpr std::size_t kScans = 4;  // as many as the paper's figure shows
 
-/** What is drawn: each as .3Dscene and .png. */
+/** Files of the figures, as .3Dscene and .png. */
 std::vector<std::string> figureFiles() {
     std::vector<std::string> files;
     for (const std::string name : {"normals_sphere", "outlier_removal", "line_cloud",
@@ -137,7 +137,7 @@ void drawLines(const std::vector<Scan>& scans, const PaperOdometryOptions& optio
     figures.save("line_matches_after", *picture::matchScene(from, to, pose.translation()), view);
 }
 
-/** What the command line chooses for the stages of the paper. Throws Error as Options does. */
+/** Options of the paper's stages from the command line. Throws Error as Options does. */
 PaperOdometryOptions optionsFor(const std::string& profile, const io::ScanReader& reader,
                                 const std::vector<std::string>& assignments) {
     Options options = Options::forDrive(profile, reader.meta());

@@ -54,7 +54,7 @@ std::optional<map::GeoReference> placeIn(const std::string& text) {
     return place;
 }
 
-/** What TCLAP is told of an option whose value is checked by a function. */
+/** TCLAP constraint checked by a function. */
 class Checked : public TCLAP::Constraint<std::string> {
  public:
     Checked(std::string shape, bool (*isGood)(const std::string&))
@@ -79,7 +79,7 @@ class Metres : public TCLAP::Constraint<double> {
     double least_;
 };
 
-/** What the command line asks for. */
+/** Command-line arguments. */
 struct Arguments {
     Arguments();
     /** An option that would have no effect; empty: none. */
@@ -164,7 +164,7 @@ std::vector<std::string> outputsOf(const std::string& output) {
     return files;
 }
 
-/** Everything about the files that can be told before the map is read. */
+/** Checks of the files before the map is read. */
 void checkFiles(const std::string& input, const std::string& output, bool force) {
     mapFileIn(input);
     cli::refuseOverlap(mapFilesIn(input), outputsOf(output));

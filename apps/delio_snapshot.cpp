@@ -102,7 +102,7 @@ std::string frameName(const std::string& path, unsigned frame) {
     return name.string();
 }
 
-/** What the command line asks for. */
+/** Command-line arguments. */
 struct Arguments {
     Arguments();
     std::vector<std::string> pictureNames();

@@ -19,8 +19,8 @@ using evaluation::Comparison;
 using run::RunFolder;
 
 namespace {
-/** The pose file of an estimate: a folder that delio-slam has written stands for the trajectory in
- *  it that is, or after --calib will be, in the frame of cam0. */
+/** Pose file of an estimate: for a result folder, its trajectory in the cam0 frame, or the one that
+ *  --calib transforms to it. */
 std::string poseFile(const std::string& path, bool calibrationGiven, bool odometry = false) {
     if (!fs::is_directory(path)) return path;
     const RunFolder folder(path);
@@ -71,7 +71,7 @@ std::vector<Sequence> sharedSequences(const fs::path& reference, const fs::path&
     return sequences;
 }
 
-/** What is wrong with trajectories of different frames, and what to do. */
+/** Message for trajectories of different frames. */
 std::string faultOfFrames(const evaluation::WrongFrames& fault, bool calibrationGiven) {
     if (fault.mismatch() == evaluation::FrameMismatch::lidarAgainstCamera)
         return std::string(fault.what()) + "; give --calib calib.txt to bring the estimate to cam0";
@@ -106,7 +106,7 @@ Comparison compareOrSayWhy(const io::Trajectory& reference, const io::Trajectory
     }
 }
 
-/** What people should know of the poses that were compared. */
+/** Prints notes about the compared poses. */
 void describe(const Comparison& comparison, bool verbose, const std::string& pair) {
     const std::string matched = std::to_string(comparison.reference.size());
     if (comparison.unusedReference > 0)

@@ -1,4 +1,4 @@
-// Where mrpt-gui is not installed there is no live view.
+// Replacement of the live view without mrpt-gui.
 #include "delio/core/error.h"
 #include "live_view.h"
 

@@ -27,7 +27,7 @@ struct MapInput {
     picture::MapWays drawnWays() const;
 };
 
-/** What is read of `path`: map.ply of the folder of a run, else `path` itself. Error where the
+/** File to read for `path`: map.ply in a result folder, else `path` itself. Throws Error if the
  *  folder has no map. */
 std::string mapFileIn(const std::string& path);
 

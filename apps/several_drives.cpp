@@ -139,7 +139,7 @@ class Joiner {
         }
     }
 
-    /** What was too far off may meet a map that has grown. */
+    /** Drives without overlap are retried once the map has grown. */
     void joinTo(std::list<Drive>& pending) {
         for (auto drive = pending.begin(); drive != pending.end();) {
             const auto result = run(*drive, fileOf(map_));

@@ -13,7 +13,7 @@
 #include "option_sections.h"
 
 namespace delio {
-/** What delio-slam is asked for. */
+/** Command line of delio-slam. */
 struct SlamCommandLine {
     using Text = TCLAP::ValueArg<std::string>;
     using Number = TCLAP::ValueArg<cli::Count>;

@@ -92,8 +92,7 @@ void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
     poses_ += poseRow(scan);
 }
 
-/** Where cam0 is in the world at the first scan: what two drives through one world have in common.
- */
+/** Pose of cam0 in the world at the first scan, which relates two drives through one world. */
 std::string DriveWriter::origin() const {
     return io::kittiRow(cam0PoseOf(drive_.lidarPose(0), lidarToCam0()));
 }

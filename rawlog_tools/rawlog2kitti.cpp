@@ -74,7 +74,7 @@ struct SideFile {
     std::optional<std::size_t> rows;  //!< none: they do not belong to scans
 };
 
-/** Those that are there. Throws Error for one that cannot be understood. */
+/** Existing side files. Throws Error for invalid ones. */
 std::vector<SideFile> sideFilesOf(const std::string& rawlog) {
     std::vector<SideFile> files;
     for (const std::string name : {"times.txt", "calib.txt", "poses.txt"}) {

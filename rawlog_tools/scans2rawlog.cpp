@@ -83,7 +83,7 @@ class Conversion {
         return true;
     }
 
-    /** What ended the recording before its end; empty: nothing did. */
+    /** Fault that ended the recording early; may be empty. */
     const std::string& fault() const { return fault_; }
 
     std::size_t finish() {

@@ -165,7 +165,7 @@ bool isMetres(double value) { return value >= 0 && std::isfinite(value); }
 
 bool isRate(double value) { return value >= 0 && value < 1; }
 
-/** Why a scene cannot be made as asked; empty: it can. */
+/** Message about invalid arguments of a scene; empty if they are valid. */
 std::string faultInScene(Arguments& args) {
     const std::string& scene = args.scene.getValue();
     if (!isOneOf(sceneNames(), scene))
@@ -237,7 +237,7 @@ DriveRequest requestOf(Arguments& args) {
     return request;
 }
 
-/** What is carried by hand has no roof under it, and tells what is near. */
+/** Hand-held sensors have no vehicle below them and measure near points. */
 void suit(DriveRequest& request, const Carrier& carrier) {
     request.scanner.onVehicle = carrier.isVehicle;
     request.sensor.minRange_m = std::min(request.sensor.minRange_m, carrier.nearest_m);

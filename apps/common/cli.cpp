@@ -23,8 +23,8 @@
 #include "delio/core/error.h"
 #include "delio/core/printable.h"
 
-/** Replaces MRPT's own: the containers of MRPT 2.5.8 do not look whether they got the memory that
- *  they asked for, and write to it. A program's own functions go before those of its libraries. */
+/** Replaces MRPT's function: containers of MRPT 2.5.8 do not check whether an allocation succeeded.
+ *  A program's own functions take precedence over those of its libraries. */
 void* mrpt::aligned_malloc(std::size_t size, std::size_t alignment) {
     void* memory = nullptr;
     if (posix_memalign(&memory, alignment, size) != 0) throw std::bad_alloc();

@@ -10,7 +10,7 @@ namespace delio::cli {
 namespace fs = std::filesystem;
 
 namespace {
-/** Where a path leads to in the end. */
+/** Target of a path after following links. */
 std::string realPath(const fs::path& path) {
     std::error_code fault;
     const fs::path real = fs::weakly_canonical(path, fault);

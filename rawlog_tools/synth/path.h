@@ -34,7 +34,7 @@ class Path {
 
     double begin() const { return stations_.front().s; }
     double end() const { return stations_.back().s; }
-    /** Beyond its ends the path goes on straight. */
+    /** Beyond its ends the path continues straight. */
     Station at(double s) const;
 
  private:

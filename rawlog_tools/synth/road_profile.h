@@ -13,8 +13,8 @@ struct DrivingStyle {
     double stopSpacing_m;  //!< about one stop of some seconds in so many metres; 0: none
 };
 
-/** What distinguishes one kind of road from another: lanes, cross-section, marks, and the land
- *  beside it. Both sides are alike; `away` is the distance from the centre line. */
+/** Profile of a road: lanes, cross-section, marks and adjacent land. Both sides are equal; `away`
+ *  is the distance from the centre line. */
 struct RoadProfile {
     struct Corner {
         double away_m, height_m;
@@ -55,7 +55,7 @@ struct RoadProfile {
 
     double height(double away_m) const;
     double reflectivity(double s, double away_m) const;
-    /** Where the road's mesh needs vertices, from the centre line outwards. */
+    /** Offsets of the road mesh's vertices from the centre line. */
     std::vector<double> columns() const;
 };
 

@@ -43,7 +43,7 @@ class Scanner {
 
  private:
     using Views = std::vector<TrafficCaster::View>;
-    /** What sets one laser apart, and its firings of a scan. */
+    /** Properties of one laser, and its firings in a scan. */
     struct Ring {
         std::size_t number;
         double elevation_rad, offset_rad;  //!< offset of its azimuths from the columns'

@@ -22,7 +22,7 @@ namespace {
 using Packet = mrpt::obs::CObservationVelodyneScan::TVelodyneRawPacket;
 constexpr std::size_t kBlocks = 12, kBlockBytes = 100;
 constexpr int kTurn = 36000;  // of azimuths, 0.01 deg
-/** More packets than any turn has: a sensor that stands still must not fill the memory. */
+/** More packets than any revolution has, so that a stopped sensor does not fill the memory. */
 constexpr std::size_t kMostPackets = 4000;
 
 /** Turns begin where the azimuth passes 0, between two blocks. Its packet is part of both turns,
@@ -266,7 +266,7 @@ std::string velodyneModelName(const std::uint8_t* packet) {
         if (block[1] == 0xCC || block[1] == 0xBB) refuse("VLS-128 (Alpha Prime)");
         secondBank = secondBank || block[1] == 0xDD;
     }
-    // Its last two bytes tell its status in turn, not what it is.
+    // Its last two bytes cycle through status values and do not identify the model.
     if (secondBank) return "HDL-64E";
     switch (packet[kFactoryByte]) {
         case 0x21:

@@ -129,7 +129,7 @@ RunRow Run::process(const Scan& scan, double read_ms) {
     return row;
 }
 
-/** What a listener has is of no use once it has failed: its part of the results is left out. */
+/** The results of a failed listener are not written. */
 void Run::switchOff(const FailedListener& failed, std::size_t scan) {
     const std::string what = std::string("the listener '") + failed.listener->name() +
                              "' failed at scan " + std::to_string(scan) +

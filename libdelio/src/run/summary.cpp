@@ -94,7 +94,7 @@ void write(YAML::Emitter& yaml, const char* key, const std::array<std::size_t, 3
     yaml << YAML::EndMap;
 }
 
-/** As yaml-cpp's as(), which asks the locale. */
+/** Like yaml-cpp's as(), which depends on the locale. */
 template <typename Number>
 Number numberOf(const YAML::Node& node) {
     const auto number = numberIn<Number>(node.as<std::string>());

@@ -13,7 +13,7 @@ namespace delio {
 using mrpt::config::CConfigFileMemory;
 
 namespace {
-/** MRPT's reader passes silently over what it does not understand. */
+/** MRPT's reader silently ignores lines that it does not understand. */
 void requireIniLines(const std::string& text) {
     std::istringstream in(text);
     bool inSection = false;
@@ -30,7 +30,7 @@ void requireIniLines(const std::string& text) {
     }
 }
 
-/** MRPT puts in what $env{NAME} and $eval{FORMULA} stand for, and throws where one has no end. */
+/** MRPT expands $env{NAME} and $eval{FORMULA}, and throws if one is not closed. */
 CConfigFileMemory configOf(const std::string& text) {
     try {
         return CConfigFileMemory(text);

@@ -44,7 +44,7 @@ class SwitchedOff : public SlamListener {
     std::string name_;
 };
 
-/** All poses after it would be what it is. */
+/** All later poses would be wrong, too. */
 void requireFinite(const Increment& increment, const Scan& scan) {
     if (!increment.pose.matrix().allFinite() || !increment.covariance.allFinite())
         throw Error("scan " + std::to_string(scan.index) +
