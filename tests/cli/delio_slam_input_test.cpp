@@ -214,12 +214,12 @@ TEST_F(DelioSlam, TimesThatDoNotRise) {
         std::string words;
     };
     for (const auto& [times, used, words] :
-         {Case{{0, 0.1, 0.1, 0.3, 0.4}, 4, "out of order are left out: 1 scan (first: scan 2)"},
-          Case{{0, 0.1, 0.3, 0.2, 0.4}, 5, "sorted by their stamps: 1 scan (first: scan 3)"},
+         {Case{{0, 0.1, 0.1, 0.3, 0.4}, 4, "out of order: ignored: 1 scan (first: scan 2)"},
+          Case{{0, 0.1, 0.3, 0.2, 0.4}, 5, "sorted by stamp: 1 scan (first: scan 3)"},
           Case{{10, 10.1, 0.2, 0.3, 0.4},
                5,
-               "counted on from the scan before: 1 scan (first: scan 2)"},
-          Case{{3, 3, 3, 3, 3}, 5, "counted on from the scan before: 4 scans (first: scan 1)"}}) {
+               "continued from the previous scan: 1 scan (first: scan 2)"},
+          Case{{3, 3, 3, 3, 3}, 5, "continued from the previous scan: 4 scans (first: scan 1)"}}) {
         SCOPED_TRACE(words);
         auto scans = test::toyScans(5);
         if (times[3] < times[2]) std::swap(scans[2], scans[3]);

@@ -261,7 +261,7 @@ TEST_F(PageInBrowser, ObeysTheMouse) {
 
 TEST_F(PageInBrowser, SaysWhereThereIsNoWebGl) {
     const auto shot = open("", "1280,800", "--disable-3d-apis");
-    EXPECT_EQ(shot.state.rfind("error: This browser cannot draw", 0), 0U) << shot.state;
+    EXPECT_EQ(shot.state.rfind("error: This page needs WebGL", 0), 0U) << shot.state;
     EXPECT_GT(shot.count(400, 300, 900, 500, isWhite), 10000);
 }
 }  // namespace
