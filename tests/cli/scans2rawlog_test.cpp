@@ -124,7 +124,7 @@ TEST_F(Scans2Rawlog, WhatCameBeforeAFaultIsKept) {
     writeDrive(kScans, true);
     const std::string bytes = readText(rawlog_);
     writeText(folder_ / "cut.rawlog", bytes.substr(0, 7 * bytes.size() / 10));
-    expectFailure(convert(folder_ / "cut.rawlog"), 1, {"cut off", "3 scans before are in"});
+    expectFailure(convert(folder_ / "cut.rawlog"), 1, {"cut off", "3 scans before it are in"});
     io::RawlogReader reader(made_);
     std::size_t scans = 0;
     while (reader.next()) ++scans;
