@@ -37,13 +37,15 @@ std::vector<double> lengthsOf(const std::string& text) {
 }
 
 struct LengthsConstraint : TCLAP::Constraint<std::string> {
-    std::string description() const override { return "rising lengths in metres, as 100,200,400"; }
+    std::string description() const override {
+        return "increasing lengths in metres, such as 100,200,400";
+    }
     std::string shortID() const override { return "100,200,..."; }
     bool check(const std::string& text) const override { return !lengthsOf(text).empty(); }
 };
 
 struct DeltaConstraint : TCLAP::Constraint<int> {
-    std::string description() const override { return "a count of poses, 1 or more"; }
+    std::string description() const override { return "a number of poses, at least 1"; }
     std::string shortID() const override { return "N"; }
     bool check(const int& delta) const override { return delta >= 1; }
 };
@@ -51,7 +53,7 @@ struct DeltaConstraint : TCLAP::Constraint<int> {
 void refuseReport(const std::string& folder, bool force) {
     if (folder.empty() || !fs::exists(folder)) return;
     if (!fs::is_directory(folder))
-        throw Error("'" + folder + "' is a file; name a folder for the report");
+        throw Error("'" + folder + "' is a file; give a folder for the report");
     if (!fs::is_empty(folder)) cli::refuseExisting(folder, force);
 }
 
@@ -73,30 +75,29 @@ std::vector<ReportRow> rowsOf(const std::vector<evaluation::Comparison>& compari
         own.clear();
     }
     if (withAverages && sets.size() > 1)
-        cli::warn("the estimates cover different sequences: do not compare their averages");
+        cli::warn("the estimates cover different sequences; their averages cannot be compared");
     return rows;
 }
 
-/** What the user asks for. */
+/** Command-line arguments. */
 struct CommandLine {
-    TCLAP::CmdLine cmd{"errors of trajectories against a reference", ' ', kVersion};
+    TCLAP::CmdLine cmd{"evaluates trajectories against a reference", ' ', kVersion};
     TCLAP::ValueArg<std::string> reference{
-        "r",  "ref", "Reference: a pose file (KITTI or TUM), or a folder of them (NN.txt)",
+        "r",  "ref", "Reference poses: a file (KITTI or TUM format) or a folder of NN.txt files",
         true, "",    "REF.txt|DIR",
         cmd};
-    TCLAP::MultiArg<std::string> estimates{
-        "e",
-        "est",
-        "Estimate: a pose file, a folder that delio-slam has written, or, if --ref is a folder, a "
-        "folder of pose files or of such folders",
-        true,
-        "[NAME=]EST.txt|DIR",
-        cmd};
+    TCLAP::MultiArg<std::string> estimates{"e",
+                                           "est",
+                                           "Estimated poses: a file or a result folder of "
+                                           "delio-slam; if --ref is a folder, a folder of either",
+                                           true,
+                                           "[NAME=]EST.txt|DIR",
+                                           cmd};
     TCLAP::ValueArg<std::string> calibration{
         "c",
         "calib",
-        "The estimates are in the LiDAR frame; Tr of this file brings them to cam0 (for folders: "
-        "one Tr for every sequence)",
+        "Calibration whose Tr transforms estimates from the LiDAR frame to cam0; for folders the "
+        "same Tr is used for all sequences",
         false,
         "",
         "calib.txt",
@@ -104,27 +105,27 @@ struct CommandLine {
     LengthsConstraint lengthsConstraint;
     TCLAP::ValueArg<std::string> lengths{"l",
                                          "lengths",
-                                         "Lengths of KITTI's segments in metres",
+                                         "Lengths of KITTI's segments, metres",
                                          false,
                                          textOf(evaluation::kittiLengths_m()),
                                          &lengthsConstraint,
                                          cmd};
     DeltaConstraint deltaConstraint;
-    TCLAP::ValueArg<int> delta{"d", "delta", "Poses that RPE spans", false, 1, &deltaConstraint,
+    TCLAP::ValueArg<int> delta{"d",   "delta", "Number of poses between which RPE is computed",
+                               false, 1,       &deltaConstraint,
                                cmd};
     std::vector<std::string> formats{"table", "tsv"};
     TCLAP::ValuesConstraint<std::string> formatsConstraint{formats};
     TCLAP::ValueArg<std::string> format{
-        "f", "format", "Form of the results", false, "table", &formatsConstraint, cmd};
+        "f", "format", "Output format", false, "table", &formatsConstraint, cmd};
     TCLAP::ValueArg<std::string> output{
-        "o", "output", "Folder for the report; needs gnuplot", false, "", "REPORT_DIR", cmd};
+        "o", "output", "Folder for the HTML report (needs gnuplot)", false, "", "REPORT_DIR", cmd};
     TCLAP::SwitchArg sameFrame{"", "same-frame",
-                               "Reference and estimate are in one frame (a drive that was "
-                               "localised in a stored map, and a reference in that map): say how "
-                               "far apart their poses are, too, with nothing aligned",
+                               "Also report pose differences without alignment; for a drive "
+                               "localised in a stored map and a reference in the same frame",
                                cmd};
-    TCLAP::SwitchArg force{"", "force", "Write into a report folder that is not empty", cmd};
-    TCLAP::SwitchArg verbose{"", "verbose", "Say what is compared with what", cmd};
+    TCLAP::SwitchArg force{"", "force", "Write into a non-empty report folder", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "Print which files are compared", cmd};
 };
 
 EvalSettings settingsOf(CommandLine& line) {
@@ -136,7 +137,7 @@ EvalSettings settingsOf(CommandLine& line) {
         const auto read = io::readCalibration(line.calibration.getValue());
         if (!read.hasTr)
             throw Error("'" + line.calibration.getValue() +
-                        "' has no Tr, which brings the LiDAR frame to cam0");
+                        "' has no Tr (the transformation from the LiDAR frame to cam0)");
         settings.Tr = read.Tr;
     }
     return settings;
@@ -149,9 +150,8 @@ void writeDistances(const std::vector<evaluation::Comparison>& comparisons, std:
         const auto& row = found.row;
         out << row.name << (row.sequence.empty() ? "" : " ") << row.sequence
             << mrpt::format(
-                   ": in the reference's frame %.4f m and %.4f deg from it in the median, %.4f m "
-                   "and "
-                   "%.4f deg in 95 %%, at most %.4f m and %.4f deg, over %zu poses\n",
+                   ": unaligned difference to the reference: median %.4f m, %.4f deg; p95 %.4f m, "
+                   "%.4f deg; worst %.4f m, %.4f deg; %zu poses\n",
                    error.translation_m.median, error.rotation_deg.median, error.translation_m.p95,
                    error.rotation_deg.p95, error.translation_m.max, error.rotation_deg.max,
                    found.reference.size());
@@ -200,22 +200,21 @@ int evaluate(CommandLine& line) {
 cli::HelpText help() {
     cli::HelpText help;
     help.about =
-        "KITTI's translation error (percent) and rotation "
-        "error (deg/100 m), both means over segments; APE (RMSE in metres after rigid alignment, "
-        "no scale); RPE (RMSE over --delta poses, metres and degrees). '-' stands for a figure "
-        "that the drive is too short for. Poses of TUM files are matched by time (within 0.02 s), "
-        "all others by row. For two folders, every NN.txt in both is one sequence, and a row 'avg' "
-        "follows: the plain mean of the sequences' errors, as in papers on KITTI, with the sums of "
-        "lengths and segments.";
-    help.writes = {{"standard output", "a row of errors an estimate and sequence"},
-                   {"report.html", "with -o: one page, pictures inside"},
-                   {"plots/", "with -o: SVG, PNG, data, gnuplot scripts"},
-                   {"metrics.tsv, lengths.tsv", "with -o: the errors, and by length of segments"}};
+        "Computes KITTI's translation error (percent) and rotation error (deg/100 m), averaged "
+        "over segments; APE (RMSE in metres after rigid alignment without scale); and RPE (RMSE "
+        "over --delta poses, metres and degrees). '-' means that the drive is too short. TUM poses "
+        "are matched by time (within 0.02 s), all others by row. With two folders, every NN.txt "
+        "that is in both is one sequence. The row 'avg' is the unweighted mean over sequences, as "
+        "in papers on KITTI; lengths and segments are summed.";
+    help.writes = {{"standard output", "errors, one row per estimate and sequence"},
+                   {"report.html", "with -o: the report, one page including its plots"},
+                   {"plots/", "with -o: plots as SVG and PNG, with data and gnuplot scripts"},
+                   {"metrics.tsv, lengths.tsv", "with -o: errors, and errors by segment length"}};
     help.examples = {{{"delio-eval -r dataset/poses/07.txt -e 07-results -o 07-report",
-                       "A drive of KITTI, with a report"},
+                       "Evaluate a KITTI drive and write a report"},
                       {"delio-eval -r dataset/poses -e ours=results -e theirs=others -f tsv",
-                       "Two estimates of several sequences"}}};
-    help.interrupted = "what was there stays as it was";
+                       "Compare two estimates on several sequences"}}};
+    help.interrupted = "existing files are unchanged";
     return help;
 }
 }  // namespace

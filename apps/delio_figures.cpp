@@ -22,7 +22,7 @@ using namespace delio;
 
 constexpr std::size_t kScans = 4;  // as many as the paper's figure shows
 
-/** What is drawn: each as .3Dscene and .png. */
+/** Files of the figures, as .3Dscene and .png. */
 std::vector<std::string> figureFiles() {
     std::vector<std::string> files;
     for (const std::string name : {"normals_sphere", "outlier_removal", "line_cloud",
@@ -31,7 +31,7 @@ std::vector<std::string> figureFiles() {
     return files;
 }
 
-/** Nothing that is read may be overwritten, nor what is there without --force. */
+/** Throws Error if an output is an input, or exists and --force is not given. */
 void checkFiles(const std::string& input, const std::string& folder, bool force) {
     std::vector<std::string> outputs;
     for (const auto& file : figureFiles()) outputs.push_back(folder + "/" + file);
@@ -137,7 +137,7 @@ void drawLines(const std::vector<Scan>& scans, const PaperOdometryOptions& optio
     figures.save("line_matches_after", *picture::matchScene(from, to, pose.translation()), view);
 }
 
-/** What the command line chooses for the stages of the paper. Throws Error as Options does. */
+/** Options of the paper's stages from the command line. Throws Error as Options does. */
 PaperOdometryOptions optionsFor(const std::string& profile, const io::ScanReader& reader,
                                 const std::vector<std::string>& assignments) {
     Options options = Options::forDrive(profile, reader.meta());
@@ -149,38 +149,37 @@ PaperOdometryOptions optionsFor(const std::string& profile, const io::ScanReader
 
 cli::HelpText help() {
     cli::HelpText help;
-    help.about = "Four scans that follow each other are shown.";
+    help.about = "Shows four consecutive scans.";
     help.sections = cli::optionSections(stagesOf(Options::ofProfile("paper")));
-    help.sections.erase(help.sections.begin());  // the choice of an odometry: there is none
-    help.writes = {{"normals_sphere", "the pattern of the normals on the sphere, of each scan"},
-                   {"outlier_removal", "the same of the first scan, after each round"},
-                   {"line_cloud", "the lines of the first scan"},
-                   {"line_matches_before", "matched lines of two scans before registration"},
-                   {"line_matches_after", "and after it; each as .png and as .3Dscene"}};
-    help.examples = {{{"delio-figures -i 07.rawlog -o figures --scan 100", "Of scans 100 to 103"},
+    help.sections.erase(help.sections.begin());  // the odometry cannot be chosen
+    help.writes = {
+        {"normals_sphere", "pattern of normals on the sphere, per scan"},
+        {"outlier_removal", "the same for the first scan, after each round of outlier removal"},
+        {"line_cloud", "line cloud of the first scan"},
+        {"line_matches_before", "matched lines of two scans before registration"},
+        {"line_matches_after", "the same after registration; all as .png and .3Dscene"}};
+    help.examples = {{{"delio-figures -i 07.rawlog -o figures --scan 100", "Draw scans 100 to 103"},
                       {"delio-figures -i 07.rawlog -o few --set outlier_removal.rounds=1",
-                       "With one round of outlier removal"}}};
-    help.interrupted = "what was there stays as it was";
+                       "Use one round of outlier removal"}}};
+    help.interrupted = "existing files are unchanged";
     return help;
 }
 }  // namespace
 
 int main(int argc, char** argv) {
-    TCLAP::CmdLine cmd("the paper's pictures of the stages, made of scans of a recording", ' ',
-                       kVersion);
+    TCLAP::CmdLine cmd("draws the paper's figures from scans of a recording", ' ', kVersion);
     using Text = TCLAP::ValueArg<std::string>;
-    Text input("i", "input", "Recording to read: see delio-slam", true, "", "IN", cmd);
+    Text input("i", "input", "Recording: see delio-slam", true, "", "IN", cmd);
     Text output("o", "output", "Folder for the figures", true, "", "OUTDIR", cmd);
-    TCLAP::ValueArg<cli::Count> scan("", "scan", "First of the scans that are shown, from 0", false,
-                                     {}, "N", cmd);
-    Text profile("", "profile", "What all options are that are not set", false, "paper",
-                 cli::profileChoice(), cmd);
-    TCLAP::MultiArg<std::string> set("", "set",
-                                     "One option of a section below; delio-slam --profile paper "
-                                     "--print-config prints all of them",
-                                     false, "section.key=value", cmd);
-    TCLAP::SwitchArg force("", "force", "Overwrite what exists", cmd);
-    TCLAP::SwitchArg verbose("", "verbose", "All the text of errors", cmd);
+    TCLAP::ValueArg<cli::Count> scan("", "scan", "First scan to draw, counted from 0", false, {},
+                                     "N", cmd);
+    Text profile("", "profile", "Preset for all options that you do not set yourself", false,
+                 "paper", cli::profileChoice(), cmd);
+    TCLAP::MultiArg<std::string> set(
+        "", "set", "Set one option; delio-slam --profile paper --print-config lists all of them",
+        false, "section.key=value", cmd);
+    TCLAP::SwitchArg force("", "force", "Overwrite existing files", cmd);
+    TCLAP::SwitchArg verbose("", "verbose", "Print full error texts", cmd);
 
     return cli::run(cmd, help(), argc, argv, verbose, [&] {
         checkFiles(input.getValue(), output.getValue(), force.getValue());

@@ -54,7 +54,7 @@ std::optional<map::GeoReference> placeIn(const std::string& text) {
     return place;
 }
 
-/** What TCLAP is told of an option whose value is checked by a function. */
+/** TCLAP constraint checked by a function. */
 class Checked : public TCLAP::Constraint<std::string> {
  public:
     Checked(std::string shape, bool (*isGood)(const std::string&))
@@ -79,7 +79,7 @@ class Metres : public TCLAP::Constraint<double> {
     double least_;
 };
 
-/** What the command line asks for. */
+/** Command-line arguments. */
 struct Arguments {
     Arguments();
     /** An option that would have no effect; empty: none. */
@@ -105,42 +105,44 @@ struct Arguments {
 };
 
 Arguments::Arguments()
-    : cmd("a map as another kind of file, a part of it, in another frame", ' ', kVersion),
-      input("i", "input", "Map to read: the folder of a delio-slam run, or a file", true, "",
+    : cmd("converts, crops and georeferences maps", ' ', kVersion),
+      input("i", "input", "Map: the result folder of a delio-slam run, or a file", true, "",
             "FOLDER|FILE.delio|FILE.ply|FILE.pcd|FILE.simplemap", cmd),
-      output("o", "output",
-             "File to write; a .yaml, for ROS's map_server, has its image, a .pgm, beside it", true,
-             "", "OUT.ply|.pcd|.3Dscene|.html|.gridmap|.yaml", cmd),
-      crop("", "crop", "Keep what lies in this box, metres in the frame of OUT", false, "", &boxes,
-           cmd),
-      spacing("", "spacing", "Keep one point in so many metres; 0: all", false, 0, &spacings, cmd),
-      colourBy("", "color-by", "What the colours say", false, "height", &values, cmd),
-      colormap("", "colormap", "Colours of the points", false, "turbo", &colormaps, cmd),
-      resolution("", "resolution", "Cells of a grid", false, 0.1, &lengths, cmd),
+      output("o", "output", "File to write; a .yaml for ROS's map_server comes with a .pgm image",
+             true, "", "OUT.ply|.pcd|.3Dscene|.html|.gridmap|.yaml", cmd),
+      crop("", "crop", "Keep the points in this box (metres, in the output frame)", false, "",
+           &boxes, cmd),
+      spacing("", "spacing", "Minimum distance between points, metres; 0: keep all", false, 0,
+              &spacings, cmd),
+      colourBy("", "color-by", "Value shown by the colours", false, "height", &values, cmd),
+      colormap("", "colormap", "Colour map", false, "turbo", &colormaps, cmd),
+      resolution("", "resolution", "Cell size of a grid, metres", false, 0.1, &lengths, cmd),
       height("", "height",
-             "Of what a grid is for: what is higher above the ground, or below 0.3 m, is not in "
-             "the way",
+             "Height of the robot: points between 0.3 m and this height above the ground are "
+             "obstacles",
              false, 2, &lengths, cmd),
-      frame("", "frame", "map: as it is; ground: level, z = 0 on the ground under the first pose",
+      frame("", "frame",
+            "Output frame. map: unchanged; ground: levelled, z = 0 on the ground below the first "
+            "pose",
             false, "map", &frames, cmd),
       georeference("", "georeference",
-                   "East, north, up in metres from the first pose, which is at this latitude and "
-                   "longitude (deg), altitude (m above the WGS84 ellipsoid) and heading (of the "
-                   "vehicle's x axis, deg clockwise from north)",
+                   "Write east-north-up coordinates, metres from the first pose; give its latitude "
+                   "and longitude (deg), altitude (m above the WGS84 ellipsoid) and heading (of "
+                   "the vehicle's x axis, deg clockwise from north)",
                    false, "", &places, cmd),
-      force("", "force", "Overwrite what exists", cmd),
-      verbose("", "verbose", "Say more about what is done and what went wrong", cmd) {}
+      force("", "force", "Overwrite existing files", cmd),
+      verbose("", "verbose", "Print progress and full error texts", cmd) {}
 
 std::string Arguments::fault() {
     if (frame.isSet() && georeference.isSet())
-        return "--georeference is a frame of its own: leave out --frame";
+        return "--georeference and --frame exclude each other";
     const MapOutput& kind = mapOutputFor(output.getValue());
     if (kind.isGrid && (colourBy.isSet() || colormap.isSet()))
         return "--color-by and --colormap have no effect on a grid";
     if (!kind.isGrid && (resolution.isSet() || height.isSet()))
-        return "--resolution and --height are for a grid: .gridmap or .yaml";
+        return "--resolution and --height only apply to grids (.gridmap, .yaml)";
     if (kind.isGrid && !(height.getValue() > map::OccupancyOptions().low_m))
-        return "--height has to be more than " + digitsOf(map::OccupancyOptions().low_m) + " m";
+        return "--height must be more than " + digitsOf(map::OccupancyOptions().low_m) + " m";
     return "";
 }
 
@@ -162,14 +164,14 @@ std::vector<std::string> outputsOf(const std::string& output) {
     return files;
 }
 
-/** Everything about the files that can be told before the map is read. */
+/** Checks of the files before the map is read. */
 void checkFiles(const std::string& input, const std::string& output, bool force) {
     mapFileIn(input);
     cli::refuseOverlap(mapFilesIn(input), outputsOf(output));
     for (const auto& file : outputsOf(output)) cli::refuseExisting(file, force);
     const fs::path folder = fs::absolute(output).parent_path();
     if (!fs::is_directory(folder))
-        throw Error("cannot write '" + output + "': there is no folder '" + folder.string() + "'");
+        throw Error("cannot write '" + output + "': no such folder: '" + folder.string() + "'");
 }
 
 /** From the map's frame to OUT's; none: it stays as it is. */
@@ -223,7 +225,7 @@ void convert(Arguments& asked) {
         map::crop(map.points, *box);
         map::crop(map.dynamic, *box);
     }
-    if (map.points.empty()) throw Error("there is nothing of the map within --crop");
+    if (map.points.empty()) throw Error("no map point lies within --crop");
     map::thinOut(map.points, asked.spacing.getValue());
     map::thinOut(map.dynamic, asked.spacing.getValue());
     write(map, output, asked.options(), outFromMap, place);
@@ -234,15 +236,15 @@ cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
         {"OUT",
-         "the map: points (.ply, .pcd), a scene of MRPT's (.3Dscene), a page for a browser "
-         "(.html), a grid of MRPT's (.gridmap) or ROS's (.yaml, with its image, .pgm)"},
+         "the map as points (.ply, .pcd), MRPT scene (.3Dscene), page for a browser (.html), MRPT "
+         "grid (.gridmap) or ROS grid (.yaml and .pgm)"},
         {"OUT.frame.yaml",
-         "with --frame ground or --georeference: where the map's frame is in that of OUT"}};
-    help.examples = {
-        {{"delio-map -i 07-results -o 07.pcd --frame ground --spacing 0.5",
-          "Level, on the ground, thinned out"},
-         {"delio-map -i 07-results -o 07.yaml --resolution 0.2", "A grid for ROS's map_server"}}};
-    help.interrupted = "what was there stays as it was";
+         "with --frame ground or --georeference: the transformation from the map's frame"}};
+    help.examples = {{{"delio-map -i 07-results -o 07.pcd --frame ground --spacing 0.5",
+                       "Levelled and thinned to 0.5 m"},
+                      {"delio-map -i 07-results -o 07.yaml --resolution 0.2",
+                       "Occupancy grid for ROS's map_server"}}};
+    help.interrupted = "existing files are unchanged";
     return help;
 }
 }  // namespace

@@ -48,12 +48,12 @@ Reading read(io::ScanReader& reader, std::size_t passedOver) {
 void warnOfOthers(const io::ScanReader& reader,
                   const std::function<void(const std::string&)>& warn) {
     for (const auto& other : reader.otherLabels())
-        warn("scans of sensor '" + other + "' were not used; see --sensor-label");
+        warn("scans of the sensor '" + other +
+             "' are ignored; choose a sensor with --sensor-label");
 }
 
-/** Scans into the run until the end, the wanted count, an interrupt or a fault in the rawlog. With
- *  more than one thread each is read while the one before is registered: `read_ms` is what is
- *  waited for. */
+/** Processes scans until the end, --count, an interrupt or a fault in the recording. With several
+ *  threads the next scan is read while this one is registered; `read_ms` is the waiting time. */
 void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double read_ms,
              run::Run& run) {
     const unsigned count = line.count.getValue(), passedOver = line.every.getValue() - 1;
@@ -61,7 +61,7 @@ void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double 
     cli::Progress progress("scans", count);
     try {
         for (std::size_t done = 1; now.scan; ++done) {
-            // A fault in a scan that is not wanted is none: the last one is not read beyond.
+            // Do not read beyond the last scan: a fault there does not matter.
             std::future<Reading> next;
             if (done != count) next = std::async(policy, [&] { return read(reader, passedOver); });
             const auto row = run.process(*now.scan, read_ms);
@@ -81,7 +81,7 @@ void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double 
     for (const auto& finding : recording.findings) run.warn(finding);
     if (const auto scan = recording.compensatedAfterAll)
         run.warn("from scan " + std::to_string(*scan) +
-                 " on points look de-skewed by the recorder, at first they did not: run again with "
+                 " on, the points look de-skewed by the recorder, unlike before; run again with "
                  "--set scan.deskew=false");
 }
 
@@ -93,14 +93,14 @@ std::shared_ptr<LiveView> liveViewFor(SlamCommandLine& line, const Options& opti
     return view;
 }
 
-/** The first scan that is wanted. Error where there is none. */
+/** The first scan to use. Throws Error if there is no such scan. */
 Reading firstOf(SlamCommandLine& line, const std::string& input, io::ScanReader& reader) {
     const unsigned start = line.start.getValue();
     auto first = read(reader, start);
     if (first.scan || cli::interrupted()) return first;
     warnOfOthers(reader, cli::warn);
     const std::string label = line.label.getValue();
-    throw Error("'" + input + "' holds no LiDAR scans" +
+    throw Error("'" + input + "' contains no LiDAR scans" +
                 (label.empty() ? "" : " of sensor '" + label + "'") +
                 (start > 0 ? " after --start " + std::to_string(start) : ""));
 }
@@ -109,12 +109,12 @@ void warnOfRecording(const io::ScanReader& reader, run::Run& run) {
     for (const auto& warning : reader.recording().warnings) run.warn(warning);
     if (!reader.meta())
         run.warn(
-            "nothing says what sensor this is (a meta.yaml would): no vertical correction, times "
-            "are taken as they are");
+            "unknown sensor model: no vertical correction is applied (normal unless this is KITTI "
+            "data; see meta.md)");
 }
 
-/** Of a run that has seen its scans: the rest of the work, and its results in `folder`, which are
- *  in `place` in the end. Gives what is missing in them. */
+/** Finishes a run after its last scan and writes its results to `folder`, which is moved to `place`
+ *  later. Returns what is missing, or an empty text. */
 std::string finish(const std::string& input, const std::string& folder, const std::string& place,
                    run::Run& run) {
     const auto& record = run.record();
@@ -154,7 +154,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     const std::string fault = finish(input, settings.folder, place, run);
     if (!fault.empty()) throw Error(fault);
     if (cli::interrupted()) {
-        cli::inform("interrupted; the results are those of " +
+        cli::inform("interrupted; the results cover the first " +
                     std::to_string(run.record().rows.size()) + " scans");
         return {cli::kExitInterrupted, run.record().extended, false};
     }
@@ -186,8 +186,8 @@ void checkFolders(SlamCommandLine& line) {
     if (map.empty()) return;
     std::error_code ignored;
     if (fs::equivalent(fs::absolute(map).parent_path(), line.output.getValue(), ignored))
-        throw Error("the results would replace the map '" + line.map.getValue() +
-                    "': choose another folder than its own");
+        throw Error("the results would overwrite the map '" + line.map.getValue() +
+                    "'; choose another output folder");
 }
 
 int slam(SlamCommandLine& line, int argc, char** argv) {

@@ -83,7 +83,8 @@ mrpt::opengl::COpenGLScene::Ptr open(const std::string& path, const picture::Sce
                                      bool colormapGiven) {
     if (std::filesystem::path(path).extension() == ".3Dscene") {
         if (options.colourBy != picture::ColourBy::Height)
-            throw delio::Error("a .3Dscene has points and colours only: take the map's .ply");
+            throw delio::Error(
+                "a .3Dscene holds only points and colours; give the map's .ply instead");
         auto scene = picture::loadScene(path);
         if (colormapGiven) picture::recolour(*scene, options.colormap);
         return scene;
@@ -101,7 +102,7 @@ std::string frameName(const std::string& path, unsigned frame) {
     return name.string();
 }
 
-/** What the command line asks for. */
+/** Command-line arguments. */
 struct Arguments {
     Arguments();
     std::vector<std::string> pictureNames();
@@ -127,39 +128,38 @@ struct Arguments {
 };
 
 Arguments::Arguments()
-    : cmd("a picture of a map or a scene, without a display", ' ', delio::kVersion),
-      input("i", "input", "Map or scene to show", true, "",
+    : cmd("renders a map or scene to an image, without a display", ' ', delio::kVersion),
+      input("i", "input", "Map or scene", true, "",
             "FILE.3Dscene|FILE.simplemap|FILE.delio|FILE.ply|FILE.pcd", cmd),
-      output("o", "output", "Picture to write", true, "", "OUT.png", cmd),
-      size("", "size", "Of the picture", false, "1920x1080", &sizes, cmd),
+      output("o", "output", "Image to write", true, "", "OUT.png", cmd),
+      size("", "size", "Image size", false, "1920x1080", &sizes, cmd),
       azimuth("", "azimuth",
-              "Where the camera stands: 0 on the side of +x, 90 of +y (default: "
-              "such that the longer side lies across the picture)",
+              "Direction from which the camera looks: 0 from +x, 90 from +y (default: the longer "
+              "side of the map lies horizontally)",
               false, 0, &degrees, cmd),
-      elevation(
-          "", "elevation",
-          "Of the camera above the horizon; 90, which --ortho begins with, looks straight down",
-          false, 55, &elevations, cmd),
-      zoom("", "zoom", "Metres across the picture (default: everything)", false, 0, &metres, cmd),
-      ortho("", "ortho", "Parallel projection with a scale bar, from above", cmd),
-      pointSize("", "point-size",
-                "Size of the points, pixels (default: 2 for 1080 lines, larger in "
-                "larger pictures, and from near until surfaces look closed)",
-                false, 0, &pixels, cmd),
-      shading("", "shading",
-              "How much points are darkened beside nearer ones, so that edges and "
-              "shapes show; 0: not at all",
-              false, 1, &strengths, cmd),
-      colormap("", "colormap", "Colours of the points", false, "turbo", &colormaps, cmd),
-      colourBy("", "color-by", "What the colours say", false, "height", &values, cmd),
-      background("", "background", "Colour behind (default: the scene's)", false, "", &colours,
+      elevation("", "elevation",
+                "Elevation of the camera above the horizon; 90 looks straight down (default with "
+                "--ortho)",
+                false, 55, &elevations, cmd),
+      zoom("", "zoom", "Width of the visible area, metres (default: everything)", false, 0, &metres,
+           cmd),
+      ortho("", "ortho", "Orthographic view from above with a scale bar", cmd),
+      pointSize(
+          "", "point-size",
+          "Point size, pixels (default: 2 at 1080 lines, larger in larger images and close-ups)",
+          false, 0, &pixels, cmd),
+      shading("", "shading", "Strength of edge shading (eye-dome lighting); 0: off", false, 1,
+              &strengths, cmd),
+      colormap("", "colormap", "Colour map", false, "turbo", &colormaps, cmd),
+      colourBy("", "color-by", "Value shown by the colours", false, "height", &values, cmd),
+      background("", "background", "Background colour (default: the scene's)", false, "", &colours,
                  cmd),
-      frames(
-          "", "orbit",
-          "Write N pictures around the content, 1 to 1000: OUT_000.png ...; default: one, OUT.png",
-          false, {}, "N", cmd),
-      force("", "force", "Overwrite an existing picture", cmd),
-      verbose("", "verbose", "Say more about what is done and what went wrong", cmd) {}
+      frames("", "orbit",
+             "Write N images on a circle around the map, 1 to 1000: OUT_000.png ...; default: one "
+             "image",
+             false, {}, "N", cmd),
+      force("", "force", "Overwrite existing images", cmd),
+      verbose("", "verbose", "Print progress and full error texts", cmd) {}
 
 picture::SnapshotOptions Arguments::view() {
     picture::SnapshotOptions options;
@@ -227,12 +227,12 @@ void render(Arguments& asked) {
 delio::cli::HelpText help() {
     delio::cli::HelpText help;
     help.writes = {{"OUT.png", "the picture"},
-                   {"OUT_000.png ...", "with --orbit: each from another side"}};
+                   {"OUT_000.png ...", "with --orbit: one per viewing direction"}};
     help.examples = {
-        {{"delio-snapshot -i 07-results/map.3Dscene -o 07.png --azimuth 30", "From the side"},
+        {{"delio-snapshot -i 07-results/map.3Dscene -o 07.png --azimuth 30", "View from the side"},
          {"delio-snapshot -i 07.ply -o top.png --ortho --color-by intensity",
-          "From above, with a scale bar"}}};
-    help.interrupted = "what was there stays as it was";
+          "View from above with a scale bar"}}};
+    help.interrupted = "existing files are unchanged";
     return help;
 }
 }  // namespace
@@ -242,7 +242,7 @@ int main(int argc, char** argv) {
     return delio::cli::run(asked.cmd, help(), argc, argv, asked.verbose, [&] {
         const unsigned count = asked.frames.getValue();
         if (asked.frames.isSet() && (count < 1 || count > 1000)) {
-            delio::cli::inform("--orbit takes 1 to 1000 pictures; see --help");
+            delio::cli::inform("--orbit needs 1 to 1000 images; see --help");
             return delio::cli::kExitBadCommandLine;
         }
         render(asked);

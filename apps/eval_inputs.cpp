@@ -19,8 +19,8 @@ using evaluation::Comparison;
 using run::RunFolder;
 
 namespace {
-/** The pose file of an estimate: a folder that delio-slam has written stands for the trajectory in
- *  it that is, or after --calib will be, in the frame of cam0. */
+/** Pose file of an estimate: for a result folder, its trajectory in the cam0 frame, or the one that
+ *  --calib transforms to it. */
 std::string poseFile(const std::string& path, bool calibrationGiven, bool odometry = false) {
     if (!fs::is_directory(path)) return path;
     const RunFolder folder(path);
@@ -30,9 +30,9 @@ std::string poseFile(const std::string& path, bool calibrationGiven, bool odomet
     if (isCam0) return folder.path(RunFolder::kCam0);  // nothing has changed the odometry
     if (odometry) return folder.path(RunFolder::kOdometry);
     if (folder.has(RunFolder::kTrajectory)) return folder.path(RunFolder::kTrajectory);
-    throw Error("'" + path + "' is a folder without a " + RunFolder::kTrajectory +
-                "; give --ref a folder too to score "
-                "every NN.txt in it, or name a pose file");
+    throw Error(
+        "'" + path + "' is a folder without " + RunFolder::kTrajectory +
+        "; to score every NN.txt in it, give a folder as --ref; otherwise name a pose file");
 }
 
 /** A sequence of which there is a reference and an estimate. */
@@ -51,7 +51,7 @@ bool hasLoops(const Sequence& sequence) {
 std::vector<Sequence> sharedSequences(const fs::path& reference, const fs::path& estimate) {
     if (!fs::is_directory(reference)) return {{reference.string(), estimate.string()}};
     if (!fs::is_directory(estimate))
-        throw Error("'" + estimate.string() + "' is no folder, but the reference is one ('" +
+        throw Error("'" + estimate.string() + "' is not a folder, but the reference is one ('" +
                     reference.string() + "'); give two folders or two files");
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(reference))
@@ -66,18 +66,18 @@ std::vector<Sequence> sharedSequences(const fs::path& reference, const fs::path&
             sequences.push_back({file.string(), folder.string()});
     }
     if (sequences.empty())
-        throw Error("'" + estimate.string() + "' has no pose file (NN.txt) that is in '" +
-                    reference.string() + "' too");
+        throw Error("'" + estimate.string() + "' and '" + reference.string() +
+                    "' have no NN.txt in common");
     return sequences;
 }
 
-/** What is wrong with trajectories of different frames, and what to do. */
+/** Message for trajectories of different frames. */
 std::string faultOfFrames(const evaluation::WrongFrames& fault, bool calibrationGiven) {
     if (fault.mismatch() == evaluation::FrameMismatch::lidarAgainstCamera)
         return std::string(fault.what()) + "; give --calib calib.txt to bring the estimate to cam0";
     if (calibrationGiven)
-        return "the estimate looks like it is in cam0's frame already, or the reference in the "
-               "LiDAR frame; leave --calib out";
+        return "the estimate seems to be in the cam0 frame already, or the reference in the LiDAR "
+               "frame; leave out --calib";
     return std::string(fault.what()) + "; give both in the same frame";
 }
 
@@ -89,7 +89,7 @@ std::optional<io::ScanTable> scanTableBeside(const fs::path& estimateFile, std::
     auto table = io::readScanTable(file.string());
     if (table.scans.size() == poses) return table;
     cli::warn("'" + file.string() + "' has " + std::to_string(table.scans.size()) +
-              " scans for the " + std::to_string(poses) + " poses beside it and is left out");
+              " scans but there are " + std::to_string(poses) + " poses next to it; it is ignored");
     return {};
 }
 
@@ -106,31 +106,31 @@ Comparison compareOrSayWhy(const io::Trajectory& reference, const io::Trajectory
     }
 }
 
-/** What people should know of the poses that were compared. */
+/** Prints notes about the compared poses. */
 void describe(const Comparison& comparison, bool verbose, const std::string& pair) {
     const std::string matched = std::to_string(comparison.reference.size());
     if (comparison.unusedReference > 0)
         cli::inform(pair + "scored on the " + matched + " of " +
                     std::to_string(comparison.reference.size() + comparison.unusedReference) +
-                    " scans that were used, as " + RunFolder::kScans + " has them");
+                    " scans used according to " + RunFolder::kScans);
     if (comparison.unmatchedReference + comparison.unmatchedEstimate > 0)
         cli::warn(pair + matched + " poses match in time; " +
                   std::to_string(comparison.unmatchedEstimate) + " of the estimate and " +
                   std::to_string(comparison.unmatchedReference) +
-                  " of the reference have no partner and are left out");
+                  " of the reference have no counterpart and are ignored");
     else if (verbose)
         cli::inform(pair + matched + " poses");
     const auto& row = comparison.row;
     if (comparison.framesAreUnknown)
-        cli::warn(pair + mrpt::format("the path of %.1f m is too short to tell whether both are "
-                                      "poses of the same frame (LiDAR or camera)",
+        cli::warn(pair + mrpt::format("the path of %.1f m is too short to check that both are in "
+                                      "the same frame (LiDAR or camera)",
                                       row.length_m));
     if (!comparison.referenceFault.empty()) cli::warn(pair + comparison.referenceFault);
     if (row.kitti.segments > 0) return;
     const std::string lengths = textOf(evaluation::suggestedLengths_m(row.length_m));
     cli::inform(
         pair +
-        mrpt::format("the path of %.1f m is too short for the lengths asked for", row.length_m) +
+        mrpt::format("the path of %.1f m is too short for these segment lengths", row.length_m) +
         (lengths.empty() ? "" : "; try --lengths " + lengths));
 }
 }  // namespace
@@ -149,10 +149,10 @@ std::string faultOfNames(const std::vector<Estimate>& estimates) {
     for (const auto& estimate : estimates) {
         if (estimate.name.empty() || estimate.path.empty() ||
             estimate.name.find_first_of("\t\n\r") != std::string::npos)
-            return "--est wants NAME=PATH with a NAME of one line, without tabs";
+            return "--est needs NAME=PATH; NAME must not contain tabs or line breaks";
         if (!names.insert(estimate.name).second)
-            return "two estimates are called '" + estimate.name +
-                   "'; tell them apart with --est NAME=PATH";
+            return "two estimates have the name '" + estimate.name +
+                   "'; name them with --est NAME=PATH";
     }
     return "";
 }

@@ -17,7 +17,7 @@ struct Estimate {
 /** `[NAME=]PATH`, named after the file or folder where no name is given. */
 Estimate estimateOf(const std::string& text);
 
-/** What is wrong with the names of the estimates; empty if nothing. */
+/** Message about invalid names of estimates; empty if they are valid. */
 std::string faultOfNames(const std::vector<Estimate>& estimates);
 
 struct EvalSettings {

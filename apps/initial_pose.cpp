@@ -19,8 +19,9 @@ Eigen::Isometry3d initialPoseIn(const std::string& text) {
         numbers.push_back(*number);
     }
     if (numbers.size() != 4 || std::count(text.begin(), text.end(), ',') != 3)
-        throw Error("--initial-pose wants X,Y,Z,YAW_DEG (metres and degrees in the map), not '" +
-                    text + "'");
+        throw Error(
+            "--initial-pose needs X,Y,Z,YAW_DEG (metres and degrees in the map's frame), not '" +
+            text + "'");
     return isometry(rotationExp({0, 0, numbers[3] * M_PI / 180}),
                     {numbers[0], numbers[1], numbers[2]});
 }

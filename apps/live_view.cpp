@@ -95,8 +95,8 @@ void LiveView::Window::prepare() {
     scene->insert(current);
     scene->insert(way);
     scene->insert(vehicle);
-    addInset(*scene, "sphere", "pattern of the normals", 0.51);
-    addInset(*scene, "lines", "lines of two scans, paired", 0.01);
+    addInset(*scene, "sphere", "pattern of normals", 0.51);
+    addInset(*scene, "lines", "matched lines of two scans", 0.01);
     setCamera(*scene->getViewport("sphere"), 180, 25, 5);
     setCamera(*scene->getViewport("lines"), 180, 90, 90);
     window.setCameraAzimuthDeg(180);
@@ -142,11 +142,11 @@ LiveView::LiveView(const PaperOdometryOptions& options) {
     // MRPT would wait for a while and then go on without a window.
     const char* display = std::getenv("DISPLAY");
     if (!display || !*display)
-        throw Error("--gui needs a display, and DISPLAY is not set; do without --gui");
+        throw Error("--gui needs a display, but DISPLAY is not set; leave out --gui");
     window_ = std::make_unique<Window>(options);
     if (!window_->window.isOpen())
         throw Error("--gui cannot open a window on display '" + std::string(display) +
-                    "'; do without --gui");
+                    "'; leave out --gui");
     window_->prepare();
 }
 

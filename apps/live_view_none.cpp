@@ -1,4 +1,4 @@
-// Where mrpt-gui is not installed there is no live view.
+// Replacement of the live view without mrpt-gui.
 #include "delio/core/error.h"
 #include "live_view.h"
 
@@ -7,8 +7,8 @@ struct LiveView::Window {};
 
 LiveView::LiveView(const PaperOdometryOptions&) {
     throw Error(
-        "this delio-slam has no live view: install libmrpt-gui-dev and build it again, or leave "
-        "out --gui");
+        "this delio-slam was built without the live view; install libmrpt-gui-dev and rebuild, or "
+        "leave out --gui");
 }
 LiveView::~LiveView() = default;
 void LiveView::add(const SlamScan&) {}

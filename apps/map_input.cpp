@@ -78,9 +78,9 @@ MapInput readAny(const std::string& path, double storedSpacing_m) {
     if (kind == ".delio") return readStored(path, storedSpacing_m);
     if (kind == ".ply") return ofPoints(map::loadPly(path));
     if (kind == ".pcd") return ofPoints(map::loadPcd(path));
-    throw Error("cannot read '" + path +
-                "': a map is the folder of a delio-slam run, or a file whose name ends in .ply, "
-                ".pcd, .simplemap or .delio");
+    throw Error(
+        "cannot read '" + path +
+        "': give the folder of a delio-slam run, or a .ply, .pcd, .simplemap or .delio file");
 }
 }  // namespace
 
@@ -103,8 +103,8 @@ std::string mapFileIn(const std::string& path) {
     if (!fs::is_directory(path)) return path;
     const RunFolder folder(path);
     if (folder.has(RunFolder::kPly)) return folder.path(RunFolder::kPly);
-    throw Error("'" + path + "' holds no " + RunFolder::kPly +
-                ": is it the folder of a delio-slam run (without --no-map) that has ended?");
+    throw Error("'" + path + "' contains no " + RunFolder::kPly +
+                "; give the folder of a finished delio-slam run (without --no-map)");
 }
 
 std::vector<std::string> mapFilesIn(const std::string& path) {
@@ -121,7 +121,7 @@ MapInput readMap(const std::string& path, double storedSpacing_m) {
     MapInput input = readAny(path, storedSpacing_m);
     const fs::path name = fs::absolute(path).lexically_normal();
     input.name = (name.has_filename() ? name : name.parent_path()).stem().string();
-    if (input.points.empty()) throw Error("'" + path + "' is an empty map: nothing is in it");
+    if (input.points.empty()) throw Error("'" + path + "' is an empty map");
     return input;
 }
 }  // namespace delio

@@ -14,7 +14,7 @@ struct MapInput {
     std::vector<std::vector<Eigen::Isometry3d>> ways;  //!< a list of poses a drive
     std::vector<Eigen::Isometry3d> keyframes;
     std::string name;        //!< of the drive, or of the file
-    map::MapPoints dynamic;  //!< what was taken out of it, where that was kept
+    map::MapPoints dynamic;  //!< removed dynamic points, if they were kept
     /** Poses of the sensor, with stamps as MapPoint::time_s has them; empty: not known. */
     io::Trajectory sensor;
     /** Poses of the first way between which a loop was closed. */
@@ -27,7 +27,7 @@ struct MapInput {
     picture::MapWays drawnWays() const;
 };
 
-/** What is read of `path`: map.ply of the folder of a run, else `path` itself. Error where the
+/** File to read for `path`: map.ply in a result folder, else `path` itself. Throws Error if the
  *  folder has no map. */
 std::string mapFileIn(const std::string& path);
 

@@ -64,7 +64,7 @@ const MapOutput& mapOutputFor(const std::string& path) {
         if (extension == output.extension) return output;
         known += (known.empty() ? "" : ", ") + std::string(output.extension);
     }
-    throw Error("cannot write '" + path + "': its name has to end in one of " + known);
+    throw Error("cannot write '" + path + "': the name must end in one of " + known);
 }
 
 std::vector<std::string> filesOf(const std::string& path) {

@@ -26,6 +26,6 @@ const std::vector<MapOutput>& mapOutputs();
 /** The one that `path` ends as. Throws Error, listing the known ones. */
 const MapOutput& mapOutputFor(const std::string& path);
 
-/** The files that writing `path` makes: itself, and what comes beside it. */
+/** The files written for `path`: itself and its side files. */
 std::vector<std::string> filesOf(const std::string& path);
 }  // namespace delio

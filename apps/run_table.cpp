@@ -32,16 +32,16 @@ Rows rowsOf(const Comparison& found) {
     }
     const double percent = found.endError_percent();
     const std::string end = format("%.3f m", found.end_error_m);
-    rows.emplace_back("end error", std::isnan(percent) ? end + ", of a standstill"
+    rows.emplace_back("end error", std::isnan(percent) ? end + " (the vehicle did not move)"
                                                        : end + format(", %.2f %% of %.1f m",
                                                                       percent, found.row.length_m));
     rows.emplace_back("APE (aligned)", format("%.3f m", found.row.ape_m));
     const auto& translation = found.perScan.translation_m;
     const auto& rotation = found.perScan.rotation_deg;
     rows.emplace_back("translation per scan",
-                      format("%.4f m median, %.4f m 95 %%", translation.median, translation.p95));
+                      format("%.4f m median, %.4f m p95", translation.median, translation.p95));
     rows.emplace_back("rotation per scan",
-                      format("%.4f deg median, %.4f deg 95 %%", rotation.median, rotation.p95));
+                      format("%.4f deg median, %.4f deg p95", rotation.median, rotation.p95));
     return rows;
 }
 }  // namespace
@@ -83,7 +83,7 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
                             record.loops.size()));
     row("path", format("%.1f m", record.path_m()));
     const auto latency = run::latencyOf(record.rows);
-    row("time per scan", format("%.1f ms; 95 %% in %.1f, the worst %.1f ms", record.msPerScan(),
+    row("time per scan", format("%.1f ms mean, %.1f ms p95, %.1f ms worst", record.msPerScan(),
                                 latency[1].second, latency[2].second));
     row("peak memory", format("%.0f MB", run::peakMemory_mb()));
     if (record.metrics && record.metricsBefore) {

@@ -32,8 +32,8 @@ std::list<Drive> drivesOf(const std::vector<std::string>& inputs) {
         const std::string name = io::nameOfDrive(input);
         if (std::any_of(drives.begin(), drives.end(),
                         [&](const Drive& other) { return other.name == name; }))
-            throw Error("two drives are called '" + name +
-                        "': their results would be one another's");
+            throw Error("two drives have the same name, '" + name +
+                        "': they would overwrite each other's results");
         drives.push_back({input, name});
     }
     return drives;
@@ -63,13 +63,13 @@ std::vector<std::string> namesOf(const std::list<Drive>& drives, const std::stri
     for (const auto& drive : all) names.insert(names.end(), {kittiOf(drive), tumOf(drive)});
     std::set<std::string> taken(names.begin(), names.end());
     if (taken.size() < names.size())
-        throw Error("two drives, of the recordings and of the map '" + map +
-                    "', have one name: their trajectories would be one another's");
+        throw Error("a recording and a drive of the map '" + map +
+                    "' have the same name: they would overwrite each other's trajectories");
     taken.insert(RunFolder::kIncomplete);
     for (const auto& drive : drives) {
         if (taken.count(drive.name) > 0)
-            throw Error("a drive cannot be called '" + drive.name + "', as '" + drive.input +
-                        "' is: that is the name of a file of the results; rename the recording");
+            throw Error("a drive cannot have the name '" + drive.name + "' (from '" + drive.input +
+                        "'): a result file has this name; rename the recording");
         for (const auto& file : RunFolder(drive.name).files()) names.push_back(file);
     }
     return names;
@@ -139,7 +139,7 @@ class Joiner {
         }
     }
 
-    /** What was too far off may meet a map that has grown. */
+    /** Drives without overlap are retried once the map has grown. */
     void joinTo(std::list<Drive>& pending) {
         for (auto drive = pending.begin(); drive != pending.end();) {
             const auto result = run(*drive, fileOf(map_));
@@ -183,8 +183,8 @@ void report(const Joiner& joiner, const fs::path& folder) {
     }
     io::replaceTextFile(folder / RunFolder::kDrives, [&](std::ostream& out) { out << table; });
     if (joiner.maps() > 1)
-        cli::warn("the drives do not all meet: " + std::to_string(joiner.maps()) +
-                  " separate maps, each with a frame of its own (drives.csv)");
+        cli::warn("not all drives overlap: " + std::to_string(joiner.maps()) +
+                  " separate maps, each in its own frame (see drives.csv)");
 }
 }  // namespace
 

@@ -21,9 +21,9 @@ using SlamDrive = std::function<DriveResult(
 /** Several drives in one frame and one map where they meet, and separate where they do not: each in
  *  a folder of its own name in `settings.folder`; there also map.delio (map-2.delio ... of what is
  *  separate), NAME_kitti.txt and NAME_tum.txt with each drive's poses in its map, and drives.csv,
- *  which says what is where. All come into their places together, after the last drive, and
- *  drives.csv last. A drive that fails is left out, and the exit code says so; where none has
- *  results, what was there stays. */
+ *  which lists the map of each drive. All come into their places together, after the last drive,
+ * and drives.csv last. Drives that fail are skipped and set the exit code; without any
+ *  result, existing files are kept. */
 int slamSeveral(const std::vector<std::string>& inputs, const run::RunSettings& settings,
                 const SlamDrive& slam);
 

@@ -28,8 +28,8 @@ cli::HelpText slamHelp() {
     using Folder = run::RunFolder;
     cli::HelpText help;
     help.about =
-        "True poses are found where KITTI keeps them. The same input gives the same bytes for any "
-        "--threads.";
+        "Ground truth is found automatically in KITTI's folder layout. Results have the same bytes "
+        "for any --threads.";
     help.sections = cli::optionSections(Options::ofProfile("accurate").stages());
     const auto isThere = [&](const cli::HelpText::Row& row) {
         return std::any_of(help.sections.begin(), help.sections.end(),
@@ -41,30 +41,31 @@ cli::HelpText slamHelp() {
         return one + ", " + other;
     };
     help.writes = {
-        {Folder::kTrajectory, "final poses, 12 numbers a line"},
-        {both(Folder::kOdometry, Folder::kOdometryCam0), "poses before the pose graph"},
+        {Folder::kTrajectory, "final poses, KITTI format (12 numbers per line)"},
+        {both(Folder::kOdometry, Folder::kOdometryCam0), "poses before pose-graph optimisation"},
         {Folder::kCam0, "final poses in KITTI's cam0 frame"},
-        {Folder::kTum, "final poses as t x y z qx qy qz qw"},
-        {both(Folder::kGraph, Folder::kMrptGraph), "the pose graph"},
-        {both(Folder::kPly, Folder::kScene), "the map: points, scene for SceneViewer3D"},
-        {Folder::kMapPage, "the map as a page for a browser"},
-        {Folder::kStoredMap, "the map to come back to, for --map"},
+        {Folder::kTum, "final poses, TUM format (t x y z qx qy qz qw)"},
+        {both(Folder::kGraph, Folder::kMrptGraph), "pose graph"},
+        {both(Folder::kPly, Folder::kScene), "map points; scene for SceneViewer3D"},
+        {Folder::kMapPage, "the map as an interactive page for a browser"},
+        {Folder::kStoredMap, "the map for localisation with --map"},
         {Folder::kSimplemap, "keyframes with their points, for MRPT's programs"},
         {both(Folder::kMapPicture, Folder::kTrajectoryPicture), "pictures"},
-        {Folder::kRemovalPicture, "what moved and was taken out of the map"},
-        {Folder::kDynamicPly, "its points, with --keep-dynamic"},
-        {Folder::kScans, "a row a scan: times, quality, why it was predicted"},
-        {Folder::kLoops, "a row a pair of places that was compared"},
-        {Folder::kLocalisation, "with --map: where in that map each scan was"},
-        {Folder::kJoints, "with --extend: the edges between the two maps"},
-        {Folder::kSummary, "the run in numbers"},
-        {Folder::kConfig, "every option that had an effect, for -c"},
-        {Folder::kDrives, "of several drives: which is in which map"},
+        {Folder::kRemovalPicture, "dynamic points removed from the map, as a picture"},
+        {Folder::kDynamicPly, "with --keep-dynamic: these points"},
+        {Folder::kScans, "per scan: times, quality, reason for a prediction"},
+        {Folder::kLoops, "per compared pair of places: result and reason"},
+        {Folder::kLocalisation, "with --map: pose of each scan in that map"},
+        {Folder::kJoints, "with --extend: edges between the two maps"},
+        {Folder::kSummary, "summary of the run"},
+        {Folder::kConfig, "all options used, for -c"},
+        {Folder::kDrives, "with several drives: which map each is in"},
     };
-    help.examples = {{{"delio-slam -i dataset/sequences/07 -o 07-results", "A sequence of KITTI"},
-                      {"delio-slam -i b.bag -o b --sensor-label /points --map 07-results",
-                       "Where in that map was another drive"}}};
-    help.interrupted = "what was done is written";
+    help.examples = {
+        {{"delio-slam -i dataset/sequences/07 -o 07-results", "Process a KITTI sequence"},
+         {"delio-slam -i b.bag -o b --sensor-label /points --map 07-results",
+          "Localise another drive in that map"}}};
+    help.interrupted = "results up to there are written";
     return help;
 }
 
@@ -114,29 +115,28 @@ bool isGraph(const std::string& input) { return fs::path(input).extension() == "
 
 std::string contradictionIn(SlamCommandLine& line) {
     const auto& inputs = line.input.getValue();
-    if (line.every.getValue() == 0) return "--every has to be 1 or more";
+    if (line.every.getValue() == 0) return "--every must be at least 1";
     if (line.threads.getValue() > cli::kMostThreads)
-        return "--threads has to be " + std::to_string(cli::kMostThreads) + " or less; 0: all";
+        return "--threads must be " + std::to_string(cli::kMostThreads) + " or less (0: all)";
     if (line.initialPose.isSet() && !line.map.isSet())
-        return "--initial-pose is a pose in a stored map: it needs --map";
+        return "--initial-pose needs --map: it is a pose in the stored map";
     if (line.extend.isSet() && !line.map.isSet())
-        return "--extend adds to a stored map: it needs --map";
+        return "--extend needs --map: it adds to the stored map";
     if (line.noMap.isSet() && line.keepDynamic.isSet())
-        return "--keep-dynamic keeps what is taken out of the map: it does not go with --no-map";
+        return "--keep-dynamic and --no-map exclude each other";
     if (line.noMap.isSet() && (line.extend.isSet() || inputs.size() > 1))
-        return "--no-map does not go with what is to become one map";
+        return "--no-map cannot be used when drives are joined to a map";
     if (inputs.size() < 2) return "";
     if (line.map.isSet() && !line.extend.isSet())
-        return "several drives are joined to one map: with --map that needs --extend";
+        return "several drives with --map also need --extend";
     if (line.truth.isSet() || line.images.isSet() || line.sensorInfo.isSet() ||
         line.initialPose.isSet())
-        return "--ground-truth, --images, --sensor-info and --initial-pose are one drive's: they "
-               "do "
-               "not go with several";
+        return "--ground-truth, --images, --sensor-info and --initial-pose cannot be used with "
+               "several drives";
     for (const auto& input : inputs)
-        if (isGraph(input)) return "a pose graph is optimised alone";
+        if (isGraph(input)) return "a pose graph must be the only input";
     for (const auto& input : inputs)
-        if (input == "-") return "a drive from standard input is processed alone";
+        if (input == "-") return "standard input must be the only input";
     return "";
 }
 }  // namespace delio

@@ -13,7 +13,7 @@
 #include "option_sections.h"
 
 namespace delio {
-/** What delio-slam is asked for. */
+/** Command line of delio-slam. */
 struct SlamCommandLine {
     using Text = TCLAP::ValueArg<std::string>;
     using Number = TCLAP::ValueArg<cli::Count>;
@@ -21,88 +21,86 @@ struct SlamCommandLine {
 
     /** `runs`: input and output are needed. */
     explicit SlamCommandLine(bool runs)
-        : input(
-              "i", "input",
-              "Recording to read: rawlog, KITTI folder, folder of clouds, ROS bag, mcap, pcap, or "
-              "\"-\" for a rawlog or pcap from a pipe; or a posegraph.g2o to optimise again. "
-              "Several drives are joined where they meet",
-              runs, "IN", cmd),
+        : input("i", "input",
+                "Recording: rawlog, KITTI folder, folder of clouds, ROS bag, MCAP, pcap, or \"-\" "
+                "for a rawlog or pcap from a pipe; or a posegraph.g2o to optimise again. Several "
+                "recordings are joined into one map where they overlap",
+                runs, "IN", cmd),
           output("o", "output", "Folder for the results", runs, "", "OUTDIR", cmd) {}
 
-    TCLAP::CmdLine cmd{"LiDAR odometry, pose graph and map of a recording", ' ', kVersion};
+    TCLAP::CmdLine cmd{"computes the trajectory and map of a LiDAR recording", ' ', kVersion};
     TCLAP::MultiArg<std::string> input;
     Text output;
-    Text profile{"",    "profile",  "What all options are that are not set",
+    Text profile{"",    "profile",  "Preset for all options that you do not set yourself",
                  false, "accurate", cli::profileChoice(),
                  cmd};
-    Text config{"c",          "config", "Options that differ from the profile's", false, "",
+    Text config{"c",          "config", "File with options that differ from the profile", false, "",
                 "CONFIG.ini", cmd};
     TCLAP::MultiArg<std::string> set{
-        "",
-        "set",
-        "One option of a section below; --print-config prints all of them",
-        false,
-        "section.key=value",
+        "", "set", "Set one option; --print-config lists all of them", false, "section.key=value",
         cmd};
     Switch printConfig{
         "", "print-config",
-        "Print all options with their meanings, and end; takes neither --input nor --output", cmd};
-    Number start{"", "start", "First scan, from 0", false, {}, "N", cmd};
-    Number count{"", "count", "How many scans to use at most; 0: all", false, {}, "N", cmd};
-    Number every{"", "every", "Use every N-th scan only", false, {1}, "N", cmd};
+        "Print all options with their meanings and exit; needs no --input or --output", cmd};
+    Number start{"", "start", "First scan to use, counted from 0", false, {}, "N", cmd};
+    Number count{"", "count", "Maximum number of scans; 0: all", false, {}, "N", cmd};
+    Number every{"", "every", "Use every N-th scan", false, {1}, "N", cmd};
     Text label{"",
                "sensor-label",
-               "Sensor to use: a rawlog's label, a bag's topic, a pcap's port; default: that of "
-               "the first scan, in bags the only one",
+               "Sensor: label in a rawlog, topic in a bag, port in a pcap; default: the first "
+               "sensor; a bag must have only one",
                false,
                "",
                "L",
                cmd};
-    Text sensorInfo{"",
-                    "sensor-info",
-                    "Description of the sensor, for packets: an Ouster's json, a Velodyne's "
-                    "calibration; default: the json beside the recording, or the usual one",
-                    false,
-                    "",
-                    "FILE",
-                    cmd};
-    Text images{"", "images", "Folder of the rawlog's external files", false, "", "DIR", cmd};
-    Number threads{"", "threads", "Threads to use; 0: all", false, {}, "N", cmd};
+    Text sensorInfo{
+        "",
+        "sensor-info",
+        "Sensor description for packets: json of an Ouster, calibration file of a Velodyne; "
+        "default: the json next to the recording, or the model's standard calibration",
+        false,
+        "",
+        "FILE",
+        cmd};
+    Text images{"", "images", "Folder with the rawlog's external files", false, "", "DIR", cmd};
+    Number threads{"", "threads", "Number of threads; 0: all cores", false, {}, "N", cmd};
     Text truth{"",
                "ground-truth",
-               "True poses; default: IN.poses.txt if it is there",
+               "Ground-truth poses; default: IN.poses.txt if it exists",
                false,
                "",
                "POSES.txt",
                cmd};
     std::vector<std::string> frames{"cam0", "vehicle"};
     TCLAP::ValuesConstraint<std::string> frameNames{frames};
-    Text truthFrame{"", "ground-truth-frame", "Frame of the true poses", false, "cam0", &frameNames,
-                    cmd};
-    Text map{"",
-             "map",
-             "Localise the drive in a stored map: map.delio, or the folder of the run that made it",
-             false,
-             "",
-             "OLD",
-             cmd};
+    Text truthFrame{
+        "", "ground-truth-frame", "Frame of the ground truth", false, "cam0", &frameNames, cmd};
+    Text map{
+        "",
+        "map",
+        "Localise the drive in a stored map: a map.delio or the result folder that contains it",
+        false,
+        "",
+        "OLD",
+        cmd};
     Text initialPose{"",
                      "initial-pose",
-                     "Where the vehicle is at the first scan in that map, to some metres and "
-                     "degrees: looked for there only",
+                     "Pose of the vehicle at the first scan in that map, accurate to a few metres "
+                     "and degrees; only its surroundings are searched",
                      false,
                      "",
                      "X,Y,Z,YAW_DEG",
                      cmd};
-    Switch extend{"", "extend", "Add what is new to that map: OUTDIR/map.delio is both", cmd};
-    Switch keepDynamic{"", "keep-dynamic",
-                       "Write what was taken out of the map as moving, too: map_dynamic.ply", cmd};
-    Switch noMap{"", "no-map", "Leave out map, scene and map.png", cmd};
-    Switch noLoops{"", "no-loops", "Do not search for places that the drive comes back to", cmd};
-    Switch noGraph{"", "no-graph", "Leave out the pose graph's optimisation, and loops", cmd};
-    Switch gui{"", "gui", "Show the drive in a window while it is processed", cmd};
-    Switch force{"", "force", "Overwrite what exists", cmd};
-    Switch verbose{"", "verbose", "A line for each scan, and all the text of errors", cmd};
+    Switch extend{"", "extend", "Extend that map by this drive; OUTDIR/map.delio contains both",
+                  cmd};
+    Switch keepDynamic{"", "keep-dynamic", "Also write the removed dynamic points: map_dynamic.ply",
+                       cmd};
+    Switch noMap{"", "no-map", "Do not build a map", cmd};
+    Switch noLoops{"", "no-loops", "Do not search for loop closures", cmd};
+    Switch noGraph{"", "no-graph", "Skip pose-graph optimisation and loop closures", cmd};
+    Switch gui{"", "gui", "Show progress in a window", cmd};
+    Switch force{"", "force", "Overwrite existing files", cmd};
+    Switch verbose{"", "verbose", "Print a line per scan, and full error texts", cmd};
 };
 
 /** The rest of its --help. */

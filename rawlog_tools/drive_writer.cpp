@@ -48,8 +48,8 @@ DriveWriter::DriveWriter(const DriveRequest& request, const Scene& scene, const 
 
 int DriveWriter::write() {
     if (traffic_.size() < request_.movers)
-        cli::warn("the road has room for " + std::to_string(traffic_.size()) + " movers, not for " +
-                  std::to_string(request_.movers));
+        cli::warn("the road only has room for " + std::to_string(traffic_.size()) +
+                  " road users instead of " + std::to_string(request_.movers));
     {
         cli::Progress progress("simulating", drive_.scans());
         for (std::size_t scan = 0; scan < drive_.scans(); ++scan) {
@@ -92,8 +92,7 @@ void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
     poses_ += poseRow(scan);
 }
 
-/** Where cam0 is in the world at the first scan: what two drives through one world have in common.
- */
+/** Pose of cam0 in the world at the first scan, which relates two drives through one world. */
 std::string DriveWriter::origin() const {
     return io::kittiRow(cam0PoseOf(drive_.lidarPose(0), lidarToCam0()));
 }

@@ -20,7 +20,7 @@ std::uintmax_t sizeOf(const std::filesystem::path& file) {
     const auto bytes = std::filesystem::file_size(file);
     if (bytes % (4 * sizeof(float)) != 0)
         throw Error("'" + file.string() + "' is cut off: its size (" + std::to_string(bytes) +
-                    " bytes) is no multiple of 16");
+                    " bytes) is not a multiple of 16");
     return bytes;
 }
 
@@ -39,22 +39,23 @@ std::string joined(const std::vector<std::string>& rows) {
     return text;
 }
 struct Arguments {
-    TCLAP::CmdLine cmd{"a KITTI odometry sequence or raw drive as an MRPT rawlog", ' ', kVersion};
+    TCLAP::CmdLine cmd{"converts a KITTI odometry sequence or raw drive to an MRPT rawlog", ' ',
+                       kVersion};
     TCLAP::ValueArg<std::string> input{
-        "i", "input", "Folder of the sequence or of the raw drive", true, "", "SEQUENCE_DIR", cmd};
+        "i", "input", "Folder of the sequence or raw drive", true, "", "SEQUENCE_DIR", cmd};
     TCLAP::ValueArg<std::string> output{"o",          "output", "Rawlog to write", true, "",
                                         "OUT.rawlog", cmd};
-    TCLAP::SwitchArg embed{"", "embed", "Keep the points in the rawlog, not in OUT_Images/", cmd};
-    TCLAP::SwitchArg link{"", "link", "OUT_Images/ links to the scans, which stay where they are",
-                          cmd};
-    TCLAP::ValueArg<cli::Count> start{"",  "start", "First scan to take, from 0", false, {},
+    TCLAP::SwitchArg embed{"", "embed", "Store the points in the rawlog instead of OUT_Images/",
+                           cmd};
+    TCLAP::SwitchArg link{
+        "", "link", "Make OUT_Images/ symbolic links to KITTI's files instead of copies", cmd};
+    TCLAP::ValueArg<cli::Count> start{"",  "start", "First scan to use, counted from 0", false, {},
                                       "N", cmd};
-    TCLAP::ValueArg<cli::Count> count{"",  "count", "How many scans to take; 0: all", false, {},
-                                      "N", cmd};
+    TCLAP::ValueArg<cli::Count> count{"", "count", "Number of scans; 0: all", false, {}, "N", cmd};
     TCLAP::ValueArg<std::string> label{
         "", "label", "Sensor label in the rawlog", false, "velodyne", "LABEL", cmd};
-    TCLAP::SwitchArg force{"", "force", "Overwrite what exists", cmd};
-    TCLAP::SwitchArg verbose{"", "verbose", "All the text of errors", cmd};
+    TCLAP::SwitchArg force{"", "force", "Overwrite existing files", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "Print full error texts", cmd};
 };
 
 /** False if Ctrl-C came before the last scan. */
@@ -94,7 +95,7 @@ std::vector<std::string> inputsOf(const std::string& folder, const io::KittiDriv
 int convert(Arguments& args) {
     cli::catchInterrupts();
     if (args.link.getValue() && args.embed.getValue()) {
-        cli::inform("--link and --embed contradict each other; choose one");
+        cli::inform("--link and --embed exclude each other");
         return cli::kExitBadCommandLine;
     }
     auto drive =
@@ -114,17 +115,17 @@ int convert(Arguments& args) {
 cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
-        {"OUT.rawlog", "a CObservationPointCloud a scan"},
+        {"OUT.rawlog", "one CObservationPointCloud per scan"},
         {"OUT_Images/",
-         "their points, x y z intensity as float32 (not with --embed); RawLogViewer finds "
-         "them only if it is started in the rawlog's folder"},
-        {"OUT.times.txt, OUT.calib.txt, OUT.poses.txt", "what KITTI has of them"},
-        {"OUT.meta.yaml", "the sensor, and what was done to the points"}};
+         "their points, x y z intensity as float32 (not with --embed); start RawLogViewer in the "
+         "rawlog's folder to see them"},
+        {"OUT.times.txt, OUT.calib.txt, OUT.poses.txt", "copied from KITTI where they exist"},
+        {"OUT.meta.yaml", "sensor model and processing of the points"}};
     help.examples = {{{"kitti2rawlog -i dataset/sequences/07 -o 07.rawlog --link",
-                       "A sequence, without a copy of its points"},
+                       "Convert a sequence without copying its points"},
                       {"kitti2rawlog -i 2011_09_26_drive_0005_sync -o 5.rawlog --count 60",
-                       "The begin of a raw drive"}}};
-    help.interrupted = "nothing is written";
+                       "Convert the first 60 scans of a raw drive"}}};
+    help.interrupted = "no output is written";
     return help;
 }
 }  // namespace

@@ -39,16 +39,17 @@ void write(const io::PartialFolder& partial, const fs::path& target, const std::
 }
 
 struct Arguments {
-    TCLAP::CmdLine cmd{"the LiDAR scans of a rawlog as a KITTI odometry sequence", ' ', kVersion};
+    TCLAP::CmdLine cmd{"converts the LiDAR scans of a rawlog to a KITTI odometry sequence", ' ',
+                       kVersion};
     TCLAP::ValueArg<std::string> input{"i", "input", "Rawlog to read", true, "", "IN.rawlog", cmd};
-    TCLAP::ValueArg<std::string> output{"o", "output", "Folder to make", true, "", "SEQUENCE_DIR",
+    TCLAP::ValueArg<std::string> output{"o", "output", "Folder to create", true, "", "SEQUENCE_DIR",
                                         cmd};
     TCLAP::ValueArg<std::string> label{
-        "", "sensor-label", "Sensor to take; default: the first one", false, "", "L", cmd};
-    TCLAP::ValueArg<std::string> images{"",    "images", "Folder of the external files", false, "",
-                                        "DIR", cmd};
-    TCLAP::SwitchArg force{"", "force", "Overwrite what exists", cmd};
-    TCLAP::SwitchArg verbose{"", "verbose", "All the text of errors", cmd};
+        "", "sensor-label", "Sensor to convert; default: the first one", false, "", "L", cmd};
+    TCLAP::ValueArg<std::string> images{
+        "", "images", "Folder with the external files", false, "", "DIR", cmd};
+    TCLAP::SwitchArg force{"", "force", "Overwrite existing files", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "Print full error texts", cmd};
 };
 
 /** The folder to make, by all its names. */
@@ -73,13 +74,14 @@ struct SideFile {
     std::optional<std::size_t> rows;  //!< none: they do not belong to scans
 };
 
-/** Those that are there. Throws Error for one that cannot be understood. */
+/** Existing side files. Throws Error for invalid ones. */
 std::vector<SideFile> sideFilesOf(const std::string& rawlog) {
     std::vector<SideFile> files;
     for (const std::string name : {"times.txt", "calib.txt", "poses.txt"}) {
         SideFile file{name, io::sidecarPath(rawlog, "." + name), "", {}};
         if (!fs::exists(file.path)) continue;
-        if (!fs::is_regular_file(file.path)) throw Error("'" + file.path + "' is no file");
+        if (!fs::is_regular_file(file.path))
+            throw Error("'" + file.path + "' is not a regular file");
         if (name == "calib.txt")
             io::readCalibration(file.path);
         else
@@ -124,15 +126,16 @@ class Sequence {
     }
 
     void finish(const std::string& rawlog) {
-        if (scans_ == 0) throw Error("'" + rawlog + "' holds no LiDAR scans");
+        if (scans_ == 0) throw Error("'" + rawlog + "' contains no LiDAR scans");
         for (const auto& other : reader_.otherLabels())
-            cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
+            cli::warn("scans of the sensor '" + other +
+                      "' are ignored; choose a sensor with --sensor-label");
         write(*partial_, path_, "times.txt", times_.data(), times_.size());
         for (const auto& file : sideFiles_) {
             if (file.rows && *file.rows != scans_)
                 throw Error("'" + file.path + "' has " + std::to_string(*file.rows) + " rows for " +
                             std::to_string(scans_) +
-                            " scans; complete it or take it away, the rawlog can do without it");
+                            " scans; complete or remove it (it is optional)");
             write(*partial_, path_, file.name, file.text.data(), file.text.size());
         }
         partial_->putInPlace(kNames);
@@ -173,13 +176,13 @@ int convert(Arguments& args) {
 
 cli::HelpText help() {
     cli::HelpText help;
-    help.writes = {{"velodyne/NNNNNN.bin", "points of a scan, x y z intensity as float32"},
-                   {"times.txt", "seconds, a row a scan"},
-                   {"calib.txt, poses.txt", "those beside the rawlog, where there are any"}};
-    help.examples = {
-        {{"rawlog2kitti -i 07.rawlog -o sequences/07", "A drive"},
-         {"rawlog2kitti -i two.rawlog -o sequences/08 --sensor-label rear", "One of two sensors"}}};
-    help.interrupted = "nothing is written";
+    help.writes = {{"velodyne/NNNNNN.bin", "points of one scan, x y z intensity as float32"},
+                   {"times.txt", "time of each scan, seconds"},
+                   {"calib.txt, poses.txt", "copied from next to the rawlog where they exist"}};
+    help.examples = {{{"rawlog2kitti -i 07.rawlog -o sequences/07", "A drive"},
+                      {"rawlog2kitti -i two.rawlog -o sequences/08 --sensor-label rear",
+                       "Convert one of two sensors"}}};
+    help.interrupted = "no output is written";
     return help;
 }
 }  // namespace

@@ -21,28 +21,29 @@ using Text = TCLAP::ValueArg<std::string>;
 using Number = TCLAP::ValueArg<cli::Count>;
 
 struct Arguments {
-    TCLAP::CmdLine cmd{"a recording of a LiDAR as an MRPT rawlog with its side files", ' ',
+    TCLAP::CmdLine cmd{"converts a LiDAR recording to an MRPT rawlog with side files", ' ',
                        kVersion};
     Text input{"i",
                "input",
-               "Recording to read: rawlog, KITTI folder, folder of clouds, ROS bag, mcap, pcap, or "
-               "\"-\" for a rawlog or pcap from a pipe",
+               "Recording: rawlog, KITTI folder, folder of clouds, ROS bag, MCAP, pcap, or \"-\" "
+               "for a rawlog or pcap from a pipe",
                true,
                "",
                "IN",
                cmd};
     Text output{"o", "output", "Rawlog to write", true, "", "OUT.rawlog", cmd};
-    Text sensor{"", "sensor-label", "Sensor to take: see delio-slam", false, "", "L", cmd};
-    Text sensorInfo{
-        "", "sensor-info", "Description of the sensor: see delio-slam", false, "", "FILE", cmd};
-    Text images{"", "images", "Folder of a rawlog's external files", false, "", "DIR", cmd};
+    Text sensor{"", "sensor-label", "Sensor to convert: see delio-slam", false, "", "L", cmd};
+    Text sensorInfo{"", "sensor-info", "Sensor description: see delio-slam", false, "", "FILE",
+                    cmd};
+    Text images{"", "images", "Folder with a rawlog's external files", false, "", "DIR", cmd};
     Text label{"", "label", "Sensor label in the rawlog", false, "velodyne", "LABEL", cmd};
-    Number start{"", "start", "First scan to take, from 0", false, {}, "N", cmd};
-    Number count{"", "count", "How many scans to take; 0: all", false, {}, "N", cmd};
-    Number every{"", "every", "Take every N-th scan only", false, {1}, "N", cmd};
-    TCLAP::SwitchArg embed{"", "embed", "Keep the points in the rawlog, not in OUT_Images/", cmd};
-    TCLAP::SwitchArg force{"", "force", "Overwrite what exists", cmd};
-    TCLAP::SwitchArg verbose{"", "verbose", "All the text of errors", cmd};
+    Number start{"", "start", "First scan to use, counted from 0", false, {}, "N", cmd};
+    Number count{"", "count", "Number of scans; 0: all", false, {}, "N", cmd};
+    Number every{"", "every", "Use every N-th scan", false, {1}, "N", cmd};
+    TCLAP::SwitchArg embed{"", "embed", "Store the points in the rawlog instead of OUT_Images/",
+                           cmd};
+    TCLAP::SwitchArg force{"", "force", "Overwrite existing files", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "Print full error texts", cmd};
 };
 
 std::vector<std::string> linesOf(const std::string& text) {
@@ -77,12 +78,12 @@ class Conversion {
             passed = args_.every.getValue() - 1;
         }
         if (writer_.scans() == 0)
-            throw Error("'" + args_.input.getValue() + "' holds no LiDAR scans" +
+            throw Error("'" + args_.input.getValue() + "' contains no LiDAR scans" +
                         (args_.start.getValue() > 0 ? " after --start" : ""));
         return true;
     }
 
-    /** What ended the recording before its end; empty: nothing did. */
+    /** Fault that ended the recording early; may be empty. */
     const std::string& fault() const { return fault_; }
 
     std::size_t finish() {
@@ -148,7 +149,7 @@ void refuseItself(Arguments& args, const io::ScanReader& reader) {
 
 int convert(Arguments& args) {
     if (args.every.getValue() == 0) {
-        cli::inform("--every has to be 1 or more");
+        cli::inform("--every must be at least 1");
         return cli::kExitBadCommandLine;
     }
     const std::string &input = args.input.getValue(), &output = args.output.getValue();
@@ -164,28 +165,30 @@ int convert(Arguments& args) {
     const std::size_t scans = conversion.finish();
     for (const auto& finding : reader->recording().findings) cli::warn(finding);
     for (const auto& other : reader->otherLabels())
-        cli::warn("scans of sensor '" + other + "' were left out; see --sensor-label");
+        cli::warn("scans of the sensor '" + other +
+                  "' are ignored; choose a sensor with --sensor-label");
     if (!conversion.fault().empty())
         throw Error(conversion.fault() + "; the " + std::to_string(scans) +
-                    " scans before are in '" + output + "'");
+                    " scans before it are in '" + output + "'");
     cli::inform("wrote " + std::to_string(scans) + " scans to '" + output + "'");
     return cli::kExitSuccess;
 }
 
 cli::HelpText help() {
     cli::HelpText help;
-    help.writes = {{"OUT.rawlog", "a CObservationPointCloud a scan"},
-                   {"OUT_Images/",
-                    "their points, x y z intensity as float32 (not with --embed); their rings and "
-                    "times, where they have any; RawLogViewer finds the points only if it is "
-                    "started in the rawlog's folder"},
-                   {"OUT.times.txt", "seconds, a row a scan"},
-                   {"OUT.calib.txt, OUT.poses.txt", "where the recording has them"},
-                   {"OUT.meta.yaml", "the sensor, and what was done to the points"}};
-    help.examples = {{{"scans2rawlog -i drive.mcap -o drive.rawlog", "A ROS bag for RawLogViewer"},
-                      {"scans2rawlog -i drive.pcap -o drive.rawlog --sensor-info sensor.json",
-                       "Packets of an Ouster"}}};
-    help.interrupted = "nothing is written";
+    help.writes = {
+        {"OUT.rawlog", "one CObservationPointCloud per scan"},
+        {"OUT_Images/",
+         "their points, x y z intensity as float32 (not with --embed), and rings and times where "
+         "they exist; start RawLogViewer in the rawlog's folder to see the points"},
+        {"OUT.times.txt", "time of each scan, seconds"},
+        {"OUT.calib.txt, OUT.poses.txt", "if the recording has them"},
+        {"OUT.meta.yaml", "sensor model and processing of the points"}};
+    help.examples = {
+        {{"scans2rawlog -i drive.mcap -o drive.rawlog", "Convert a ROS bag for RawLogViewer"},
+         {"scans2rawlog -i drive.pcap -o drive.rawlog --sensor-info sensor.json",
+          "Convert packets of an Ouster"}}};
+    help.interrupted = "no output is written";
     return help;
 }
 }  // namespace

@@ -61,32 +61,31 @@ bool isOneOf(const std::vector<std::string>& names, const std::string& name) {
 
 /** The command line. */
 struct Arguments {
-    TCLAP::CmdLine cmd{"a drive through a made-up world, with ground truth", ' ', kVersion};
+    TCLAP::CmdLine cmd{"generates a drive through a synthetic world, with exact ground truth", ' ',
+                       kVersion};
     TCLAP::ValueArg<std::string> output{"o",          "output", "Rawlog to write", true, "",
                                         "OUT.rawlog", cmd};
     TCLAP::ValueArg<std::string> scene{
-        "", "scene", "World to drive through", true, "", choiceOf(sceneNames()), cmd};
-    TCLAP::ValueArg<int> scans{"", "scans", "Number of scans, ten a second", true, 0, "N", cmd};
-    TCLAP::ValueArg<int> seed{"", "seed", "Another seed, another drive", false, 1, "S", cmd};
-    TCLAP::ValueArg<int> driveSeed{
-        "",
-        "drive-seed",
-        "Another drive through the world of --seed: its speed, the traffic and the noise; default: "
-        "that of --seed",
-        false,
-        1,
-        "S",
-        cmd};
-    TCLAP::SwitchArg reverse{"", "reverse",
-                             "The same road the other way, in its other lane, from where the drive "
-                             "would end; for a vehicle",
-                             cmd};
+        "", "scene", "Synthetic world", true, "", choiceOf(sceneNames()), cmd};
+    TCLAP::ValueArg<int> scans{"", "scans", "Number of scans (10 per second)", true, 0, "N", cmd};
+    TCLAP::ValueArg<int> seed{"", "seed", "Random seed of world and drive", false, 1, "S", cmd};
+    TCLAP::ValueArg<int> driveSeed{"",
+                                   "drive-seed",
+                                   "Random seed of speed, traffic and noise in the world of "
+                                   "--seed; default: the value of --seed",
+                                   false,
+                                   1,
+                                   "S",
+                                   cmd};
+    TCLAP::SwitchArg reverse{
+        "", "reverse",
+        "Drive the same road in the opposite direction, in the other lane (vehicle only)", cmd};
     TCLAP::ValueArg<std::string> trajectory{
         "",
         "trajectory",
-        "KITTI poses (cam0, 12 numbers a line, ten a second) to drive along: at scan i the vehicle "
-        "is where pose i is, seen from above; heights, pitch and roll are those of the made-up "
-        "ground. The drive ends where the poses end. For urban, rural and highway",
+        "KITTI poses (cam0, 12 numbers per line, 10 per second) to follow in x and y; height, "
+        "pitch and roll follow the synthetic ground. The drive ends with the poses. For urban, "
+        "rural and highway",
         false,
         "",
         "POSES.txt",
@@ -94,8 +93,8 @@ struct Arguments {
     TCLAP::ValueArg<std::string> motion{
         "",
         "motion",
-        "handheld: carried at walking speed, 1.3 m/s at most (along --trajectory at the "
-        "speed of its poses), and swinging by 15 deg at 1.5 Hz about each axis",
+        "handheld: carried at up to 1.3 m/s (with --trajectory at the speed of its poses), "
+        "swinging by 15 deg at 1.5 Hz about each axis",
         false,
         kMotions.front(),
         choiceOf(kMotions),
@@ -103,8 +102,8 @@ struct Arguments {
     TCLAP::ValueArg<std::string> start{
         "",
         "start",
-        "How the drive begins; default: as the seed has it. rest: standing, up to its speed within "
-        "2 s; moving: where it is fast for the first time. For a vehicle without --trajectory",
+        "Initial motion; default: random. rest: starts standing and reaches its speed within 2 s; "
+        "moving: starts at speed. For a vehicle without --trajectory",
         false,
         "",
         choiceOf(kStarts),
@@ -112,9 +111,9 @@ struct Arguments {
     TCLAP::ValueArg<std::string> mount{
         "",
         "mount",
-        "How the sensor is turned on its vehicle, in degrees: 0,25,0 looks 25 deg down ahead, "
-        "90,0,0 lies on its side. The rays stay those of an upright sensor: points, calibration "
-        "and truth are told in the turned frame",
+        "Orientation of the sensor frame on the vehicle, degrees: 0,25,0 looks 25 deg down, 90,0,0 "
+        "lies on its side. The rays are those of an upright sensor; points, calibration and ground "
+        "truth are given in the rotated frame",
         false,
         "0,0,0",
         "ROLL,PITCH,YAW",
@@ -122,36 +121,43 @@ struct Arguments {
     TCLAP::ValueArg<std::string> sensor{
         "", "sensor", "Sensor", false, "hdl64e", choiceOf(sensorNames()), cmd};
     TCLAP::ValueArg<double> noise{
-        "", "noise", "Range noise, standard deviation in metres", false, 0.01, "M", cmd};
+        "", "noise", "Standard deviation of the range noise, metres", false, 0.01, "M", cmd};
     TCLAP::ValueArg<double> ringBias{
-        "",    "ring-bias", "Constant range error of each laser, standard deviation in metres",
+        "",    "ring-bias", "Standard deviation of each laser's constant range error, metres",
         false, 0,           "M",
         cmd};
-    TCLAP::ValueArg<int> movers{"",
-                                "movers",
-                                "Cars, cyclists and pedestrians near the vehicle; in forest and "
-                                "indoor: people, who indoors walk along with the sensor",
-                                false,
-                                0,
-                                "N",
-                                cmd};
-    TCLAP::SwitchArg distort{"", "distort",
-                             "Leave the vehicle's motion in the scans; OUT_Images/*.time: when "
-                             "each point was measured, float32 seconds from the scan's stamp",
-                             cmd};
-    TCLAP::SwitchArg labels{"", "labels", "OUT_Images/*.label: uint8 a point, 1 where it moves",
-                            cmd};
-    TCLAP::ValueArg<double> drop{"",  "drop-rate", "Share of scans that are lost", false, 0,
-                                 "R", cmd};
-    TCLAP::ValueArg<double> repeat{
-        "", "repeat-rate", "Share of scans that bring the points of the scan before", false, 0, "R",
+    TCLAP::ValueArg<int> movers{
+        "",
+        "movers",
+        "Number of cars, cyclists and pedestrians near the vehicle; in forest and indoor: of "
+        "people, who indoors walk along with the sensor",
+        false,
+        0,
+        "N",
         cmd};
-    TCLAP::ValueArg<double> empty{"",  "empty-rate", "Share of scans without points", false, 0,
+    TCLAP::SwitchArg distort{"", "distort",
+                             "Do not motion-compensate the scans; OUT_Images/*.time holds each "
+                             "point's time, float32 seconds from the scan's stamp",
+                             cmd};
+    TCLAP::SwitchArg labels{"", "labels",
+                            "Write OUT_Images/*.label: uint8 per point, 1 for dynamic points", cmd};
+    TCLAP::ValueArg<double> drop{"",  "drop-rate", "Fraction of scans that are lost", false, 0,
+                                 "R", cmd};
+    TCLAP::ValueArg<double> repeat{"",
+                                   "repeat-rate",
+                                   "Fraction of scans that repeat the points of the scan before",
+                                   false,
+                                   0,
+                                   "R",
+                                   cmd};
+    TCLAP::ValueArg<double> empty{"",  "empty-rate", "Fraction of scans without points", false, 0,
                                   "R", cmd};
-    TCLAP::SwitchArg embed{"", "embed", "Keep the points in the rawlog, not in OUT_Images/", cmd};
-    TCLAP::ValueArg<int> threads{"", "threads", "Threads to use; 0: all", false, 0, "N", cmd};
-    TCLAP::SwitchArg force{"", "force", "Overwrite what exists", cmd};
-    TCLAP::SwitchArg verbose{"", "verbose", "All the text of errors", cmd};
+    TCLAP::SwitchArg embed{"", "embed", "Store the points in the rawlog instead of OUT_Images/",
+                           cmd};
+    TCLAP::ValueArg<int> threads{"",  "threads", "Number of threads; 0: all cores", false, 0,
+                                 "N", cmd};
+    TCLAP::SwitchArg force{"", "force", "Overwrite existing files", cmd};
+    TCLAP::SwitchArg verbose{"", "verbose", "Print full error texts", cmd};
 };
 
 /** A distance that has to be 0 or more. */
@@ -159,15 +165,15 @@ bool isMetres(double value) { return value >= 0 && std::isfinite(value); }
 
 bool isRate(double value) { return value >= 0 && value < 1; }
 
-/** Why a scene cannot be made as asked; empty: it can. */
+/** Message about invalid arguments of a scene; empty if they are valid. */
 std::string faultInScene(Arguments& args) {
     const std::string& scene = args.scene.getValue();
     if (!isOneOf(sceneNames(), scene))
-        return "there is no scene '" + scene + "'; there are: " + sceneOptions();
+        return "unknown scene '" + scene + "'; choose one of: " + sceneOptions();
     if (!args.trajectory.isSet()) return "";
-    if (args.trajectory.getValue().empty()) return "--trajectory needs the name of a file";
+    if (args.trajectory.getValue().empty()) return "--trajectory needs a file name";
     if (!takesTrajectory(scene))
-        return "--trajectory does not go with --scene " + scene + ", which has a path of its own";
+        return "--trajectory cannot be used with --scene " + scene + ", which has its own path";
     return "";
 }
 
@@ -175,38 +181,37 @@ std::string faultInScene(Arguments& args) {
 std::string faultInMotion(Arguments& args) {
     const std::string &motion = args.motion.getValue(), &start = args.start.getValue();
     if (!isOneOf(kMotions, motion))
-        return "there is no motion '" + motion + "'; there is: " + listed(kMotions);
+        return "unknown motion '" + motion + "'; choose one of: " + listed(kMotions);
     if (!mountIn(args.mount.getValue()))
-        return "--mount wants ROLL,PITCH,YAW in degrees, not '" + args.mount.getValue() + "'";
+        return "--mount needs ROLL,PITCH,YAW in degrees, not '" + args.mount.getValue() + "'";
     if (args.reverse.isSet() && gaitOf(motion) != Gait::kVehicle)
-        return "--reverse does not go with --motion " + motion;
+        return "--reverse cannot be used with --motion " + motion;
     if (args.reverse.isSet() && args.start.isSet())
-        return "--reverse does not go with --start, which says how the drive forward begins";
+        return "--reverse and --start exclude each other";
     if (!args.start.isSet()) return "";
     if (!isOneOf(kStarts, start))
-        return "there is no start '" + start + "'; there is: " + listed(kStarts);
-    if (args.trajectory.isSet())
-        return "--start does not go with --trajectory, which says how the drive begins";
-    if (gaitOf(motion) != Gait::kVehicle) return "--start does not go with --motion " + motion;
+        return "unknown start '" + start + "'; choose one of: " + listed(kStarts);
+    if (args.trajectory.isSet()) return "--start and --trajectory exclude each other";
+    if (gaitOf(motion) != Gait::kVehicle) return "--start cannot be used with --motion " + motion;
     return "";
 }
 
 /** The same of sensor and drive. */
 std::string faultInDrive(Arguments& args) {
     if (!findSensor(args.sensor.getValue()))
-        return "there is no sensor '" + args.sensor.getValue() + "'; there is: " + sensorOptions();
-    if (args.scans.getValue() < 1) return "--scans has to be 1 or more";
-    if (args.seed.getValue() < 0) return "--seed has to be 0 or more";
-    if (args.driveSeed.getValue() < 0) return "--drive-seed has to be 0 or more";
-    if (!isMetres(args.noise.getValue())) return "--noise has to be 0 or more metres";
-    if (!isMetres(args.ringBias.getValue())) return "--ring-bias has to be 0 or more metres";
-    if (args.movers.getValue() < 0) return "--movers has to be 0 or more";
+        return "unknown sensor '" + args.sensor.getValue() + "'; choose one of: " + sensorOptions();
+    if (args.scans.getValue() < 1) return "--scans must be at least 1";
+    if (args.seed.getValue() < 0) return "--seed must be at least 0";
+    if (args.driveSeed.getValue() < 0) return "--drive-seed must be at least 0";
+    if (!isMetres(args.noise.getValue())) return "--noise must be at least 0 m";
+    if (!isMetres(args.ringBias.getValue())) return "--ring-bias must be at least 0 m";
+    if (args.movers.getValue() < 0) return "--movers must be at least 0";
     for (auto* rate : {&args.drop, &args.repeat, &args.empty})
         if (!isRate(rate->getValue()))
-            return "--" + rate->getName() + " has to be 0 or more and below 1";
-    if (args.threads.getValue() < 0) return "--threads has to be 0 or more";
+            return "--" + rate->getName() + " must be at least 0 and less than 1";
+    if (args.threads.getValue() < 0) return "--threads must be 0 or more";
     if (args.threads.getValue() > static_cast<int>(cli::kMostThreads))
-        return "--threads has to be " + std::to_string(cli::kMostThreads) + " or less; 0: all";
+        return "--threads must be " + std::to_string(cli::kMostThreads) + " or less (0: all)";
     return "";
 }
 
@@ -232,7 +237,7 @@ DriveRequest requestOf(Arguments& args) {
     return request;
 }
 
-/** What is carried by hand has no roof under it, and tells what is near. */
+/** Hand-held sensors have no vehicle below them and measure near points. */
 void suit(DriveRequest& request, const Carrier& carrier) {
     request.scanner.onVehicle = carrier.isVehicle;
     request.sensor.minRange_m = std::min(request.sensor.minRange_m, carrier.nearest_m);
@@ -258,27 +263,27 @@ int makeDrive(Arguments& args) {
     if (args.reverse.isSet()) drive.turnBack();
     suit(request, drive.carrier());
     if (drive.scans() < count)
-        cli::warn("the trajectory ends after " + std::to_string(drive.scans()) + " of " +
-                  std::to_string(count) + " scans; so does the drive");
+        cli::warn("--trajectory ends after " + std::to_string(drive.scans()) + " of " +
+                  std::to_string(count) + " scans; the drive ends there");
     return DriveWriter(request, *world, drive).write();
 }
 
 cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
-        {"OUT.rawlog", "a CObservationPointCloud a scan"},
+        {"OUT.rawlog", "one CObservationPointCloud per scan"},
         {"OUT_Images/",
-         "their points, x y z intensity as float32 (not with --embed); .ring, .time, .label: a "
-         "value a point"},
-        {"OUT.times.txt, OUT.calib.txt, OUT.poses.txt", "as KITTI's; the poses are exact"},
-        {"OUT.origin.txt", "where cam0 begins in the world"},
-        {"OUT.faults.tsv", "scans that were lost, repeated or empty"},
-        {"OUT.meta.yaml", "the sensor, and what was done to the points"}};
+         "their points, x y z intensity as float32 (not with --embed); .ring, .time, .label: one "
+         "value per point"},
+        {"OUT.times.txt, OUT.calib.txt, OUT.poses.txt", "in KITTI's formats; the poses are exact"},
+        {"OUT.origin.txt", "pose of cam0 in the world at the first scan"},
+        {"OUT.faults.tsv", "lost, repeated and empty scans"},
+        {"OUT.meta.yaml", "sensor model and processing of the points"}};
     help.examples = {{{"synth2rawlog -o town.rawlog --scene urban --scans 100 --movers 20",
-                       "A town with traffic"},
+                       "A street with traffic"},
                       {"synth2rawlog -o room.rawlog --scene indoor --scans 50 --sensor vlp16",
-                       "A small sensor in rooms"}}};
-    help.interrupted = "nothing is written";
+                       "A 16-ring sensor indoors"}}};
+    help.interrupted = "no output is written";
     return help;
 }
 }  // namespace

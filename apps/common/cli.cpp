@@ -23,8 +23,8 @@
 #include "delio/core/error.h"
 #include "delio/core/printable.h"
 
-/** Replaces MRPT's own: the containers of MRPT 2.5.8 do not look whether they got the memory that
- *  they asked for, and write to it. A program's own functions go before those of its libraries. */
+/** Replaces MRPT's function: containers of MRPT 2.5.8 do not check whether an allocation succeeded.
+ *  A program's own functions take precedence over those of its libraries. */
 void* mrpt::aligned_malloc(std::size_t size, std::size_t alignment) {
     void* memory = nullptr;
     if (posix_memalign(&memory, alignment, size) != 0) throw std::bad_alloc();
@@ -124,8 +124,8 @@ std::vector<std::string> lastOfEach(TCLAP::CmdLine& cmd, const std::vector<std::
     return kept;
 }
 
-/** Where an exception reaches nobody: in a thread of TBB's that has no memory for its own needs, or
- *  where there is none to tell of another one. Takes none itself. */
+/** Handler of std::terminate, for exceptions that no one can catch, such as in a thread of TBB that
+ * is out of memory. Allocates nothing. */
 [[noreturn]] void endInOneLine() noexcept {
     const auto end = [](const char* why) {
         std::fprintf(stderr, "%s: %.*s\n", program_invocation_short_name,
@@ -135,12 +135,12 @@ std::vector<std::string> lastOfEach(TCLAP::CmdLine& cmd, const std::vector<std::
     try {
         if (const auto fault = std::current_exception()) std::rethrow_exception(fault);
     } catch (const std::bad_alloc&) {
-        end("it takes more memory than there is");
+        end("out of memory");
     } catch (const std::exception& e) {
         end(plainMessage(e).c_str());
     } catch (...) {
     }
-    end("ended by an error of its own");
+    end("stopped by an internal error");
     std::abort();
 }
 }  // namespace
@@ -174,7 +174,7 @@ void inform(const std::string& text) { say(text); }
 
 void refuseExisting(const std::string& path, bool force) {
     if (!force && std::filesystem::exists(path))
-        throw Error("'" + path + "' exists; choose another name, or overwrite it with --force");
+        throw Error("'" + path + "' exists; choose another name or overwrite it with --force");
 }
 
 Progress::Progress(std::string what, std::size_t total)

@@ -12,8 +12,8 @@ class CmdLine;
 class SwitchArg;
 }  // namespace TCLAP
 
-/** What every tool of the project shares: one way to end, to fail, to be interrupted and to show
- *  progress. stdout carries results only; all of this goes to stderr. */
+/** Common behaviour of all programs: exit, failure, interruption and progress. Results go to
+ *  stdout, everything else to stderr. */
 namespace delio::cli {
 constexpr int kExitSuccess = 0;
 constexpr int kExitFailedRun = 1;

@@ -44,7 +44,7 @@ std::string listed(const std::string& title, const std::vector<HelpText::Row>& r
     return list;
 }
 
-/** Of a value's name as TCLAP has it, "DEG, 0 to 90", the name and the range. */
+/** Splits a TCLAP value name such as "DEG, 0 to 90" into name and range. */
 struct ValueName {
     explicit ValueName(const TCLAP::Arg& arg) {
         const std::string id = arg.longID();
@@ -58,7 +58,7 @@ struct ValueName {
     std::string name, range;
 };
 
-/** What an argument is before the command line is read; empty: nothing. */
+/** Default value of an argument; may be empty. */
 std::string valueOf(TCLAP::Arg& arg) {
     if (auto* text = dynamic_cast<ValueArg<std::string>*>(&arg)) return text->getValue();
     if (auto* count = dynamic_cast<ValueArg<Count>*>(&arg))
@@ -118,8 +118,7 @@ std::string lineOf(TCLAP::Arg& arg) {
     return filled(head, text, kColumn);
 }
 
-/** What is wrong with an argument that no option was given for; empty where `e` is another fault.
- */
+/** Message for an argument without option; empty if `e` is another fault. */
 std::string unexpectedIn(TCLAP::CmdLineInterface& cmd, const TCLAP::ArgException& e) {
     const std::string begin = "Argument: ", argument = e.argId();
     if (e.error().find("match for argument") == std::string::npos || argument.find(begin) != 0)
@@ -132,8 +131,8 @@ std::string unexpectedIn(TCLAP::CmdLineInterface& cmd, const TCLAP::ArgException
     };
     if (!word.empty() && word.front() == '-') return "unknown option '" + word + "'; see --help";
     return "unexpected argument '" + word + "'; " +
-           (has("i") && has("o") ? "inputs are given with -i and outputs with -o (see --help)"
-                                 : "every argument belongs to an option (see --help)");
+           (has("i") && has("o") ? "give inputs with -i and outputs with -o (see --help)"
+                                 : "give every argument with an option (see --help)");
 }
 
 std::string helpOf(TCLAP::CmdLineInterface& cmd, const HelpText& text) {
@@ -149,13 +148,13 @@ std::string helpOf(TCLAP::CmdLineInterface& cmd, const HelpText& text) {
     for (const auto& [command, purpose] : text.examples)
         help += "  " + purpose + ":\n      $ " + command + "\n";
     constexpr std::size_t kCodes = 7;
-    return help + listed("Exit status",
-                         {{std::to_string(kExitSuccess), "success"},
-                          {std::to_string(kExitFailedRun),
-                           "failed run; one line on stderr says what, where and what to do"},
-                          {std::to_string(kExitBadCommandLine), "bad command line"},
-                          {std::to_string(kExitInterrupted), "interrupted; " + text.interrupted}},
-                         kCodes);
+    return help +
+           listed("Exit status",
+                  {{std::to_string(kExitSuccess), "success"},
+                   {std::to_string(kExitFailedRun), "the run failed; stderr says why, in one line"},
+                   {std::to_string(kExitBadCommandLine), "wrong command line"},
+                   {std::to_string(kExitInterrupted), "interrupted: " + text.interrupted}},
+                  kCodes);
 }
 }  // namespace
 

@@ -6,8 +6,8 @@
 #include "help_text.h"
 
 namespace delio::cli {
-/** What a tool says of its command line: help in GNU's form, which help2man makes a manual page of;
- *  a version and a failure in one plain line. */
+/** Command-line output of a program: help in GNU's form (help2man turns it into a manual page),
+ *  version, and failures in one plain line. */
 class CommandLineOutput : public TCLAP::CmdLineOutput {
  public:
     /** `cmd`: not parsed yet, the values of its arguments are the defaults. */

@@ -4,7 +4,7 @@
 #include <vector>
 
 namespace delio::cli {
-/** What --help says of a tool beside its one line and its options, which TCLAP has. */
+/** Content of --help besides the summary line and the options, which TCLAP has. */
 struct HelpText {
     struct Row {
         std::string name, meaning;

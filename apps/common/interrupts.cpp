@@ -16,7 +16,7 @@
 
 namespace delio::cli {
 namespace {
-// What the signal handler reaches.
+// State used by the signal handler.
 volatile std::sig_atomic_t isCaught = 0, isRequested = 0;
 std::atomic<std::int64_t> requested_ms{0};
 static_assert(std::atomic<std::int64_t>::is_always_lock_free);

@@ -10,7 +10,7 @@ namespace delio::cli {
 namespace fs = std::filesystem;
 
 namespace {
-/** Where a path leads to in the end. */
+/** Target of a path after following links. */
 std::string realPath(const fs::path& path) {
     std::error_code fault;
     const fs::path real = fs::weakly_canonical(path, fault);
@@ -41,10 +41,10 @@ std::vector<Input> withLinks(const std::vector<std::string>& inputs) {
 void refuse(const Input& input, const std::string& output, const std::string& real) {
     std::error_code ignored;
     if (input.real == real || fs::equivalent(input.name, output, ignored))
-        throw Error("'" + output + "' is what is read; choose another name to write");
+        throw Error("'" + output + "' is also the input; choose another output");
     if (input.real.compare(0, real.size() + 1, real + "/") == 0)
-        throw Error("'" + output + "' holds what is read, '" + input.name +
-                    "'; choose another name to write");
+        throw Error("'" + output + "' contains the input '" + input.name +
+                    "'; choose another output");
 }
 }  // namespace
 

@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDense_m = 0.05;
 
-/** Where streets meet. */
+/** A crossing. */
 enum Corner { kStart, kEnd, kLeftEnd, kLeftStart, kRightStart, kRightEnd };
 using Corners = std::array<Vector2d, 6>;
 

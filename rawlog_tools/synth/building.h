@@ -9,6 +9,6 @@ namespace delio::synth {
 void addBuilding(Mesh& mesh, const Frame& frame, double width, double depth, Random& random,
                  int mostFloors = 5);
 
-/** A plain block, for what stands far behind the street. */
+/** A plain block, for buildings far behind the street. */
 void addBlock(Mesh& mesh, const Frame& frame, double width, double depth, Random& random);
 }  // namespace delio::synth

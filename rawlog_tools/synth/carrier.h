@@ -6,7 +6,7 @@ struct Footprint {
     double along_m, across_m;
 };
 
-/** What bears the sensor. */
+/** Carrier of the sensor. */
 struct Carrier {
     Footprint footprint{1.35, 0.75};
     double sensorHeight_m = 1.73;

@@ -19,7 +19,7 @@ constexpr double kScanPeriod_s = 0.1;
  *  speed, if no trajectory says otherwise, and swings. `start` is for what no trajectory says. */
 class Drive {
  public:
-    /** Fewer scans than asked for where a given trajectory ends before. */
+    /** Fewer scans than requested if the given trajectory ends earlier. */
     Drive(const Road& road, std::size_t scans, std::uint64_t seed, Gait gait = Gait::kVehicle,
           Start start = Start::kOfSeed);
 

@@ -3,7 +3,7 @@
 #include "ray_caster.h"
 
 namespace delio::synth {
-// What an instrument makes of light that comes back.
+// Model of the instrument's echoes.
 
 /** How likely an echo is to be noticed. */
 double detectionProbability(const Hit& hit);

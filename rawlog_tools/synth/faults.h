@@ -3,7 +3,7 @@
 #include <cstdint>
 
 namespace delio::synth {
-/** What goes wrong between a sensor and its recording. */
+/** Faults between a sensor and its recording. */
 enum class Fault {
     kNone,
     kDropped,   //!< nothing arrived

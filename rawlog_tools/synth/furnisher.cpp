@@ -11,7 +11,7 @@ namespace delio::synth {
 namespace {
 using Eigen::Vector2d;
 
-/** What can stand or hang at a wall. */
+/** Objects that stand or hang at a wall. */
 struct Piece {
     double shortest_m, longest_m, depth_m;
     void (*add)(Mesh& mesh, const Frame& frame, double length, Random& random);

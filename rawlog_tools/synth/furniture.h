@@ -3,7 +3,7 @@
 #include "random.h"
 
 namespace delio::synth {
-// What stands along a street. `frame`: the origin is on the ground, in the middle of the object.
+// Street furniture. `frame`: the origin is on the ground, in the middle of the object.
 
 /** Along the frame's x axis. */
 void addCar(Mesh& mesh, const Frame& frame, Random& random);

@@ -9,7 +9,7 @@ namespace delio::synth {
 /** How the sensor is moved along its way. */
 enum class Gait {
     kVehicle,  //!< on wheels, indoors in hands as steady as those
-    kHandheld  //!< in the hand of someone who walks: swings in six degrees of freedom
+    kHandheld  //!< hand-held by a walking person: swings in six degrees of freedom
 };
 
 /** Nobody walks faster than `kFastestWalk_m_s`; what is slower stays as it is. */

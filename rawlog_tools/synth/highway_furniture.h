@@ -3,7 +3,7 @@
 #include "random.h"
 
 namespace delio::synth {
-// What stands over and beside a highway. `frame`: the origin is on the ground, x along the road, y
+// Objects above and beside a highway. `frame`: the origin is on the ground, x along the road, y
 // across it.
 
 /** From `-half` to `half` across, on three rows of columns. */

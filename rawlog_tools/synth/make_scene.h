@@ -17,9 +17,9 @@ struct SceneRequest {
     Eigen::Isometry3d lidarToCam0 = Eigen::Isometry3d::Identity();
 };
 
-/** What --scene can be. */
+/** Values of --scene. */
 std::vector<std::string> sceneNames();
-/** Whether a world of that name can be grown around a given trajectory. */
+/** True if this world supports --trajectory. */
 bool takesTrajectory(const std::string& sceneName);
 /** The name has to be one of sceneNames(). Throws Error for a trajectory that cannot be driven. */
 std::unique_ptr<Scene> makeScene(const SceneRequest& request);

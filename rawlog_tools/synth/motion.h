@@ -1,7 +1,7 @@
 #pragma once
 
 namespace delio::synth {
-/** Where the vehicle is, seen from above, and how far along its path. */
+/** Position seen from above, and distance along the path. */
 struct PlanPose {
     double s = 0, x = 0, y = 0, yaw = 0;
 };

@@ -7,8 +7,8 @@
 #include "scanner.h"
 
 namespace delio::synth {
-/** How the sensor is turned on its vehicle. Its rays stay those of an upright one: what turns is
- *  the frame that its points are told in. */
+/** Orientation of the sensor frame on the vehicle. The rays are those of an upright sensor; only
+ *  the frame of the points is rotated. */
 struct Mount {
     double roll_deg = 0, pitch_deg = 0, yaw_deg = 0;
 

@@ -34,7 +34,7 @@ class Path {
 
     double begin() const { return stations_.front().s; }
     double end() const { return stations_.back().s; }
-    /** Beyond its ends the path goes on straight. */
+    /** Beyond its ends the path continues straight. */
     Station at(double s) const;
 
  private:
@@ -42,8 +42,8 @@ class Path {
 };
 
 /** A street drive of at least `length_m`: straights, slight bends and turns of 60-85 deg between
- *  streets. All headings lie within 90 deg of +x: it never comes back. The path goes on
- *  `kPathMargin_m` before and behind the drive, for what is seen from there. */
+ *  streets. All headings lie within 90 deg of +x: it never returns. The path extends
+ *  `kPathMargin_m` before and behind the drive, for the surroundings there. */
 Path urbanPath(std::uint64_t seed, double length_m);
 constexpr double kPathMargin_m = 200;
 }  // namespace delio::synth

@@ -10,7 +10,7 @@ struct RTCDeviceTy;
 struct RTCSceneTy;
 
 namespace delio::synth {
-/** What a ray hit; no range: nothing. */
+/** Hit of a ray; no range without a hit. */
 struct Hit {
     double range = 0;
     double cosIncidence = 0;
@@ -37,7 +37,7 @@ class RayCaster {
     bool has(int id) const { return meshes_.count(id) != 0; }
     /** The ids of all meshes, in order. */
     std::vector<int> ids() const;
-    /** To be called after meshes were added or removed, before rays are cast. */
+    /** Call it after adding or removing meshes, before casting rays. */
     void commit();
 
     /** May be called by several threads. */

@@ -131,7 +131,7 @@ void measure(std::vector<Station>& line) {
 /** A smooth curve through the knots, with a straight margin at both ends. */
 Path pathThrough(const std::vector<PlanPose>& plan) {
     auto knots = knotsOf(plan);
-    // One that hardly moves still stands on a road.
+    // A road user that hardly moves is still on the road.
     const double yaw = plan.front().yaw;
     if (knots.size() < 4)
         knots = {{0, plan[0].x, plan[0].y, 0, 0},

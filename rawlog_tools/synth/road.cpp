@@ -41,7 +41,7 @@ void Road::buildIndices() {
     }
     for (std::size_t i = 0; i < count; ++i) {
         if (!owned_[i]) continue;
-        // The road goes on straight where the path begins and ends.
+        // Beyond the ends of the path the road continues straight.
         centres[i].first = i > 0 && !owned_[i - 1];
         centres[i].last = i + 1 < count && !owned_[i + 1];
         centres_.add(centres[i]);

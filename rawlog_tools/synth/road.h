@@ -52,7 +52,7 @@ class Road {
     }
     /** False where an earlier part of the path runs along the same road. */
     bool owns(double s) const;
-    /** Of the ground. */
+    /** Height of the ground. */
     double height(const Eigen::Vector2d& place) const { return height(place, distance(place)); }
     /** The same where it is known how far `place` is from the nearest road. */
     double height(const Eigen::Vector2d& place, double away_m) const;

@@ -13,8 +13,8 @@ struct DrivingStyle {
     double stopSpacing_m;  //!< about one stop of some seconds in so many metres; 0: none
 };
 
-/** What distinguishes one kind of road from another: lanes, cross-section, marks, and the land
- *  beside it. Both sides are alike; `away` is the distance from the centre line. */
+/** Profile of a road: lanes, cross-section, marks and adjacent land. Both sides are equal; `away`
+ *  is the distance from the centre line. */
 struct RoadProfile {
     struct Corner {
         double away_m, height_m;
@@ -47,7 +47,7 @@ struct RoadProfile {
     double bankFrom_m, bankTo_m;  //!< ... between these
     double roughness_m;           //!< of the land, at the distance between the points of a scan
     DrivingStyle style;
-    Carrier carrier;          //!< what bears the sensor if nobody holds it in the hand
+    Carrier carrier;          //!< the vehicle, unless the sensor is hand-held
     std::vector<Ramp> ramps;  //!< the one after the other along x
     /** Where no cars drive people walk, at these sides of the centre line; at 0: along with the
      *  sensor, before and behind it. */
@@ -55,7 +55,7 @@ struct RoadProfile {
 
     double height(double away_m) const;
     double reflectivity(double s, double away_m) const;
-    /** Where the road's mesh needs vertices, from the centre line outwards. */
+    /** Offsets of the road mesh's vertices from the centre line. */
     std::vector<double> columns() const;
 };
 

@@ -6,7 +6,7 @@
 #include "scene.h"
 
 namespace delio::synth {
-/** What scenes along a road share: places beside it, and which of them are free. */
+/** Common part of scenes along a road: free places beside it. */
 class RoadsideScene : public Scene {
  public:
     RoadsideScene(Road road, std::uint64_t seed) : Scene(std::move(road)), seed_(seed) {}

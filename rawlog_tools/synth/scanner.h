@@ -20,7 +20,7 @@ struct ScannerOptions {
     int threads = 1;
 };
 
-/** A scan, and what is known of each point. */
+/** A scan with properties of each point. */
 struct ScanPoints {
     std::vector<float> xyzi;    //!< KITTI's four floats, in the sensor's frame when it was measured
     std::vector<float> time_s;  //!< from the scan's stamp
@@ -43,7 +43,7 @@ class Scanner {
 
  private:
     using Views = std::vector<TrafficCaster::View>;
-    /** What sets one laser apart, and its firings of a scan. */
+    /** Properties of one laser, and its firings in a scan. */
     struct Ring {
         std::size_t number;
         double elevation_rad, offset_rad;  //!< offset of its azimuths from the columns'

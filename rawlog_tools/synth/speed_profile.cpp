@@ -25,7 +25,7 @@ std::map<std::size_t, double> drawStops(double spacing_m, double end_m, std::uin
     return stops;
 }
 
-/** What the driver would like, what the curve allows. */
+/** Minimum of the driver's speed and the curve's limit. */
 std::vector<double> wantedSpeed(const Path& path, const DrivingStyle& style, Random& random) {
     const double cruise = random.uniform(style.slowest_m_s, style.fastest_m_s);
     std::vector<double> speed;

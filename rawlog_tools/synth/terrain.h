@@ -14,7 +14,7 @@ class Terrain {
 
     /** Hills, floors, and the unevenness of what is built on them. */
     double height(const Eigen::Vector2d& place) const;
-    /** What is added `away_m` from a road: banks, and roughness at the scale of a decimetre. */
+    /** Height added at `away_m` from a road: banks, and roughness at the scale of a decimetre. */
     double besideRoad(const Eigen::Vector2d& place, double away_m) const;
 
  private:

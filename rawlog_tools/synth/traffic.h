@@ -9,15 +9,14 @@
 #include "road_user.h"
 
 namespace delio::synth {
-/** Who else is on the road. On a road for cars: in the vehicle's own lane others accompany it, the
- * nearest ones at 4 to 10 m for the whole drive (for a scan-to-scan method such a car stands
- * still); in every other lane traffic flows freely; where traffic is slow there are cyclists at the
- * edge and pedestrians on the sidewalk. Elsewhere there are pedestrians only. Whoever falls behind
- * or gets ahead by more than reach() comes again from the other end. A place is a closed formula of
- * time (and of the vehicle's own place): it depends on nothing that was asked before.
- *
- *  Nobody collides: all in a lane go at one speed, or keep to the vehicle's own station, with room
- *  between them. */
+/** Traffic. On a road for cars: in the vehicle's own lane others accompany it, the nearest ones at
+ *  4 to 10 m for the whole drive (for a scan-to-scan method such a car stands still); in every
+ *  other lane traffic flows freely; where traffic is slow there are cyclists at the edge and
+ *  pedestrians on the sidewalk. Elsewhere there are pedestrians only. Road users that fall behind
+ *  or gets ahead by more than reach() comes again from the other end. A place is a closed formula
+ *  of time (and of the vehicle's own place): it depends on nothing that was asked before. *  Nobody
+ *  collides: all in a lane go at one speed, or keep to the vehicle's own station, with room between
+ *  them. */
 class Traffic {
  public:
     /** Metres along the road, ahead and behind: what lies beyond is seen by no sensor on a road

@@ -1,5 +1,5 @@
-// Odometry, pose graph and map of a folder of scans (KITTI's, .pcd, .ply ...) or of any other
-// recording that delio-slam reads; leaves what delio-slam leaves, but for the pictures.
+// Computes odometry, pose graph and map of any recording that delio-slam reads. Writes the same
+// result folder as delio-slam, without pictures.
 //   01_odometry RECORDING OUTDIR
 #include <delio/core/error.h>
 #include <delio/recordings/scan_reader.h>
@@ -19,8 +19,8 @@ int main(int argc, char** argv) try {
 
     const auto reader = delio::io::openScans(recording);
     std::printf("%s\n", describe(reader->recording()).c_str());
-    // What the drive says of its own sensor is taken over: KITTI's scans get their vertical angles
-    // corrected (0.205 deg), and its raw drives are de-skewed.
+    // Uses the recording's own metadata: KITTI's vertical angles are corrected by 0.205 deg, and
+    // its raw drives are de-skewed.
     const auto options = delio::Options::forDrive("accurate", reader->meta());
 
     delio::run::RunSettings settings;

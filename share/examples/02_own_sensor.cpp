@@ -1,6 +1,6 @@
-// A sensor that DeLiO has no reader for: its driver fills a delio::Scan. Points that come with the
-// times at which they were measured are de-skewed. The driver here is a simulated LiDAR of 32 rings
-// that drives and turns in a hall; what it truly did is printed beside what the odometry found.
+// A sensor without a reader in DeLiO: its driver fills a delio::Scan. Points with times are
+// de-skewed. The driver here simulates a 32-ring LiDAR that drives and turns in a hall; the program
+// prints its true and its estimated poses.
 //   02_own_sensor
 #include <delio/odometry/odometry.h>
 #include <mrpt/maps/CSimplePointsMap.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-/** True pose of the sensor in the hall: 2 m/s forward, 1 rad/s to the left. */
+/** Pose of the sensor in the hall: 2 m/s forward, 1 rad/s to the left. */
 Eigen::Isometry3d poseAt(double time_s) {
     delio::Vector6 velocity;
     velocity << 2, 0, 0, 0, 0, 1;

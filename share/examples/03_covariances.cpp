@@ -1,5 +1,5 @@
-// Increments with their covariances as edges of a pose graph of your own. Here it is MRPT's; GNSS,
-// an IMU or another map would add their edges to the same nodes. Writes it as text.
+// Uses increments with covariances as edges of your own pose graph (here MRPT's). GNSS, an IMU or
+// another map would add edges to the same nodes. Writes the graph as text.
 //   03_covariances DRIVE OUT.graph
 #include <delio/core/increment.h>
 #include <delio/graph/pose_pdf.h>

@@ -1,6 +1,5 @@
-// A map as a cloud, as a scene for SceneViewer3D and as pictures, drawn without a display.
-// Odometry, pose graph and map are strung together here as you need them: delio::Slam tells each
-// listener of every step.
+// Builds a map as point cloud, scene for SceneViewer3D and pictures, without a display. Connects
+// odometry, pose graph and map by hand: delio::Slam calls each listener with every step.
 //   04_map_and_pictures DRIVE OUTDIR
 #include <delio/map/ply.h>
 #include <delio/picture/render.h>

@@ -1,5 +1,5 @@
-// Where a vehicle is in the map of another drive (the folder of a delio-slam run, or of
-// 01_odometry): found without a guess, then followed scan by scan.
+// Localises a vehicle in the map of another drive (result folder of delio-slam or 01_odometry),
+// without an initial guess, then tracks it scan by scan.
 //   05_localise MAP_FOLDER|MAP.delio DRIVE
 #include <delio/recordings/scan_reader.h>
 #include <delio/run/run_folder.h>

@@ -1,5 +1,5 @@
-// delio::Aligner where a program had mrpt::slam::CICP: both are CMetricMapsAlignmentAlgorithms, so
-// that only the line that makes it changes. Aligns two scans of a drive.
+// Uses delio::Aligner in place of mrpt::slam::CICP: both are CMetricMapsAlignmentAlgorithms, so
+// only the line that creates it changes. Aligns two scans of a drive.
 //   06_aligner DRIVE FIRST SECOND
 #include <delio/core/error.h>
 #include <delio/odometry/aligner.h>

@@ -1,5 +1,5 @@
 'use strict';
-// Shows the map. OrbitControls and the wide lines are three.js's own.
+// Draws the map. OrbitControls and wide lines are from three.js.
 
 const byId = id => document.getElementById(id);
 const vector = numbers => new THREE.Vector3().fromArray(numbers);
@@ -20,7 +20,7 @@ window.addEventListener('error', event => complain('The map cannot be shown: ' +
 const values = {
   height: {range: about.z_most, unit: 'm', isFraction: false},
   ground: {range: about.ground_most, unit: 'm above the ground', isFraction: false},
-  intensity: {range: about.intensity, unit: 'as the sensor gives it', isFraction: true},
+  intensity: {range: about.intensity, unit: 'in sensor units', isFraction: true},
   time: {range: about.time, unit: 's', isFraction: true},
   observations: {range: about.observations, unit: 'scans', isFraction: false},
 };
@@ -269,7 +269,7 @@ function fold(folded) {
   fit();
 }
 
-/** A click on a point: where it is, and how far it is from the point that was clicked before. */
+/** Shows the coordinates of a clicked point, and its distance from the previous one. */
 function pick(x, y) {
   const found = clouds.filter(cloud => cloud.object.visible).map(cloud => cloud.pointAt(x, y))
       .filter(point => point).sort((a, b) => a.distanceTo(camera.position) -
@@ -283,7 +283,7 @@ function pick(x, y) {
         .join(', ') + ' m';
     if (picked.length === 2) {
       const d = picked[1].clone().sub(picked[0]);
-      byId('result').textContent += `; ${d.length().toFixed(2)} m from the point before (level ` +
+      byId('result').textContent += `; ${d.length().toFixed(2)} m from the previous point (horizontal ` +
           `${Math.hypot(d.x, d.y).toFixed(2)} m, height ${d.z.toFixed(2)} m)`;
       pickedLines = linesOf([picked.map(point => point.toArray())], 0xffd24a, 3);
       fit();
@@ -292,12 +292,12 @@ function pick(x, y) {
   redraw();
 }
 
-/** What the map does not have is not offered. */
+/** Disables settings for data that the map lacks. */
 function prepare() {
   Object.keys(values).forEach((name, i) => {
     const option = byId('color').options[i];
     option.disabled = !values[name].range;
-    if (option.disabled) option.textContent += ' (not known)';
+    if (option.disabled) option.textContent += ' (not available)';
   });
   for (const name of ['trajectory', 'odometry', 'truth', 'loops'])
     byId(name).parentElement.hidden = !lines[name];
@@ -314,11 +314,11 @@ function prepare() {
       ` points \u00b7 ${size.join(' \u00d7 ')} m`;
 }
 
-/** Brings the picture to what the controls say. */
+/** Applies the controls to the picture. */
 function update() {
   const {low, high} = {low: byId('low'), high: byId('high')};
   if (Number(low.value) > Number(high.value)) high.value = low.value;
-  // At its end a slider leaves out nothing.
+  // At its end a slider hides nothing.
   const from = low.value === low.min ? -1e6 : low.value / 10;
   const to = high.value === high.max ? 1e6 : high.value / 10;
   byId('low-text').textContent = from === -1e6 ? 'all' : `${from.toFixed(1)} m`;
@@ -389,7 +389,7 @@ function start() {
       pick(event.clientX, event.clientY);
   });
   canvas.addEventListener('webglcontextlost',
-                          () => complain('The graphics are gone; load it again.'));
+                          () => complain('WebGL was lost; reload the page.'));
   for (const view in looks) byId(view).addEventListener('click', looks[view]);
   for (const input of byId('panel').querySelectorAll('input, select'))
     input.addEventListener('input', update);
@@ -410,5 +410,4 @@ function start() {
 if (document.createElement('canvas').getContext('webgl'))
   start();
 else
-  complain('This browser cannot draw in three dimensions here (WebGL is missing or switched ' +
-           'off). The same map is in map.ply.');
+  complain('This page needs WebGL, which is missing or switched off. The same map is in map.ply.');

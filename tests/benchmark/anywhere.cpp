@@ -1,5 +1,5 @@
-// DeLiO in many places (share/doc/accuracy.md): four sensors, four scenes, from rest and moving,
-// upright and turned, beside another program if its poses are there. A row a drive:
+// DeLiO in many places (share/doc/method/accuracy.md): four sensors, four scenes, from rest and
+// moving, upright and turned, beside another program if its poses are there. A row a drive:
 //   benchmark_anywhere --work DIR [--seeds 101,102,103] [--only sensor=vlp16,scene=loop|rural]
 //       [--peer FOLDER] [--profile NAME] [--scans N] [--drives-only]
 #include <mrpt/3rdparty/tclap/CmdLine.h>

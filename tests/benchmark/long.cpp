@@ -27,7 +27,7 @@ using namespace delio;
 synth::SensorModel sensorOf(const std::string& name) {
     for (const auto& model : synth::sensorModels())
         if (model.option == name) return model;
-    throw Error("there is no sensor '" + name + "'");
+    throw Error("unknown sensor '" + name + "'");
 }
 
 /** A synthetic drive, scan by scan. */

@@ -1,5 +1,6 @@
 // How well loops close: true poses that drift as asked, and what is left of that when the loops are
-// closed. DRIVE.rawlog with DRIVE.poses.txt and DRIVE.calib.txt beside it (share/doc/loops.md).
+// closed. DRIVE.rawlog with DRIVE.poses.txt and DRIVE.calib.txt beside it
+// (share/doc/method/loops.md).
 //   benchmark_loops [--drift PLANAR_PERCENT,UP_PERCENT] [--keeps METRES] [--seed N]
 //                   [--list] DRIVE.rawlog...
 #include <algorithm>

@@ -83,7 +83,7 @@ std::vector<Floats> firstScans(const std::string& recording) {
         if (!scan) break;
         scans.push_back(io::xyziOf(*scan->points));
     }
-    if (scans.empty()) throw Error("'" + recording + "' holds no scans");
+    if (scans.empty()) throw Error("'" + recording + "' contains no scans");
     return scans;
 }
 

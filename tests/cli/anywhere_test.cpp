@@ -6,8 +6,8 @@
 
 #include "test_data.h"
 
-// A tenth of the table "Anywhere" of share/doc/accuracy.md, half as long: sensors of few and of
-// many beams, in scenes rich and poor in surfaces, from rest and at speed, upright and turned.
+// A tenth of the table "Anywhere" of share/doc/method/accuracy.md, half as long: sensors of few and
+// of many beams, in scenes rich and poor in surfaces, from rest and at speed, upright and turned.
 namespace {
 using namespace delio;
 using test::Cell;

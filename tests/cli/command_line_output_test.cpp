@@ -71,9 +71,9 @@ Examples:
 
 Exit status:
   0    success
-  1    failed run; one line on stderr says what, where and what to do
-  2    bad command line
-  130  interrupted; nothing is left
+  1    the run failed; stderr says why, in one line
+  2    wrong command line
+  130  interrupted: nothing is left
 )");
 }
 }  // namespace

@@ -15,7 +15,7 @@ class ConvertersOverlap : public test::KittiTools {
     void expectRefusal(const std::string& tool, const Words& words) {
         const auto before = test::stateOf(folder_.path());
         const auto run = test::runTool(tool, words);
-        test::expectFailure(run, 1, {"what is read", "choose another name"});
+        test::expectFailure(run, 1, {"input", "choose another output"});
         EXPECT_TRUE(test::stateOf(folder_.path()) == before) << tool << " " << run.err;
         EXPECT_FALSE(test::hasLeftovers(folder_.path())) << tool;
     }

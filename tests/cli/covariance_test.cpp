@@ -38,7 +38,7 @@ Normalised normalisedErrors(const graph::PoseGraph& graph,
     return {sum.rotation / sum.edges, sum.translation / sum.edges, sum.edges};
 }
 
-// share/doc/pose_graph.md has longer drives; 40 scans leave their mark on a mean.
+// share/doc/notes/pose_graph.md has longer drives; 40 scans leave their mark on a mean.
 TEST(Covariance, HasTheSizeOfTheTrueErrors) {
     const test::TemporaryFolder folder;
     const std::string rawlog = folder / "d.rawlog";

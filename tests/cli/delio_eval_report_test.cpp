@@ -49,7 +49,7 @@ TEST_F(DelioEval, WritesAReportAndKeepsWhatIsThere) {
     EXPECT_EQ(report("bare").exitCode, 0);
     expectFailure(report("ref.txt", "--force"), 1, "is a file");
     const auto unwritable = report("ref.txt/report", "--force");
-    expectFailure(unwritable, 1, "cannot make the folder");
+    expectFailure(unwritable, 1, "cannot create the folder");
 }
 
 TEST_F(DelioEval, AReportThatCannotBeMadeChangesNothing) {
@@ -123,7 +123,8 @@ TEST_F(DelioEval, MarksPredictedScansAndSkipsUnusedOnes) {
     test::writeText(folder_ / "run/scans.csv", "scan,stamp_s,predicted\n0,0,0\n");
     const auto unlike = eval({"--ref", in("whole.txt"), "--est", in("run")});
     EXPECT_EQ(unlike.exitCode, 1);
-    EXPECT_NE(unlike.err.find("has 1 scans for the 30 poses"), std::string::npos) << unlike.err;
+    EXPECT_NE(unlike.err.find("has 1 scans but there are 30 poses"), std::string::npos)
+        << unlike.err;
     EXPECT_NE(unlike.err.find("has 30 poses, the reference 60"), std::string::npos) << unlike.err;
 }
 

@@ -82,7 +82,7 @@ TEST(DelioFigures, BadInput) {
     expect({"-i", rawlog, "-o", out, "--scan", "2"}, 1, "fewer than two scans from scan 2");
     expect({"-i", rawlog, "-o", out, "--set", "normals.k=3"}, 2, "normals.k");
     expect({"-i", rawlog, "-o", out, "--profile", "best"}, 2, "best");
-    expect({"-i", rawlog, "-o", rawlog}, 1, "is no folder");
+    expect({"-i", rawlog, "-o", rawlog}, 1, "is not a folder");
     EXPECT_FALSE(std::filesystem::exists(out + "/normals_sphere.png"));
 }
 }  // namespace

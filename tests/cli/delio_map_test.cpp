@@ -299,10 +299,11 @@ TEST_F(MapTool, RefusesWhatCannotBeDone) {
 
 TEST_F(MapTool, OverwritesOnlyWhatItMay) {
     const std::string in = at("map.ply");
-    expectRefusal({"-i", in, "-o", in, "--force"}, 1, "choose another name");
-    expectRefusal({"-i", at("run"), "-o", at("run/map.ply"), "--force"}, 1, "choose another name");
+    expectRefusal({"-i", in, "-o", in, "--force"}, 1, "choose another output");
+    expectRefusal({"-i", at("run"), "-o", at("run/map.ply"), "--force"}, 1,
+                  "choose another output");
     fs::create_symlink(in, at("link.ply"));
-    expectRefusal({"-i", in, "-o", at("link.ply"), "--force"}, 1, "choose another name");
+    expectRefusal({"-i", in, "-o", at("link.ply"), "--force"}, 1, "choose another output");
     for (const auto& [there, out] :
          {std::pair("a.pcd", "a.pcd"), std::pair("b.yaml", "b.yaml"), std::pair("c.pgm", "c.yaml"),
           std::pair("d.pcd.frame.yaml", "d.pcd")}) {

@@ -133,7 +133,7 @@ TEST_F(Ended, AKilledRunLeavesItsRows) {
 TEST_F(Ended, ByCtrlC) {
     const auto stopped = runTool("delio-slam", {"-i", drive_, "-o", out_}, "scans 8");
     ASSERT_EQ(stopped.exitCode, 130) << stopped.err;
-    EXPECT_NE(stopped.err.find("interrupted; the results are those of"), std::string::npos);
+    EXPECT_NE(stopped.err.find("interrupted; the results cover the first"), std::string::npos);
     EXPECT_FALSE(summary()["complete"].as<bool>());
     expectNothingLeft();
     expectFailure(slamInto({}), 1, {"exists", "--force"});
@@ -165,10 +165,10 @@ TEST_F(Ended, WhatIsReadIsNotReplaced) {
     const auto before = test::namesIn(whole_);
     for (const char* input : {"posegraph.g2o", "map.ply"})
         expectFailure(runTool("delio-slam", {"-i", whole_ / input, "-o", whole_, "--force"}), 1,
-                      {input, "choose another name"});
+                      {input, "choose another output"});
     expectFailure(runTool("delio-slam", {"-i", drive_, "-o", whole_, "--force", "--ground-truth",
                                          whole_ / "trajectory_kitti.txt"}),
-                  1, {"trajectory_kitti.txt", "choose another name"});
+                  1, {"trajectory_kitti.txt", "choose another output"});
     EXPECT_EQ(test::namesIn(whole_), before);
 }
 }  // namespace

@@ -25,10 +25,10 @@ TEST_F(DelioSlam, OutputFolder) {
     };
     EXPECT_EQ(into(folder_ / "a" / "b" / "").exitCode, 0);
     EXPECT_TRUE(fs::exists(folder_ / "a" / "b" / "summary.yaml"));
-    test::expectFailure(into(rawlog_), 1, {"no folder"});
+    test::expectFailure(into(rawlog_), 1, {"not a folder"});
     test::expectFailure(into("/proc/out"), 1, {"/proc/out"});
     test::expectFailure(into(rawlog_ / "out"), 1, {"d.rawlog/out"});
-    test::expectFailure(into(""), 1, {"cannot make the folder"});
+    test::expectFailure(into(""), 1, {"cannot create the folder"});
 }
 
 // The limit is reached by keyframes or submaps that are put aside, by files of the map, or by small

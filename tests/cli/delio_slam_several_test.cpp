@@ -64,7 +64,7 @@ TEST_F(Several, AMapsDriveOfTheSameNameIsRefused) {
     ASSERT_EQ(runTool("delio-slam", {"-i", folder_ / "a.rawlog", "-o", folder_ / "old"}).exitCode,
               0);
     expectRefused(runTool("delio-slam", joined({"--map", folder_ / "old", "--extend"})), 1,
-                  {"have one name"});
+                  {"have the same name"});
 }
 
 TEST_F(Several, ComeInPlaceTogetherWheneverTheyAreKilled) {

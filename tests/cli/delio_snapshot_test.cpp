@@ -228,12 +228,8 @@ TEST_F(SnapshotTool, SaysWhatToInstallWithoutEgl) {
 TEST_F(SnapshotTool, Observations2mapTakesTheSimplemap) {
     if (std::system("command -v observations2map >/dev/null") != 0)
         GTEST_SKIP() << "observations2map (Debian: mrpt-apps) is not installed";
-    test::writeText(at("o2m.ini"),
-                    "[MappingApplication]\npointsMap_count=1\n"
-                    "[MappingApplication_pointsMap_00_insertOpts]\n"
-                    "minDistBetweenLaserPoints=0\nfuseWithExisting=false\nisPlanarMap=false\n");
-    const auto result =
-        runTool("observations2map", {at("o2m.ini"), at("map.simplemap"), at("o2m")});
+    const std::string settings = (test::profileFolder() / "mrpt/observations2map.ini").string();
+    const auto result = runTool("observations2map", {settings, at("map.simplemap"), at("o2m")});
     EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
     std::size_t lines = 0;
     for (const auto& file : std::filesystem::directory_iterator(folder_.path()))

@@ -35,7 +35,7 @@ TEST(EveryTool, AnArgumentWithoutAnOptionIsNamed) {
         test::expectFailure(runTool(tool, {"--nonsense"}), 2, {"unknown option '--nonsense'"});
     }
     test::expectFailure(runTool("delio-slam", {"drive", "results"}), 2,
-                        {"inputs are given with -i and outputs with -o"});
+                        {"give inputs with -i and outputs with -o"});
 }
 
 TEST(EveryTool, TakesAnOptionThatIsGivenAgain) {

@@ -126,9 +126,9 @@ TEST_F(KittiBenchmark, BadInput) {
     };
     expect({}, 2, "KITTI_ROOT is missing");
     expect({root(), "--jobs", "0"}, 2, "--jobs");
-    expect({root(), "--jobs"}, 2, "--jobs wants a value");
+    expect({root(), "--jobs"}, 2, "--jobs needs a value");
     expect({root(), "--fast"}, 2, "unknown option --fast");
-    expect({root(), "--sequences", "7"}, 2, "'7' is no sequence");
+    expect({root(), "--sequences", "7"}, 2, "'7' is not a sequence");
     expect({folder_ / "none"}, 1, "no folder 'sequences'");
     EXPECT_EQ(test::runTool(script, {"--help"}).exitCode, 0);
 }

@@ -1,4 +1,4 @@
-// share/doc/pcap.md, done: a Velodyne pcap through MRPT's rawlog-grabber to a trajectory.
+// share/doc/compatibility.md, done: a Velodyne pcap through MRPT's rawlog-grabber to a trajectory.
 #include <gtest/gtest.h>
 
 #include <filesystem>

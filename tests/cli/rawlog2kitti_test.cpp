@@ -109,7 +109,7 @@ TEST_F(KittiTools, Rawlog2kittiReplacesNothingButTheSequence) {
                                             "velodyne/000000.bin", "velodyne/000001.bin"}));
     EXPECT_EQ(test::readText(target / "mine.txt"), "mine");
     writeText(folder_ / "file", "mine");
-    test::expectFailure(toKitti(folder_ / "file", {"--force"}), 1, {"no folder"});
+    test::expectFailure(toKitti(folder_ / "file", {"--force"}), 1, {"not a folder"});
     EXPECT_EQ(test::readText(folder_ / "file"), "mine");
 }
 }  // namespace

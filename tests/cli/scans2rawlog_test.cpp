@@ -117,14 +117,14 @@ TEST_F(Scans2Rawlog, FromAPipeAndFromAFileAsStandardInput) {
     expectFailure(runTool("sh", {"-c", tool + " < /dev/null"}), 1, {"standard input is empty"});
     expectFailure(runTool("sh", {"-c", tool + " <&-"}), 1, {"standard input"});
     expectFailure(runTool("delio-slam", {"-i", "-", "-i", rawlog_, "-o", out_}), 2,
-                  {"standard input is processed alone"});
+                  {"standard input must be the only input"});
 }
 
 TEST_F(Scans2Rawlog, WhatCameBeforeAFaultIsKept) {
     writeDrive(kScans, true);
     const std::string bytes = readText(rawlog_);
     writeText(folder_ / "cut.rawlog", bytes.substr(0, 7 * bytes.size() / 10));
-    expectFailure(convert(folder_ / "cut.rawlog"), 1, {"cut off", "3 scans before are in"});
+    expectFailure(convert(folder_ / "cut.rawlog"), 1, {"cut off", "3 scans before it are in"});
     io::RawlogReader reader(made_);
     std::size_t scans = 0;
     while (reader.next()) ++scans;
@@ -134,13 +134,13 @@ TEST_F(Scans2Rawlog, WhatCameBeforeAFaultIsKept) {
 TEST_F(Scans2Rawlog, RefusesWhatCannotBe) {
     writeDrive(1, true);
     expectFailure(runTool("scans2rawlog", {"-i", rawlog_, "-o", rawlog_, "--force"}), 1,
-                  {"what is read"});
+                  {"also the input"});
     EXPECT_TRUE(io::RawlogReader(rawlog_).next());
     expectFailure(convert(folder_ / "none"), 1, {"no such file or folder"});
     fs::create_directory(folder_ / "empty");
     expectFailure(convert(folder_ / "empty"), 1, {"no scans"});
     writeText(folder_ / "one.ply", "ply\n");
-    expectFailure(convert(folder_ / "one.ply"), 1, {"name the folder"});
+    expectFailure(convert(folder_ / "one.ply"), 1, {"give the folder"});
     EXPECT_FALSE(fs::exists(made_));
 }
 }  // namespace

@@ -73,7 +73,7 @@ TEST(Synth2RawlogStart, ABadCommandLineIsOneLineAndExit2) {
         EXPECT_FALSE(std::filesystem::exists(folder / "d.rawlog"));
     };
     for (const std::string start : {"standing", ""})
-        expectRefused({"--start", start}, "there is: rest, moving");
+        expectRefused({"--start", start}, "choose one of: rest, moving");
     expectRefused({"--start", "rest", "--trajectory", "poses.txt"}, "--trajectory");
     expectRefused({"--start", "rest", "--motion", "handheld"}, "handheld");
     for (const std::string mount : {"0,25", "", "0,0,0,0", "0,nan,0", "0;25;0"})

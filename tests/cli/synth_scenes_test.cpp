@@ -164,7 +164,7 @@ TEST(SynthScenes, ABadCommandLineIsOneLineAndExit2) {
         expectRefused({"--scene", scene, "--scans", "3", "--trajectory", given}, scene);
     for (const std::string motion : {"hand", ""})
         expectRefused({"--scene", "urban", "--scans", "3", "--motion", motion},
-                      "there is: vehicle, handheld");
+                      "choose one of: vehicle, handheld");
 }
 
 TEST(SynthScenes, ATrajectoryThatCannotBeDrivenIsOneLineAndExit1) {

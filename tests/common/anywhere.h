@@ -8,7 +8,7 @@
 #include "delio/formats/trajectory.h"
 
 namespace delio::test {
-/** A drive of share/doc/accuracy.md's table "Anywhere". */
+/** A drive of share/doc/method/accuracy.md's table "Anywhere". */
 struct Cell {
     std::string sensor, scene;
     std::string start;  //!< synth2rawlog's --start; empty: as the seed has it

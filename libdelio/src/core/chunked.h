@@ -11,10 +11,9 @@ namespace delio {
 struct FreeMemory {
     void operator()(void* memory) const { std::free(memory); }  //!< free()
 };
-/** So many bytes, of which none is set; std::bad_alloc where there are not as many. Megabytes lie
- * in pages of 2 MB each, where the system has them: a table that is asked for places all over costs
- * a second access to memory for most of them where pages have 4 kB, and an interrupt for each page
- *  that it grows by. */
+/** Allocates uninitialised bytes; throws std::bad_alloc if out of memory. Large blocks use 2 MB
+ *  pages if available: random access to a table otherwise costs a second memory access for most of
+ *  them where pages have 4 kB, and an interrupt for each page that it grows by. */
 std::unique_ptr<void, FreeMemory> largeMemory(std::size_t bytes);
 
 /** The same for containers. */
@@ -25,20 +24,20 @@ struct LargeAllocator {
     /** They all are the same. */
     template <typename Other>
     LargeAllocator(const LargeAllocator<Other>&) {}
-    /** As largeMemory(). */
+    /** See largeMemory(). */
     Value* allocate(std::size_t values) {
         return static_cast<Value*>(largeMemory(values * sizeof(Value)).release());
     }
-    /** What allocate() gave. */
+    /** Memory from allocate(). */
     void deallocate(Value* memory, std::size_t) { FreeMemory()(memory); }
 
     friend bool operator==(const LargeAllocator&, const LargeAllocator&) { return true; }   //!< all
     friend bool operator!=(const LargeAllocator&, const LargeAllocator&) { return false; }  //!< no
 };
 
-/** A vector that grows without moving what it holds: no scan waits until a map of hundreds of
- *  megabytes is copied, and there never are two of them. Each chunk has room for as many values as
- *  all before together. */
+/** Vector that grows without moving its elements: no scan waits for the copy of a map of hundreds
+ *  of megabytes, and there are never two copies. Each chunk is as large as all earlier ones
+ *  together. */
 template <typename Value>
 class Chunked {
  public:
@@ -64,7 +63,7 @@ class Chunked {
     /** The value with this number. */
     const Value& operator[](std::size_t i) const { return *placeOf(i); }
 
-    /** What new values are only their own constructors say. Memory that was needed once is kept. */
+    /** New values are default-constructed. Memory is never released. */
     void resize(std::size_t size) {
         while (size_ > size) std::destroy_at(placeOf(--size_));
         for (; size_ < size; ++size_) {

@@ -6,7 +6,7 @@
 
 namespace delio {
 namespace {
-const char* const kNoMemory = "it takes more memory than there is";
+const char* const kNoMemory = "out of memory";
 
 bool holds(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
@@ -20,16 +20,15 @@ std::string ofYaml(const std::string& what) {
     const auto end = what.find(": ", where);
     const std::string place =
         end == std::string::npos ? "" : what.substr(where, end - where) + ": ";
-    if (holds(what, "bad conversion"))
-        return place + "the value is of another kind than it has to be";
+    if (holds(what, "bad conversion")) return place + "a value has the wrong type";
     const std::string key = "first invalid key: \"";
     const auto missing = what.find(key);
     if (missing != std::string::npos) {
         const auto name = missing + key.size();
         return "'" + what.substr(name, what.find('"', name) - name) + "' is missing";
     }
-    if (holds(what, "bad file")) return "it cannot be read";
-    return place + (end == std::string::npos ? "it is no YAML" : what.substr(end + 2));
+    if (holds(what, "bad file")) return "the file cannot be read";
+    return place + (end == std::string::npos ? "not valid YAML" : what.substr(end + 2));
 }
 }  // namespace
 
@@ -40,7 +39,7 @@ std::string plainMessage(const std::exception& e) {
         return kNoMemory;
     if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&e))
         return "'" + file->path1().string() + "': " + file->code().message();
-    if (dynamic_cast<const std::ios_base::failure*>(&e)) return "it cannot be read";
+    if (dynamic_cast<const std::ios_base::failure*>(&e)) return "the file cannot be read";
     if (what.compare(0, 8, "yaml-cpp") == 0 || what.compare(0, 12, "invalid node") == 0)
         return ofYaml(what.substr(0, what.find('\n')));
     // MRPT's own have a title and a mark; what others threw through it has the title only.
@@ -53,7 +52,7 @@ std::string plainMessage(const std::exception& e) {
     std::string message = what.substr(from, what.find('\n', from) - from);
     if (holds(message, "std::bad_alloc")) return kNoMemory;
     if (holds(message, "Assert condition failed") || message.compare(0, 6, "ASSERT") == 0)
-        return "it is damaged, or of an unknown kind";
+        return "the file is damaged or of an unknown kind";
     return message;
 }
 }  // namespace delio

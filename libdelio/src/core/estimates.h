@@ -5,8 +5,8 @@
 #include "delio/core/increment.h"
 
 namespace delio {
-/** What a method found of the rotation of scan `to` against a reference `from` (a scan or a map):
- *  rotation and translation are two problems of three unknowns each, and so are their estimates. */
+/** Estimated rotation of scan `to` against a reference `from` (a scan or a map). Rotation and
+ *  translation are separate problems with three unknowns each. */
 struct RotationEstimate {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  //!< n_from = rotation * n_to
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();    //!< rad^2, right tangent (frame `to`)
@@ -14,7 +14,7 @@ struct RotationEstimate {
      *  0 to 1. Ground alone gives (0, 1, 1). */
     Eigen::Vector3d observability = Eigen::Vector3d::Zero();
     Eigen::Matrix3Xd unobservedAxes;  //!< unit vectors in frame `to` where the prediction was kept
-    std::size_t matches = 0;          //!< pairs of normals, or points on planes, that it stands on
+    std::size_t matches = 0;          //!< number of pairs of normals, or of points on planes
     double residual_rad = 0;          //!< weighted root mean square angle of the pairs
     unsigned iterations = 0;          //!< in all rounds
     bool converged = false;           //!< false: ended by the most iterations that are allowed
@@ -35,7 +35,7 @@ struct TranslationEstimate {
      *  directions, 0 to 1. */
     Eigen::Vector3d observability = Eigen::Vector3d::Zero();
     Eigen::Matrix3Xd unobservedAxes;  //!< unit vectors along which the prediction was kept
-    std::size_t matches = 0;          //!< pairs of lines, or points on planes, that it stands on
+    std::size_t matches = 0;          //!< number of pairs of lines, or of points on planes
     /** Share of the lines of `to` that have one of `from` next to them (midpoints no farther apart
      *  than `overlap_distance`): how much both scans see of the same surfaces, 0 to 1. */
     double overlap = 0;

@@ -17,7 +17,7 @@ Eigen::Matrix3d meanRotation(const Eigen::Vector3d& w) {
     return Eigen::Matrix3d::Identity() + a * W + b * W * W;
 }
 
-/** Of the turn, from 0 to pi. */
+/** Rotation angle, 0 to pi. */
 double angleOf(const Eigen::Quaterniond& q) {
     return 2 * portable::atan2(q.vec().stableNorm(), std::abs(q.w()));
 }

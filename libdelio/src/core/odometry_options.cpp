@@ -6,18 +6,19 @@
 namespace delio {
 std::vector<OptionField> PreprocessOptions::fields() const {
     return {OptionField{"min_range", &PreprocessOptions::min_range,
-                        "m; nearer points are dropped (the vehicle itself)", 0, 1e3}
+                        "m; points closer than this (the vehicle itself) are ignored", 0, 1e3}
                 .scaled(),
-            {"max_range", &PreprocessOptions::max_range, "m; farther points are dropped", 1, 1e4},
+            {"max_range", &PreprocessOptions::max_range, "m; points farther than this are ignored",
+             1, 1e4},
             {"vertical_correction_deg", &PreprocessOptions::vertical_correction_deg,
-             "deg added to each point's vertical angle; where absent: what DRIVE.meta.yaml says",
+             "deg; added to each point's vertical angle; if not set: the value in DRIVE.meta.yaml",
              -5, 5},
             {"deskew", &PreprocessOptions::deskew,
-             "true: points are brought to the stamp of their scan, where their times are known; "
-             "where absent: not if DRIVE.meta.yaml says that they are there already"},
+             "true: de-skew scans whose points have times; if not set: unless the recording is "
+             "de-skewed already"},
             {"sweep_s", &PreprocessOptions::sweep_s,
-             "s; time of a turn, by which points that come without times get them from their "
-             "azimuth (clockwise, stamped at the front); 0: such points stay as they are",
+             "s; duration of a revolution, to derive missing point times from azimuths (clockwise, "
+             "stamp at the front); 0: do not derive times",
              0, 10}};
 }
 
@@ -26,40 +27,39 @@ void PreprocessOptions::check(const std::string& section) const {
 }
 
 std::vector<OptionField> PredictionOptions::fields() const {
-    return {{"frames", &PredictionOptions::frames, "N: increments that the prediction is made of",
-             1, 100}};
+    return {{"frames", &PredictionOptions::frames,
+             "number of increments averaged for the prediction", 1, 100}};
 }
 
 std::vector<OptionField> PlaneTrackerOptions::fields() const {
     using Me = PlaneTrackerOptions;
     return {
         {"scale", &Me::scale,
-         "size of the place, by which all lengths that depend on it are multiplied: 1 for "
-         "streets, less for rooms; 0: from the scan",
+         "scale of the scene, which multiplies all lengths that depend on it: 1 for streets, less "
+         "for rooms; 0: measured from the scan",
          0, 1},
         {"lost_share", &Me::lost_share,
-         "share of the usual share of points on those of the map; with less it is searched for by "
-         "surfaces, too",
-         0, 1}};
+         "fraction of the usual inlier ratio below which a scan also searches by surfaces", 0, 1}};
 }
 
 std::vector<OptionField> PointMapOptions::fields() const {
     using Me = PointMapOptions;
     return {OptionField{"voxel_size", &Me::voxel_size,
-                        "m; edge of the voxels, and the farthest that a pair is apart", 0.05, 20}
+                        "m; voxel size, and maximum distance of a correspondence", 0.05, 20}
                 .scaled(),
-            OptionField{"spacing", &Me::spacing, "m; points of one voxel are at least so far apart",
+            OptionField{"spacing", &Me::spacing, "m; minimum distance between points of the map",
                         0.01, 10}
                 .scaled(),
-            {"radius", &Me::radius, "m; the map ends at this distance from the sensor", 1, 1e4}};
+            {"radius", &Me::radius, "m; map radius around the sensor", 1, 1e4}};
 }
 
 std::vector<OptionField> PointRegistrationOptions::fields() const {
     using Me = PointRegistrationOptions;
-    return {OptionField{"last_kernel", &Me::last_kernel, "m; width to which the kernel is halved",
+    return {OptionField{"last_kernel", &Me::last_kernel, "m; final width of the robust kernel",
                         1e-3, 100}
                 .scaled(),
-            {"min_matches", &Me::min_matches, "pairs that are needed; fewer: predicted", 3, 1e6}};
+            {"min_matches", &Me::min_matches,
+             "minimum number of correspondences; with fewer the scan is predicted", 3, 1e6}};
 }
 
 void PointRegistrationOptions::check(const std::string& section) const {
@@ -68,49 +68,52 @@ void PointRegistrationOptions::check(const std::string& section) const {
 }
 
 std::vector<OptionField> PlaneMapOptions::fields() const {
-    return {OptionField{"voxel_size", &PlaneMapOptions::voxel_size,
-                        "m; edge of the smallest voxels that hold a plane each", 0.05, 20}
-                .scaled(),
-            {"levels", &PlaneMapOptions::levels,
-             "of voxels, each twice as large: where the smaller one holds no plane, the larger may",
-             1, 6},
-            {"ground_levels", &PlaneMapOptions::ground_levels,
-             "more of them, again twice as large each, whose planes have to be level", 0, 6},
-            {"min_points", &PlaneMapOptions::min_points, "points that a plane needs", 3, 1e6},
-            {"max_flatness", &PlaneMapOptions::max_flatness,
-             "largest share of the smallest variance in the middle one; more is no plane", 0, 1},
-            {"min_breadth", &PlaneMapOptions::min_breadth,
-             "voxel edges; standard deviation of a plane's points along its shorter side: rows of "
-             "one ring are no plane, whose normal is known (a voxel's full side has 0.29)",
-             0, 0.28},
-            {"max_points", &PlaneMapOptions::max_points, "points after which a voxel takes no more",
-             3, 1e9},
-            {"radius", &PlaneMapOptions::radius, "m; the map ends at this distance from the sensor",
-             1, 1e4}};
+    return {
+        OptionField{"voxel_size", &PlaneMapOptions::voxel_size,
+                    "m; size of the smallest voxels; each holds one plane", 0.05, 20}
+            .scaled(),
+        {"levels", &PlaneMapOptions::levels,
+         "number of voxel levels, each twice as large as the one before; a larger voxel is used "
+         "where the smaller holds no plane",
+         1, 6},
+        {"ground_levels", &PlaneMapOptions::ground_levels,
+         "number of further levels that hold only horizontal planes", 0, 6},
+        {"min_points", &PlaneMapOptions::min_points, "minimum number of points of a plane", 3, 1e6},
+        {"max_flatness", &PlaneMapOptions::max_flatness,
+         "maximum ratio of the smallest to the middle variance of a plane's points", 0, 1},
+        {"min_breadth", &PlaneMapOptions::min_breadth,
+         "voxel sizes; minimum standard deviation of a plane's points along its shorter side, "
+         "which excludes single rings (a full voxel has 0.29)",
+         0, 0.28},
+        {"max_points", &PlaneMapOptions::max_points, "maximum number of points of a voxel", 3, 1e9},
+        {"radius", &PlaneMapOptions::radius, "m; map radius around the sensor", 1, 1e4}};
 }
 
 std::vector<OptionField> PlaneRegistrationOptions::fields() const {
-    return {OptionField{"last_kernel", &PlaneRegistrationOptions::last_kernel,
-                        "m; width to which the kernel is halved", 1e-3, 100}
-                .scaled(),
-            {"min_matches", &PlaneRegistrationOptions::min_matches,
-             "points on planes that are needed; fewer: predicted", 6, 1e6},
-            {"prior_sigma", &PlaneRegistrationOptions::prior_sigma,
-             "m; the motion model's error along each axis in 0.1 s; in more time more", 1e-6, 100},
-            {"prior_sigma_deg", &PlaneRegistrationOptions::prior_sigma_deg,
-             "deg; the same about each axis", 1e-6, 180},
-            {"search_radius", &PlaneRegistrationOptions::search_radius,
-             "m; where the motion is not known, surfaces are searched up to this distance", 0, 100},
-            OptionField{"search_step", &PlaneRegistrationOptions::search_step,
-                        "m; distance between the starts of that search", 0.5, 50}
-                .scaled()};
+    return {
+        OptionField{"last_kernel", &PlaneRegistrationOptions::last_kernel,
+                    "m; final width of the robust kernel", 1e-3, 100}
+            .scaled(),
+        {"min_matches", &PlaneRegistrationOptions::min_matches,
+         "minimum number of points on planes; with fewer the scan is predicted", 6, 1e6},
+        {"prior_sigma", &PlaneRegistrationOptions::prior_sigma,
+         "m; standard deviation of the motion model along each axis after 0.1 s; grows with time",
+         1e-6, 100},
+        {"prior_sigma_deg", &PlaneRegistrationOptions::prior_sigma_deg,
+         "deg; standard deviation of the motion model about each axis after 0.1 s; grows with time",
+         1e-6, 180},
+        {"search_radius", &PlaneRegistrationOptions::search_radius,
+         "m; radius of the search by surfaces when the motion is unknown", 0, 100},
+        OptionField{"search_step", &PlaneRegistrationOptions::search_step,
+                    "m; distance between initial guesses of that search", 0.5, 50}
+            .scaled()};
 }
 
 std::vector<OptionField> DynamicObjectsOptions::fields() const {
     return {{"enabled", &DynamicObjectsOptions::enabled,
-             "true: what moves is kept out of registration and map"},
-            {"cell_deg", &DynamicObjectsOptions::cell_deg, "deg; directions are told apart by this",
-             0.2, 10}};
+             "true: exclude dynamic objects from registration and map"},
+            {"cell_deg", &DynamicObjectsOptions::cell_deg,
+             "deg; angular resolution of the range image", 0.2, 10}};
 }
 
 std::vector<OptionField> NormalsOptions::fields() const {
@@ -253,7 +256,8 @@ OutlierRemovalOptions OutlierRemovalOptions::firstRounds(unsigned count) const {
 
 std::vector<OptionField> MethodOptions::fields() const {
     return {{"method", &MethodOptions::method,
-             "planes: scan against a map of planes; paper: scan against scan, as in the paper",
+             "planes: register scans to a map of points and planes; paper: register scans to scans "
+             "as in the paper",
              std::vector<std::string>{"planes", "paper"}}};
 }
 

@@ -31,7 +31,7 @@ struct SineAndCosine {
     double sine, cosine;
 };
 
-/** Of angles of less than a million quarter turns. */
+/** For angles of less than a million quarter turns. */
 inline SineAndCosine sineAndCosine(double angle) {
     // A quarter turn in three parts: the first two have 33 digits, so that their multiples are
     // exact.

@@ -9,7 +9,7 @@ namespace delio {
 namespace {
 /** The largest root of y^3 - 3 y - 2 r, r in [0, 1]: 2 cos(acos(r) / 3), in [sqrt 3, 2]. */
 double largestRoot(double r) {
-    // To 1e-4 at first (interpolated), of which each step of Newton's makes the square.
+    // Starts with an error of 1e-4 (interpolation); each Newton step squares it.
     double y = 1.732133 + r * (0.330661 + r * (-0.081382 + r * 0.018639));
     for (int i = 0; i < 2; ++i) y -= (y * (y * y - 3) - 2 * r) / (3 * (y * y - 1));
     return y;
@@ -42,7 +42,7 @@ struct Symmetric {
         return {xx * v.x() + (xy * v.y() + zx * v.z()), xy * v.x() + (yy * v.y() + yz * v.z()),
                 zx * v.x() + (yz * v.y() + zz * v.z())};
     }
-    /** Of one of rank 2: the unit vector, of either sign, that it makes to zero. */
+    /** Null vector (unit, either sign) of a matrix of rank 2. */
     Eigen::Vector3d kernel() const {
         // The cofactors are the products of that vector's coordinates, all times one number.
         const double nxx = yy * zz - yz * yz, nyy = xx * zz - zx * zx, nzz = xx * yy - xy * xy,

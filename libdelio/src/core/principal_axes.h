@@ -2,19 +2,18 @@
 #include <Eigen/Core>
 
 namespace delio {
-/** Of a scatter of points. */
+/** Principal axes of a scatter matrix. */
 struct PrincipalAxes {
     Eigen::Vector3d variances;  //!< eigenvalues, ascending
     Eigen::Matrix3d axes;       //!< their eigenvectors
 };
 
-/** Of the cubic equation one root, by Newton's steps; of what lies across its axis a square root:
- * no sine or arc of the C library, which has others for each processor.
- *  @param scatter symmetric */
+/** Solves the cubic by Newton's method for one root and by a square root for the others. Avoids the
+ *  C library's sine and arc functions, which differ between processors. @param scatter symmetric */
 PrincipalAxes principalAxes(const Eigen::Matrix3d& scatter);
 
-/** Of a symmetric matrix: how its eigenvalues compare, where what they are is not asked. A tenth of
- *  the time that principalAxes() takes. */
+/** Compares eigenvalues of a symmetric matrix without computing them, in a tenth of the time of
+ *  principalAxes(). */
 class CharacteristicPolynomial {
  public:
     explicit CharacteristicPolynomial(const Eigen::Matrix3d& symmetric) {

@@ -10,8 +10,8 @@ std::size_t lengthOf(unsigned char lead) {
     return lead >= 0xF0 && lead < 0xF5 ? 4 : 0;
 }
 
-/** True if a whole character of `length` bytes begins at `i` (surrogates and needlessly long forms
- *  are none). */
+/** True if a complete UTF-8 character of `length` bytes starts at `i` (surrogates and overlong
+ *  forms are rejected). */
 bool isCharacter(const std::string& text, std::size_t i, std::size_t length) {
     if (length == 0 || i + length > text.size()) return false;
     for (std::size_t k = 1; k < length; ++k)

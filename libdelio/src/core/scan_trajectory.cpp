@@ -27,7 +27,7 @@ ScanTrajectory::ScanTrajectory(const std::vector<double>& times_s,
     if (poses.size() < 2 || times_s.size() != poses.size() || !increases())
         throw Error("a trajectory of " + std::to_string(poses.size()) + " poses at " +
                     std::to_string(times_s.size()) +
-                    " times: it needs at least two poses, and one time for each, which increase");
+                    " times is invalid: it needs at least two poses with increasing times");
     for (std::size_t i = 1; i < poses.size(); ++i)
         motions_.push_back(
             Twist::of(poses[i - 1].inverse() * poses[i], times_s[i] - times_s[i - 1]));

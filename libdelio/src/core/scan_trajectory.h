@@ -14,7 +14,7 @@ struct Twist {
      *  the translation as it is: half of its logarithm is not half the way.) */
     static Twist of(const Eigen::Isometry3d& increment, double duration_s);
 
-    /** Where it leads to in `time_s`: maps the frame then to the frame at the start. */
+    /** Pose after `time_s`: maps the frame then to the frame at the start. */
     Eigen::Isometry3d after(double time_s) const;
 };
 
@@ -34,7 +34,7 @@ class ScanTrajectory {
 
     /** Maps the moving frame at `time_s` to the one that rests. */
     Eigen::Isometry3d at(double time_s) const;
-    /** As seen from where it is at `time_s`, with times from then. */
+    /** The trajectory relative to its pose at `time_s`, with times from then. */
     ScanTrajectory seenFrom(double time_s) const;
 
     /** Of the poses. */
@@ -55,7 +55,7 @@ class PoseTable {
     /** From `first_s` to `last_s`. */
     PoseTable(const ScanTrajectory& trajectory, double first_s, double last_s);
 
-    /** As ScanTrajectory::at(), within 1e-6 rad where it turns by less than 0.7 rad in all. */
+    /** Approximates ScanTrajectory::at() within 1e-6 rad for rotations below 0.7 rad. */
     Eigen::Isometry3d at(double time_s) const;
 
  private:

@@ -38,7 +38,7 @@ void parse(const std::string& name, const std::string& text, const OptionField& 
     std::string known;
     for (const auto& word : field.words) known += (known.empty() ? "" : ", ") + word;
     if (std::find(field.words.begin(), field.words.end(), text) == field.words.end())
-        throw Error("option " + name + ": '" + text + "' is none of: " + known);
+        throw Error("option " + name + ": '" + text + "' is not one of: " + known);
     to = text;
 }
 }  // namespace
@@ -82,7 +82,7 @@ void StageOptions::write(std::ostream& out, const std::string& section) const {
 void requireOrder(const std::string& lowName, double low, const std::string& highName,
                   double high) {
     if (!(low <= high))
-        throw Error("option " + lowName + " (" + digitsOf(low) + ") has to be at most " + highName +
+        throw Error("option " + lowName + " (" + digitsOf(low) + ") must be at most " + highName +
                     " (" + digitsOf(high) + ")");
 }
 

@@ -19,11 +19,11 @@ struct Interval {
 /** The only reader of stamps. Turns them into the durations between scans. */
 class Timeline {
  public:
-    /** Takes the stamp (seconds) of the next scan. Where there is none before it, or stamps do not
-     *  rise, the duration is the usual one. The interval is unknown where the stamps are more than
-     *  a second and more than five times the usual interval apart, forwards or backwards. A scan
-     *  that is a copy of the one before, with a stamp that does not rise, was sent twice: the
-     *  interval is short. */
+    /** Takes the stamp (seconds) of the next scan. For the first scan, or if stamps do not
+     *  increase, the duration is the usual one. The interval is unknown if stamps differ by more
+     *  than a second and more than five times the usual interval, in either direction. A copy of
+     *  the scan before, with a stamp that does not increase, was sent twice: the interval is short.
+     */
     Interval advance(double stamp_s, bool isCopy = false);
 
     /** Sum of the durations: rises with every scan, whatever the stamps do. */

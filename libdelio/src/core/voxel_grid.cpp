@@ -11,7 +11,7 @@ namespace delio {
 namespace {
 constexpr Eigen::Index kBlock = 512;
 
-/** Of a block of points at most. */
+/** Maximum number of points in a block. */
 void findKeys(const float* points, Eigen::Index count, float perVoxel, std::uint64_t* keys) {
     // All coordinates alike, and in a plain loop: vector instructions.
     constexpr float kFarthest = 1 << 20;  // what keys have room for

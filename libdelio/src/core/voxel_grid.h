@@ -25,7 +25,7 @@ inline std::int64_t floorOf(double value) {
     const auto truncated = static_cast<std::int64_t>(value);
     return truncated - (value < static_cast<double>(truncated));
 }
-/** Of the voxel, `size` wide, that a point is in. */
+/** Index of the voxel of edge `size` that contains a point. */
 inline std::uint64_t voxelKey(const Eigen::Vector3d& point, double size) {
     const Eigen::Vector3d inVoxels = point * (1 / size);
     return voxelKey(floorOf(inVoxels.x()), floorOf(inVoxels.y()), floorOf(inVoxels.z()));
@@ -63,10 +63,10 @@ VoxelSums<kRows> sumsOf(const Eigen::Matrix<float, kRows, Eigen::Dynamic>& colum
 /** The centroid of the points in each voxel, in the order of their numbers. */
 Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers& numbers);
 
-/** One point a voxel: the centroid of the points in it, in the order of their numbers. */
+/** One point per voxel: the centroid of its points, in the order of their numbers. */
 Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size);
 
-/** One point a voxel: the first one of them. A centroid lies between a sensor's rings. */
+/** One point per voxel: the first one. A centroid would lie between a sensor's rings. */
 Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size);
 
 /** At most `most` of the columns, evenly over their order: of a scan the same share all around. */

@@ -31,7 +31,7 @@ class VoxelIndex {
      *  free now. */
     void erase(std::uint64_t key, std::uint64_t last);
 
-    /** The key will be asked for soon: memory is slow, and many keys can be waited for at once. */
+    /** Prefetches a key, so that the memory accesses of many keys overlap. */
     void prefetch(std::uint64_t key) const { __builtin_prefetch(&slots_[firstSlotOf(key)]); }
 
     /** Drops everything. */
@@ -48,7 +48,7 @@ class VoxelIndex {
         constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;  // spreads neighbours
         return (key * kGolden) >> shift_;
     }
-    /** Where the key is, or the free slot where it would be. There always is a free one. */
+    /** Slot of the key, or the free slot for it. There is always a free slot. */
     std::size_t slotOf(std::uint64_t key) const {
         std::size_t slot = firstSlotOf(key);
         while (slots_[slot].number != kNone && slots_[slot].key != key)
@@ -71,10 +71,10 @@ class VoxelTable {
  public:
     std::size_t size() const { return values_.size(); }  //!< values
 
-    /** The number of the key's value; VoxelIndex::kNone where there is none. */
+    /** The number of the key's value; VoxelIndex::kNone if the key is missing. */
     std::uint32_t numberOf(std::uint64_t key) const { return index_.find(key); }
 
-    /** Null where there is none. */
+    /** Null if the key is missing. */
     const Value* find(std::uint64_t key) const {
         const std::uint32_t number = index_.find(key);
         return number == VoxelIndex::kNone ? nullptr : &values_[number];
@@ -86,7 +86,7 @@ class VoxelTable {
         return number == VoxelIndex::kNone ? nullptr : &values_[number];
     }
 
-    /** The number of the key's value, which is made if there is none. */
+    /** The number of the key's value, which is created if missing. */
     std::uint32_t insert(std::uint64_t key) {
         const std::uint32_t number = index_.insert(key);
         if (number == values_.size()) {
@@ -96,7 +96,7 @@ class VoxelTable {
         return number;
     }
 
-    /** The same of many, which are asked for ahead of time. */
+    /** The same for many keys, with prefetching. */
     std::vector<std::uint32_t> insert(const std::vector<std::uint64_t>& keys) {
         std::vector<std::uint32_t> numbers(keys.size());
         for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -107,18 +107,17 @@ class VoxelTable {
         return numbers;
     }
 
-    /** Soon the key's value is asked for. */
+    /** Prefetches the key's value. */
     void prefetch(std::uint64_t key) const { index_.prefetch(key); }
-    /** Soon the number's value is asked for. */
+    /** Prefetches the value of a number. */
     void prefetchValue(std::uint32_t number) const {
-        constexpr std::size_t kLine = 64, kMost = 2 * kLine;  // what is asked first lies first
+        constexpr std::size_t kLine = 64, kMost = 2 * kLine;  // frequently read members first
         const auto* const at = reinterpret_cast<const char*>(&values_[number]);
         for (std::size_t i = 0; i < std::min(kMost, sizeof(Value)); i += kLine)
             __builtin_prefetch(at + i);
     }
 
-    /** Calls visit(i, value) for each of the numbers in turn; values are asked for ahead of time.
-     */
+    /** Calls visit(i, value) for each number in turn, with prefetching. */
     template <typename Visit>
     void forEach(const std::vector<std::uint32_t>& numbers, const Visit& visit) {
         for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -165,11 +164,11 @@ class VoxelTable {
     std::vector<std::uint64_t> keys_;  //!< of the values
 };
 
-/** Which voxels lie in a ball for certain: told by their keys alone, which lie closely packed, as a
- *  map is swept of what is far. */
+/** Voxels that certainly lie in a ball, decided from their keys alone, to remove distant voxels
+ *  from a map. */
 class VoxelBall {
  public:
-    /** `size`: edge of the smallest voxels; asked for are those 2^levels times as large. */
+    /** `size`: edge of the smallest voxels; the voxels tested are 2^levels times as large. */
     VoxelBall(const Eigen::Vector3d& centre, double radius, double size, unsigned levels = 0);
 
     /** False where a part of the voxel may lie outside. */

@@ -30,8 +30,8 @@ using mrpt::format;
 namespace {
 constexpr std::size_t kLongestTitle = 32;  // characters; longer ones push the key off the plot
 
-/** As a string of gnuplot. What has a meaning to it somewhere in a string (quotes, which no
- * doubling makes safe at the beginning, backquotes, backslashes ...) is written as its code. */
+/** Quoted gnuplot string. Special characters (quotes, backquotes, backslashes ...) are written as
+ *  character codes. */
 std::string quoted(const std::string& text) {
     std::string result = "\"";
     for (const char c : text) {
@@ -78,7 +78,7 @@ int run(const std::vector<std::string>& words, const std::string& folder, const 
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/** What gnuplot says about its failure: the line with the reason is the last that is not empty. */
+/** Reason of gnuplot's failure: its last non-empty line. */
 std::string lastLine(const std::string& file) {
     std::ifstream in(file);
     std::string last;
@@ -100,7 +100,8 @@ void append(std::vector<CurvePoint>& curve, double at, const std::vector<Segment
     curve.push_back({at, mean.t_percent, mean.r_deg_per_100m});
 }
 
-// Pose files have about six digits: smaller errors are none, and a logarithmic axis needs a floor.
+// Pose files have about six digits, so smaller errors are meaningless; a logarithmic axis needs a
+// minimum.
 constexpr double kSmallestError = 1e-6;
 
 std::string line(const std::string& colour, double width) {
@@ -111,7 +112,7 @@ std::string linesAndPoints(const std::string& colour) {
     return format("with linespoints pt 7 ps 0.6 lc rgb '%s' lw 1.6", colour.c_str());
 }
 
-/** Where the moving frame is, seen from its first pose: metres to the right, ahead and up. */
+/** Position relative to the first pose: metres to the right, forward and up. */
 struct Place {
     double right = 0, ahead = 0, up = 0;
 };
@@ -173,9 +174,8 @@ void setSquare(Chart& chart, const std::vector<Chart::Rows>& curves) {
 }
 
 Chart trajectoryChart(const Group& sequence, const std::string& prefix) {
-    Chart chart(prefix + "trajectory",
-                "Trajectory from above, all from the first pose (circle) on");
-    chart.label("to the right [m]", "ahead [m]");
+    Chart chart(prefix + "trajectory", "Trajectory from above, aligned at the first pose (circle)");
+    chart.label("right [m]", "forward [m]");
     const auto seenFromAbove = [](const std::vector<Place>& places) {
         Chart::Rows rows;
         for (const auto& p : places) rows.push_back({p.right, p.ahead});
@@ -196,7 +196,7 @@ Chart trajectoryChart(const Group& sequence, const std::string& prefix) {
 }
 
 Chart heightChart(const Group& sequence, const std::string& prefix) {
-    Chart chart(prefix + "height", "Height over the distance driven");
+    Chart chart(prefix + "height", "Height over travelled distance");
     chart.label("distance [m]", "height [m]");
     chart.set("set autoscale xfix");
     const auto overDistance = [](const std::vector<Place>& places,
@@ -249,14 +249,12 @@ Chart overTimeChart(const std::vector<StepErrors>& all, const std::string& name,
         const auto& flags = e.comparison->predicted;
         return std::find(flags.begin(), flags.end(), true) != flags.end();
     });
-    Chart chart(
-        name,
-        what + " error from scan to scan, and its running median" +
-            (anyPredicted ? "; triangles are scans that were predicted, not registered" : ""));
+    Chart chart(name, what + " error per scan, and its running median" +
+                          (anyPredicted ? "; triangles: predicted scans" : ""));
     chart.set("set autoscale xfix");
     const bool assumed = std::any_of(
         all.begin(), all.end(), [](const StepErrors& e) { return e.comparison->timesAreAssumed; });
-    chart.label(assumed ? "time, at ten scans a second [s]" : "time [s]",
+    chart.label(assumed ? "time, assuming 10 scans per second [s]" : "time [s]",
                 "error [" + unit + "], log. scale");
     chart.set("set logscale y");
     chart.set("set format y '%g'");
@@ -355,9 +353,7 @@ void drawCharts(const std::vector<Chart>& charts, const std::string& folder) {
     std::error_code ignored;
     fs::remove(log, ignored);
     if (exitCode == -1)
-        throw Error(
-            "gnuplot, which draws the report's plots, is not installed; install the "
-            "package gnuplot-nox (apt-get install gnuplot-nox)");
+        throw Error("the report needs gnuplot; install it with: apt-get install gnuplot-nox");
     bool all = exitCode == 0;
     for (const auto& chart : charts)
         for (const char* extension : {".svg", ".png"}) {
@@ -366,8 +362,7 @@ void drawCharts(const std::vector<Chart>& charts, const std::string& folder) {
             all = all && !fault && size > 0;
         }
     if (!all)
-        throw Error("gnuplot could not draw the plots" +
-                    (reason.empty() ? ": is the disk full?" : ": " + reason));
+        throw Error("gnuplot failed" + (reason.empty() ? ": the disk may be full" : ": " + reason));
 }
 
 std::string colourOf(std::size_t estimate) {

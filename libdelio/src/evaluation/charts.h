@@ -10,13 +10,13 @@ namespace delio::evaluation {
  *  NAME.png. */
 class Chart {
  public:
-    /** The columns of a file of numbers, a row a point. */
+    /** The columns of a data file, one row per point. */
     using Rows = std::vector<std::vector<double>>;
 
     /** `name`: of its files, without extension, of letters, digits, '-' and '_'. */
     Chart(std::string name, std::string caption);
 
-    /** What is written at the two axes, with the unit. */
+    /** Labels of the two axes, with units. */
     void label(const std::string& x, const std::string& y);
     /** A line of gnuplot before the plot, e.g. "set logscale y". */
     void set(const std::string& command);
@@ -29,7 +29,7 @@ class Chart {
     bool empty() const { return curves_.empty(); }           //!< no curve has a point
     const std::string& name() const { return name_; }        //!< of its files, without extension
     const std::string& caption() const { return caption_; }  //!< that a page shows with it
-    /** What goes into NAME.dat. */
+    /** Content of NAME.dat. */
     const std::string& data() const { return data_; }
     std::string script() const;  //!< what goes into NAME.gp
 

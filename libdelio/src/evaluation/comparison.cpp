@@ -29,7 +29,7 @@ Association byRow(const io::Trajectory& reference, const io::Trajectory& estimat
     if (wanted != found)
         throw Error("the estimate has " + std::to_string(found) + " poses, the reference " +
                     std::to_string(wanted) +
-                    "; without time stamps in both (TUM files) they must be as many");
+                    "; without time stamps (TUM format) both need the same number");
     Association result;
     result.reference = reference.poses;
     result.estimate = estimate.poses;
@@ -73,7 +73,7 @@ double stepFor(const std::vector<Eigen::Isometry3d>& poses) {
     return std::clamp(pathLength_m(poses) / (2 * kStepsToTell), kLeastStep_m, kStep_m);
 }
 
-/** Where the moving frame went from pose `a` to pose `b`, in its own axes at `a`. */
+/** Displacement from pose `a` to pose `b`, in the axes of `a`. */
 Eigen::Vector3d direction(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
     return (a.inverse() * b).translation().normalized();
 }
@@ -103,10 +103,10 @@ constexpr double kKittiInterval_s = 0.1;
 
 const char* textOf(FrameMismatch mismatch) {
     return mismatch == FrameMismatch::lidarAgainstCamera
-               ? "the estimate looks like it is in the LiDAR frame (x forward), the reference in "
-                 "the camera frame (z forward)"
-               : "the estimate looks like it is in the camera frame (z forward), the reference in "
-                 "the LiDAR frame (x forward)";
+               ? "the estimate seems to be in the LiDAR frame (x forward), the reference in the "
+                 "camera frame (z forward)"
+               : "the estimate seems to be in the camera frame (z forward), the reference in the "
+                 "LiDAR frame (x forward)";
 }
 
 /** Keeps the rows of the scans that were used; gives the count of the others. */
@@ -116,7 +116,7 @@ std::size_t dropUnused(io::Trajectory& reference, const io::ScanTable& table) {
     if (!reference.stamps_s.empty() || rows == scans.size() || scans.empty()) return 0;
     if (scans.back() >= rows)
         throw Error(
-            format("the true poses have %zu rows but scan %zu was used", rows, scans.back()));
+            format("the ground truth has %zu rows but scan %zu was used", rows, scans.back()));
     std::vector<Eigen::Isometry3d> used;
     used.reserve(scans.size());
     for (const std::size_t scan : scans) used.push_back(reference.poses[scan]);
@@ -146,7 +146,7 @@ std::vector<double> lengthsFor(const std::vector<Eigen::Isometry3d>& reference,
     return path_m < 2 * lengths.front() ? suggestedLengths_m(path_m) : lengths;
 }
 
-/** Where the last pose is, seen from the first; the origin where there is none. */
+/** Position of the last pose relative to the first; the origin without poses. */
 Eigen::Vector3d endOf(const std::vector<Eigen::Isometry3d>& poses) {
     if (poses.empty()) return Eigen::Vector3d::Zero();
     return (poses.front().inverse() * poses.back()).translation();
@@ -159,7 +159,7 @@ Association associate(const io::Trajectory& reference, const io::Trajectory& est
     auto result = byStamp(reference, estimate, tolerance_s);
     if (result.estimate.empty())
         throw Error("no pose of the estimate is within " + digitsOf(tolerance_s) +
-                    " s of one of the reference; do their time stamps share a clock?");
+                    " s of a pose of the reference; check that both use the same clock");
     return result;
 }
 
@@ -237,9 +237,9 @@ std::string knownFaultOf(const std::vector<Eigen::Isometry3d>& reference) {
     if (wrong < 2 || static_cast<double>(wrong) < kMany * static_cast<double>(reference.size()))
         return "";
     return std::to_string(wrong) + " of the " + std::to_string(reference.size()) +
-           " true poses are KITTI's official ones of the first 16 scans of sequence 00, which are "
-           "wrong: 12.9 m of path where odometries find 11.7 m. The errors say nothing about the "
-           "estimate; take scans from 16 on, or another sequence";
+           " ground-truth poses are KITTI's official ones for the first 16 scans of sequence 00, "
+           "which are wrong (12.9 m of path instead of 11.7 m); the errors are meaningless, use "
+           "scans from 16 on or another sequence";
 }
 
 double Comparison::endError_percent() const {
@@ -253,8 +253,8 @@ WrongFrames::WrongFrames(FrameMismatch found) : Error(textOf(found)), mismatch_(
 Comparison compare(io::Trajectory reference, const io::Trajectory& estimate,
                    const ComparisonSettings& settings, const io::ScanTable* scans) {
     if (scans && scans->scans.size() != estimate.poses.size())
-        throw Error(format("the estimate has %zu poses, its table %zu scans", estimate.poses.size(),
-                           scans->scans.size()));
+        throw Error(format("the estimate has %zu poses but its scan table has %zu scans",
+                           estimate.poses.size(), scans->scans.size()));
     Comparison comparison;
     if (scans) comparison.unusedReference = dropUnused(reference, *scans);
     auto pairs = associate(reference, estimate);

@@ -159,15 +159,15 @@ void writeHead(const std::vector<Group>& byEstimate, const ReportNotes& notes, s
         out << swatch(colourOf(group.estimates.front())) << htmlText(group.name) << "&emsp;";
     out << swatch(kTruthColour) << "ground truth</p>\n<p class=\"note\">" << htmlText(notes.program)
         << ". Segments of " << htmlText(notes.lengths)
-        << " m from every tenth pose on. Bold: the lowest of a sequence.</p>\n";
+        << " m from every tenth pose on. Bold: best of each sequence.</p>\n";
 }
 
 void writeKittiErrors(const std::vector<Line>& lines, bool unlike, std::ostream& out) {
-    out << "<h2>KITTI's metric</h2>\n<p class=\"note\">Mean error of segments, per length. The "
-           "mean of sequences is the plain one, however long they are.</p>\n";
+    out << "<h2>KITTI's metric</h2>\n<p class=\"note\">Mean error over segments, relative to their "
+           "length. The mean over sequences is unweighted.</p>\n";
     if (unlike)
-        out << "<p><b>The estimates cover different sequences: do not compare their means, nor "
-               "their curves over all sequences.</b></p>\n";
+        out << "<p><b>The estimates cover different sequences: their means and their curves over "
+               "all sequences cannot be compared.</b></p>\n";
     writeHtmlTable(
         lines,
         {{"translation [%]", 3, [](const Line& l) { return l.row->kitti.t_percent; }},
@@ -178,13 +178,13 @@ void writeKittiErrors(const std::vector<Line>& lines, bool unlike, std::ostream&
     const bool anySegments = std::any_of(
         lines.begin(), lines.end(), [](const Line& line) { return line.row->kitti.segments > 0; });
     if (!anySegments)
-        out << "<p>The drive is too short for segments of these lengths: give shorter ones with "
+        out << "<p>The drive is too short for segments of these lengths; give shorter ones with "
                "--lengths.</p>\n";
 }
 
 void writePoseErrors(const std::vector<Line>& lines, std::size_t delta, std::ostream& out) {
     out << "<h2>Absolute and relative pose error</h2>\n<p class=\"note\">APE: RMSE of the "
-           "positions after rigid alignment. RPE: RMSE of the motion over "
+           "positions after rigid alignment. RPE: RMSE of the relative motion over "
         << delta << (delta == 1 ? " pose" : " poses") << ".</p>\n";
     writeHtmlTable(lines,
                    {{"APE [m]", 3, [](const Line& l) { return l.row->ape_m; }},
@@ -195,7 +195,7 @@ void writePoseErrors(const std::vector<Line>& lines, std::size_t delta, std::ost
 
 /** The spread of the errors from scan to scan, and how many scans were predicted. */
 void writeSteps(std::vector<Line> lines, std::ostream& out) {
-    out << "<h2>From scan to scan</h2>\n";
+    out << "<h2>Error per scan</h2>\n";
     const auto isMean = [](const Line& line) { return !line.comparison; };
     lines.erase(std::remove_if(lines.begin(), lines.end(), isMean), lines.end());
     const auto predicted = [](const Line& line) {

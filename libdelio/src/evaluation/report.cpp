@@ -166,7 +166,7 @@ void writeReportFolder(const std::vector<Comparison>& comparisons,
     try {
         std::error_code fault;
         if (!fs::create_directory(path("plots"), fault))
-            throw Error("cannot make the folder '" + path("plots") + "': " + fault.message());
+            throw Error("cannot create the folder '" + path("plots") + "': " + fault.message());
         drawCharts(all, path("plots"));
         io::replaceTextFile(path("metrics.tsv"),
                             [&](std::ostream& out) { writeMetricsTsv(rows, out); });

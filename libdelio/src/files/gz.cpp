@@ -23,7 +23,7 @@ GzInput::GzInput(const std::string& path) : file_(nullptr) {
         file_ = gzopen(path.c_str(), "rb");
     }
     if (!file_) throw Error("cannot read '" + path + "': no such file, or not readable");
-    // Where data is damaged zlib loses what it unpacked into the buffer: not more than needed.
+    // With damaged data zlib discards the buffer, so request no more than needed.
     constexpr unsigned kBuffer = 1U << 15;
     gzbuffer(file_, kBuffer);
 }
@@ -35,7 +35,7 @@ std::size_t GzInput::readSome(void* buffer, std::size_t count) {
     const int read = gzread(file_, buffer, static_cast<unsigned>(std::min(count, kMost)));
     int state = Z_OK;
     const char* message = gzerror(file_, &state);
-    // A cut shows in the state only, and what came before it is given out first.
+    // Only the state shows that the file is cut off; data before the cut are returned first.
     if (read < 0 || (read == 0 && state != Z_OK)) throw std::runtime_error(message);
     ended_ = read == 0;
     return static_cast<std::size_t>(read);
@@ -78,7 +78,7 @@ std::uint64_t unpackedSize(const std::string& path) {
     const bool isPacked = in.compressed();
     if (isPacked) in.skipToEnd(kMostBytes);
     const auto size = isPacked ? in.getPosition() : in.getTotalBytesCount();
-    if (size > kMostBytes) throw Error("'" + path + "' is too large for what is in one scan");
+    if (size > kMostBytes) throw Error("'" + path + "' is too large for one scan");
     return size;
 }
 

@@ -31,7 +31,7 @@ class GzInput : public mrpt::io::CStream {
 
     /** Or a stream: what is left in it is not known. */
     bool compressed() const;
-    /** Position in what comes out; in an uncompressed file the same as in the file. */
+    /** Position in the decompressed data; in an uncompressed file the file position. */
     std::uint64_t getPosition() const override;
     /** Bytes of the file. */
     std::uint64_t getTotalBytesCount() const override { return size_; }

@@ -23,7 +23,7 @@ bool isFileThere(const std::string& path) {
     const auto status = std::filesystem::status(path);
     if (!std::filesystem::exists(status)) return false;
     if (!std::filesystem::is_regular_file(status))
-        throw Error("cannot read '" + path + "': it is no file (a folder, a pipe or a device?)");
+        throw Error("cannot read '" + path + "': not a regular file");
     return true;
 }
 }  // namespace delio::io

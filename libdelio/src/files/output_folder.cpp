@@ -79,8 +79,7 @@ void PartialFolder::putInPlace(const std::vector<std::string>& names) {
     Moves moves;
     for (const auto& name : names)
         if (isFolder(folder_ / name) && isThere(path_ / name) && !isFolder(path_ / name))
-            throw Error("cannot write '" + (folder_ / name).string() +
-                        "': there is a folder of that name");
+            throw Error("cannot write '" + (folder_ / name).string() + "': a folder has this name");
     std::vector<std::string> concerned;
     for (const auto& name : names)
         if (isThere(folder_ / name) || isThere(path_ / name)) concerned.push_back(name);
@@ -116,13 +115,12 @@ OutputLock::OutputLock(const std::string& output) : path_(output), own_(!fs::is_
         if (own_ && (fstat(file_, &opened) != 0 || !S_ISREG(opened.st_mode))) {
             close(file_);
             throw Error("cannot write '" + output + "': '" + path_.string() +
-                        "' is in the way, which is no file; remove it");
+                        "' is not a regular file; remove it");
         }
         if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
             close(file_);
             throw Error("'" + output +
-                        "' is being written by another program; wait for it, or choose another "
-                        "name");
+                        "' is being written by another program; wait or choose another name");
         }
         // Its last owner may have removed the file between the two calls.
     } while (!isStillThere());
@@ -143,9 +141,9 @@ OutputLock::~OutputLock() {
 TargetFolder::TargetFolder(const fs::path& path) : path_(path) {
     std::error_code fault;
     if (fs::exists(path, fault) && !fs::is_directory(path, fault))
-        throw Error("'" + path.string() + "' exists and is no folder; choose another name");
+        throw Error("'" + path.string() + "' exists and is not a folder; choose another name");
     made_ = fs::create_directories(path, fault);
-    if (fault) throw Error("cannot make the folder '" + path.string() + "': " + fault.message());
+    if (fault) throw Error("cannot create the folder '" + path.string() + "': " + fault.message());
     lock_.emplace(path.string());
 }
 

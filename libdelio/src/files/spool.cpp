@@ -32,7 +32,7 @@ Spool::Place Spool::append(const float* floats, std::size_t count) {
                          std::fflush(file_.get()) == 0;
     if (!written)
         throw Error("cannot put " + what_ + " aside in '" + folder_ + "': " + std::strerror(errno) +
-                    "; make room there, or do without them (" + option_ + ")");
+                    "; free some space there or leave them out (" + option_ + ")");
     end_ += count * sizeof(float);
     return place;
 }
@@ -42,7 +42,7 @@ Spool::Floats Spool::read(const Place& place) const {
     if (cloud.empty()) return cloud;
     if (std::fseek(file_.get(), static_cast<long>(place.offset), SEEK_SET) != 0 ||
         std::fread(cloud.data(), sizeof(float), cloud.size(), file_.get()) != cloud.size())
-        throw Error("cannot read the " + what_ + " that were put aside in '" + folder_ + "'");
+        throw Error("cannot read the " + what_ + " from the temporary file in '" + folder_ + "'");
     return cloud;
 }
 }  // namespace delio::io

@@ -50,8 +50,8 @@ void refuseOtherLayout(const std::filesystem::path& file, const std::vector<std:
     for (const std::size_t step : {12U, 20U, 24U, 28U, 32U, 36U, 48U})
         if (areFloats(bytes, step))
             throw Error("'" + file.string() + "' looks like points of " + std::to_string(step) +
-                        " bytes each, not of 16 (x y z intensity) or 20 (and ring) bytes: write "
-                        "the scans as .pcd files, which name their fields");
+                        " bytes each, not 16 (x y z intensity) or 20 (x y z intensity ring); write "
+                        "the scans as .pcd files");
 }
 
 CloudRecords BinScans::read(const std::filesystem::path& file) {
@@ -62,9 +62,9 @@ CloudRecords BinScans::read(const std::filesystem::path& file) {
     const std::size_t numbers = numbers_ > 0 ? numbers_ : numbersAPoint(records.bytes);
     if (numbers_ == 0 && numbers != 5) refuseOtherLayout(file, records.bytes);
     if (numbers == 0 || size % (numbers * sizeof(float)) != 0)
-        throw Error("'" + file.string() + "' is cut off, or no scan of x y z intensity" +
+        throw Error("'" + file.string() + "' is cut off, or not a scan of x y z intensity" +
                     (numbers == 5 ? " ring" : "") + ": its size (" + std::to_string(size) +
-                    " bytes) is no multiple of " + (numbers == 5 ? "20" : "16"));
+                    " bytes) is not a multiple of " + (numbers == 5 ? "20" : "16"));
     numbers_ = numbers;
     std::vector<Column> columns{{"x"}, {"y"}, {"z"}, {"intensity"}};
     if (numbers == 5) columns.push_back({"ring"});

@@ -10,8 +10,8 @@ namespace delio::io {
  * of another size. */
 void refuseOtherLayout(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes);
 
-/** Reads .bin files of floats: x y z intensity (KITTI) or x y z intensity ring (nuScenes). Which,
- *  is told by the first one and kept: one a drive. */
+/** Reads .bin files of floats: x y z intensity (KITTI) or x y z intensity ring (nuScenes). The
+ *  first file decides for the whole drive. */
 class BinScans {
  public:
     /** Throws Error, which names the file, for one that is missing, empty, cut off or of

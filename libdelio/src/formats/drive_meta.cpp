@@ -19,13 +19,13 @@ std::string quoted(const std::string& text) { return "'" + shortened(text, 60) +
 
 void take(const std::string& key, const std::string& text, double& value) {
     const auto number = numberIn<double>(text[0] == '+' ? text.substr(1) : text);
-    if (!number) throw Error(key + " has to be a number, not " + quoted(text));
+    if (!number) throw Error(key + " must be a number, not " + quoted(text));
     value = *number;
 }
 
 void take(const std::string& key, const std::string& text, bool& value) {
     if (text != "true" && text != "false")
-        throw Error(key + " has to be true or false, not " + quoted(text));
+        throw Error(key + " must be true or false, not " + quoted(text));
     value = text == "true";
 }
 
@@ -48,22 +48,22 @@ void take(const std::string& key, const std::string& text, DriveMeta& meta) {
 }
 
 DriveMeta metaOf(const YAML::Node& node) {
-    if (!node.IsMap()) throw Error("it holds no 'key: value' lines");
+    if (!node.IsMap()) throw Error("expected 'key: value' lines");
     DriveMeta meta;
     std::set<std::string> keys;
     for (const auto& entry : node) {
         const auto key = entry.first.as<std::string>();
-        if (!keys.insert(key).second) throw Error("the key " + quoted(key) + " is there twice");
+        if (!keys.insert(key).second) throw Error("the key " + quoted(key) + " appears twice");
         if (!entry.second.IsScalar() && !entry.second.IsNull())
-            throw Error(quoted(key) + " has to be a plain value");
+            throw Error(quoted(key) + " must be a plain value");
         // A "~" in quotes is text, a bare one nothing.
         take(key, entry.second.IsNull() ? "" : entry.second.Scalar(), meta);
     }
     // Written so that a NaN fails as well.
     if (!(std::abs(meta.verticalCorrectionDeg) <= 5))
-        throw Error("vertical_correction_deg has to be from -5 to 5");
+        throw Error("vertical_correction_deg must be from -5 to 5");
     if (!(meta.epoch_s >= 0 && meta.epoch_s < 1e10))
-        throw Error("epoch_unix_s has to be Unix seconds");
+        throw Error("epoch_unix_s must be Unix seconds");
     return meta;
 }
 }  // namespace
@@ -89,7 +89,7 @@ std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath) {
     try {
         return metaOf(YAML::LoadFile(path));
     } catch (const std::exception& e) {
-        throw Error("cannot understand '" + path + "': " + plainMessage(e));
+        throw Error("cannot parse '" + path + "': " + plainMessage(e));
     }
 }
 
@@ -98,7 +98,7 @@ std::string textOf(const DriveMeta& meta) {
     const auto text = [&](const char* key, const std::string& value) {
         yaml << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << value;
     };
-    yaml << YAML::Comment("What this drive is; delio-slam reads it beside the rawlog.");
+    yaml << YAML::Comment("Description of this drive; delio-slam reads it next to the rawlog.");
     yaml << YAML::BeginMap;
     text("sensor_model", meta.sensorModel);
     text("source", meta.source);

@@ -111,7 +111,7 @@ void readLine(Line& line, FileContent& content) {
         content.fixed.emplace_back(line.id(), line.where());
     } else {
         line.fail("the tag '" + tag.substr(0, 40) +
-                  "' is not known; VERTEX_SE3:QUAT, EDGE_SE3:QUAT and FIX are");
+                  "' is not supported; supported are VERTEX_SE3:QUAT, EDGE_SE3:QUAT and FIX");
     }
     line.end();
 }
@@ -125,10 +125,10 @@ FileContent readContent(const std::string& path) {
         Line line(text, "'" + path + "', line " + std::to_string(number));
         if (text[0] == '#' || line.empty()) continue;
         // The last number may have lost digits without a trace.
-        if (in.eof()) line.fail("the file ends within this line: was it cut off?");
+        if (in.eof()) line.fail("the file ends within this line (cut off?)");
         readLine(line, content);
     }
-    if (in.bad()) throw Error("cannot read '" + path + "': reading failed (is it a folder?)");
+    if (in.bad()) throw Error("cannot read '" + path + "': reading failed (a folder?)");
     if (content.vertices.empty()) throw Error("'" + path + "' has no VERTEX_SE3:QUAT line");
     return content;
 }

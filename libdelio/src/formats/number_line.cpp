@@ -22,7 +22,7 @@ const char* pastGap(const char* at, const char* end) {
     return at;
 }
 
-/** What a number is that a double does not reach: 0 where it is too small, NaN too large. */
+/** Result for numbers outside the range of double: 0 if too small, NaN if too large. */
 double beyondRange(std::string_view number) {
     const auto exponent = number.find_first_of("eE");
     const bool small = exponent == number.npos ? number.find('.') < 300

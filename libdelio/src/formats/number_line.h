@@ -5,11 +5,11 @@
 #include <vector>
 
 namespace delio::io {
-/** Takes the next line that is not blank off `rest`, without its end; nothing where there is none.
- *  `passed`: how many lines were taken, blank ones included, is added to it. */
+/** Removes the next non-blank line from `rest` and returns it without its end; nothing at the end.
+ *  Adds the number of lines removed, blank ones included, to `passed`. */
 std::optional<std::string_view> nextLine(std::string_view& rest, std::size_t* passed = nullptr);
 
-/** What numbersIn() gives for a line that holds something else. */
+/** Result of numbersIn() for lines with other content. */
 constexpr std::size_t kNoNumbers = static_cast<std::size_t>(-1);
 
 /** How many numbers a line has, whatever the locale; they are written to `values`, as many as it

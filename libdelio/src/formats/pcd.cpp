@@ -12,7 +12,7 @@
 
 namespace delio::io {
 namespace {
-/** What decompression gives: all values of the first field, then all of the second, and so on. */
+/** Decompressed data: all values of the first field, then all of the second, and so on. */
 std::vector<std::uint8_t> decompressed(RecordFile& file, std::size_t count, std::size_t stride) {
     std::array<std::uint32_t, 2> sizes{};  // compressed, and not
     const std::size_t left = file.bytesLeft();
@@ -22,13 +22,13 @@ std::vector<std::uint8_t> decompressed(RecordFile& file, std::size_t count, std:
     constexpr std::size_t kMostShrunk = 88;  // LZF's 3 bytes for 264
     if (sizes[1] / stride != count || sizes[1] % stride != 0 || sizes[1] / kMostShrunk > sizes[0] ||
         sizes[1] > kMostBytes)
-        file.refuse("the size of its data is not that of " + std::to_string(count) + " points");
+        file.refuse("the data size does not match " + std::to_string(count) + " points");
     std::vector<std::uint8_t> packed(sizes[0]), bytes(sizes[1]);
     file.stream().read(reinterpret_cast<char*>(packed.data()),
                        static_cast<std::streamsize>(packed.size()));
     if (!bytes.empty() &&
         lzf_decompress(packed.data(), sizes[0], bytes.data(), sizes[1]) != sizes[1])
-        file.refuse("its compressed data is damaged");
+        file.refuse("the compressed data is damaged");
     return bytes;
 }
 
@@ -36,7 +36,7 @@ CloudRecords readCompressed(RecordFile& file, const std::vector<Column>& columns
                             std::size_t count) {
     CloudRecords records{layoutOf(columns), {}, count, 1};
     const std::size_t step = records.layout.step;
-    if (step == 0) file.refuse("its points have no fields");
+    if (step == 0) file.refuse("the points have no fields");
     const auto byField = decompressed(file, count, step);
     records.bytes.resize(byField.size());
     const std::uint8_t* from = byField.data();
@@ -97,7 +97,7 @@ std::size_t countOf(const PcdHeader& header, RecordFile& file, std::size_t strid
 
 CloudRecords readPcdScan(const std::string& path) {
     RecordFile file(path, "PCD");
-    if (file.bytesLeft() == 0) file.refuse("it is empty");
+    if (file.bytesLeft() == 0) file.refuse("the file is empty");
     const auto header = readPcdHeader(file);
     const auto columns = columnsOf(header, file);
     const std::size_t count = countOf(header, file, strideOf(columns));
@@ -107,7 +107,7 @@ CloudRecords readPcdScan(const std::string& path) {
     else if (header.data == "ascii" || header.data == "binary")
         records = readRecords(file, columns, count, header.data == "ascii");
     else
-        file.refuse("its data is '" + header.data + "'");
+        file.refuse("unsupported DATA '" + header.data + "'");
     if (header.width.value_or(0) > 0 && header.height.value_or(0) > 0)
         records.rows = *header.height;
     return records;
@@ -124,7 +124,7 @@ PcdHeader readPcdHeader(RecordFile& file) {
         while (words >> word) rest.push_back(word);
         const auto number = numberIn<std::size_t>(rest.empty() ? "" : rest[0]);
         const bool isCount = keyword == "WIDTH" || keyword == "HEIGHT" || keyword == "POINTS";
-        if (isCount && !number) file.refuse("its " + keyword + " is no count of points");
+        if (isCount && !number) file.refuse("its " + keyword + " is not a number of points");
         if (keyword == "FIELDS" || keyword == "COLUMNS")
             header.names = rest;
         else if (keyword == "SIZE")
@@ -147,14 +147,14 @@ PcdHeader readPcdHeader(RecordFile& file) {
         } else if (keyword != "VERSION" && keyword != "VIEWPOINT")
             break;
     }
-    file.refuse("it has no whole header");
+    file.refuse("the header is incomplete");
 }
 
 std::vector<Column> columnsOf(const PcdHeader& header, const RecordFile& file) {
     const std::size_t fields = header.names.size();
     if (fields == 0 || header.sizes.size() != fields || header.types.size() != fields ||
         (!header.counts.empty() && header.counts.size() != fields))
-        file.refuse("FIELDS, SIZE, TYPE and COUNT do not have as many words");
+        file.refuse("FIELDS, SIZE, TYPE and COUNT have different lengths");
     std::vector<Column> columns;
     for (std::size_t i = 0; i < fields; ++i) {
         const auto bytes = numberIn<std::size_t>(header.sizes[i]);
@@ -163,7 +163,7 @@ std::vector<Column> columnsOf(const PcdHeader& header, const RecordFile& file) {
         constexpr std::size_t kMost = 4096;  // PCL's descriptors have some hundreds
         if (!bytes || header.types[i].size() != 1 || !isNumber(header.types[i][0], *bytes) ||
             !count || *count > kMost)
-            file.refuse("its field '" + header.names[i] + "' is of no known type");
+            file.refuse("its field '" + header.names[i] + "' has an unknown type");
         for (std::size_t k = 0; k < *count; ++k)
             columns.push_back({k == 0 ? header.names[i] : "", header.types[i][0], *bytes});
     }

@@ -12,8 +12,8 @@ struct PcdHeader {
     std::string data;                                      //!< ascii, binary, binary_compressed
 };
 
-/** Reads up to and including the line `DATA`. Throws Error where there is none. `points` is width
- *  by height where the file does not say it. */
+/** Reads up to and including the line `DATA`. Throws Error if it is missing. `points` is width
+ *  times height if the file has no POINTS. */
 PcdHeader readPcdHeader(RecordFile& file);
 
 /** A field with a count of more than one is as many columns, of which the first has its name.

@@ -52,7 +52,7 @@ PlyHeader readPlyHeader(RecordFile& file) {
         } else if (keyword == "element" && ++element == 1) {
             const auto count = numberIn<std::size_t>(second);
             if (first != "vertex" || !count)
-                file.refuse("its first element has to be 'vertex' with a count");
+                file.refuse("the first element must be 'vertex' with a count");
             header.vertices = *count;
         } else if (keyword == "property" && element == 1) {
             header.columns.push_back(columnOf(first, second, file));
@@ -61,12 +61,12 @@ PlyHeader readPlyHeader(RecordFile& file) {
             return header;
         }
     }
-    file.refuse("it has no whole header");
+    file.refuse("the header is incomplete");
 }
 
 CloudRecords readPlyScan(const std::string& path) {
     RecordFile file(path, "PLY");
-    if (file.bytesLeft() == 0) file.refuse("it is empty");
+    if (file.bytesLeft() == 0) file.refuse("the file is empty");
     const auto header = readPlyHeader(file);
     auto records = readRecords(file, header.columns, header.vertices, header.ascii);
     records.layout.bigEndian = header.bigEndian;

@@ -178,7 +178,7 @@ CloudRecords readRecords(RecordFile& file, const std::vector<Column>& columns, s
     const std::size_t step = records.layout.step;
     const std::size_t whole = step == 0 ? 0 : file.bytesLeft() / step;
     if (step == 0 || count > whole) file.refuseCut(whole, count);
-    if (count * step > kMostBytes) file.refuse("it is too large for a scan");
+    if (count * step > kMostBytes) file.refuse("the file is too large for one scan");
     records.bytes.resize(count * step);
     file.stream().read(reinterpret_cast<char*>(records.bytes.data()),
                        static_cast<std::streamsize>(records.bytes.size()));
@@ -200,17 +200,17 @@ std::size_t strideOf(const std::vector<Column>& columns) {
 
 RecordFile::RecordFile(const std::string& path, std::string kind)
     : path_(path), kind_(std::move(kind)), in_(path, std::ios::binary) {
-    if (!in_) throw Error("cannot read '" + path + "': there is no such file");
+    if (!in_) throw Error("cannot read '" + path + "': no such file");
     in_.imbue(std::locale::classic());
 }
 
 void RecordFile::refuse(const std::string& why) const {
-    throw Error("'" + path_ + "' is not a " + kind_ + " that can be read: " + why);
+    throw Error("'" + path_ + "' is not a " + kind_ + ": " + why);
 }
 
 void RecordFile::refuseCut(std::size_t done, std::size_t count) const {
-    refuse("it is cut off or malformed after " + std::to_string(done) + " of " +
-           std::to_string(count) + " points");
+    refuse("cut off or malformed after " + std::to_string(done) + " of " + std::to_string(count) +
+           " points");
 }
 
 std::size_t RecordFile::bytesLeft() {

@@ -34,7 +34,7 @@ struct PointLayout {
     bool bigEndian = false;
 };
 
-/** What PLY and PCD share: a point is a record of numbers, each with a name. */
+/** Common part of PLY and PCD: a point is a record of named numbers. */
 struct Column {
     std::string name;       //!< one that there is no use for is skipped
     char kind = 'F';        //!< 'F' floating, 'I' and 'U' whole, with and without a sign
@@ -56,7 +56,7 @@ class RecordFile {
     /** The header's next line; false at the end. */
     bool line(std::string& text) { return static_cast<bool>(std::getline(in_, text)); }
 
-    /** What has not been read yet; 0 where that cannot be told (a pipe). */
+    /** Bytes left to read; 0 if unknown (a pipe). */
     std::size_t bytesLeft();
 
     std::istream& stream() { return in_; }
@@ -79,8 +79,8 @@ struct CloudRecords {
     std::size_t rows = 1;  //!< more than one: of an organised cloud
 };
 
-/** As a layout names it: in lower case, without what programs put before and about it
- *  ("scalar_Intensity", "//X"). */
+/** Normalised field name: lower case, without prefixes of other programs ("scalar_Intensity",
+ *  "//X"). */
 std::string plainName(std::string name);
 
 /** Records of these columns, without gaps. */
@@ -92,8 +92,8 @@ PointLayout layoutOfDoubles(const std::vector<std::string>& names);
  *  `columns` are those of records.layout. */
 void makeDoubles(const std::vector<Column>& columns, CloudRecords& records);
 
-/** Reads what comes after the header: `count` records, or as many lines of numbers where `ascii`.
- *  Throws Error, which names the file, before memory is taken where there is not as much. */
+/** Reads the data after the header: `count` records, or lines of numbers if `ascii`. Throws an
+ *  Error that names the file, before allocating memory, if the file is too short. */
 CloudRecords readRecords(RecordFile& file, const std::vector<Column>& columns, std::size_t count,
                          bool ascii);
 }  // namespace delio::io

@@ -29,7 +29,8 @@ ScanTable readScanTable(const std::string& path) {
                                    columnOf(heading, "predicted", path, "scans.csv")};
     ScanTable table;
     for (std::size_t line = 2; std::getline(in, text); ++line) {
-        // The reason, the last column, may hold commas: what comes after the wanted ones is free.
+        // The reason, the last column, may contain commas: columns after the needed ones are not
+        // checked.
         const auto cells = cellsOf(text);
         double values[3] = {};
         for (int i = 0; i < 3; ++i) {
@@ -44,7 +45,7 @@ ScanTable readScanTable(const std::string& path) {
         if (scan < 0 || scan > 1e9 || scan != std::floor(scan) ||
             (!table.scans.empty() && scan <= static_cast<double>(table.scans.back())))
             throw Error("'" + path + "', line " + std::to_string(line) +
-                        ": the numbers of the scans do not rise");
+                        ": scan numbers must increase");
         table.scans.push_back(static_cast<std::size_t>(scan));
         table.stamps_s.push_back(values[1]);
         table.predicted.push_back(values[2] != 0);
@@ -73,7 +74,7 @@ void writeScanTable(std::size_t rows, const std::function<ScanRow(std::size_t)>&
             const ScanRow row = rowAt(i);
             if (!sameColumns(row, first))
                 throw Error("cannot write '" + path + "': scan " + std::to_string(row.scan) +
-                            " has other columns than the first");
+                            " has other columns than the first scan");
             out << scanTableLine(row);
         }
     });

@@ -28,7 +28,7 @@ std::size_t columnOf(const std::vector<std::string>& heading, const std::string&
                      const std::string& path, const std::string& kind) {
     const auto found = std::find(heading.begin(), heading.end(), name);
     if (found == heading.end())
-        throw Error("'" + path + "' has no column '" + name + "'; is it delio-slam's " + kind +
+        throw Error("'" + path + "' has no column '" + name + "'; it must be delio-slam's " + kind +
                     "?");
     return static_cast<std::size_t>(found - heading.begin());
 }

@@ -23,7 +23,7 @@ class TextScan {
             if (count_ == 1) records_.bytes.reserve(rest.size() / line->size() * 9 / 8 * step());
             add(*line);
         }
-        if (count_ == 0) throw Error("'" + file_.string() + "' holds no points");
+        if (count_ == 0) throw Error("'" + file_.string() + "' contains no points");
         records_.count = count_;
         return std::move(records_);
     }
@@ -45,7 +45,7 @@ class TextScan {
             for (const auto word : wordsIn(line)) names.emplace_back(word);
         } else if (found < 3 || found > std::size(kUsual)) {
             refuse("a point has 3 to 6 numbers (x y z intensity time ring), not " +
-                   std::to_string(found) + "; name the columns in a first line");
+                   std::to_string(found) + "; name the columns in the first line");
         } else {
             names.assign(kUsual, kUsual + found);
         }
@@ -59,13 +59,13 @@ class TextScan {
         for (const std::string name : {"x", "y", "z"}) {
             bool there = false;
             for (const auto& field : records_.layout.fields) there = there || field.name == name;
-            if (!there) refuse("it is no numbers, and names no column '" + name + "'");
+            if (!there) refuse("expected numbers, or a header with a column '" + name + "'");
         }
     }
 
     void add(std::string_view line) {
         const std::size_t found = numbersIn(line, values_);
-        if (found == kNoNumbers) refuse("there is something other than numbers");
+        if (found == kNoNumbers) refuse("expected only numbers");
         if (found != values_.size())
             refuse("there are " + std::to_string(found) + " numbers, not " +
                    std::to_string(values_.size()));

@@ -31,14 +31,14 @@ std::vector<double> numbersOf(const std::string& text, const std::string& where)
         const auto next = std::find_if(p, end, isSpace);
         const auto number = numberIn<double>(std::string(p, next));
         if (!number || !std::isfinite(*number))
-            throw Error(where + ": not a finite number at '" + std::string(p, end).substr(0, 20) +
-                        "'");
+            throw Error(where + ": expected a finite number at '" +
+                        std::string(p, end).substr(0, 20) + "'");
         numbers.push_back(*number);
         p = next;
     }
 }
 
-/** Calls `use(numbers, where)` for every line that holds any; throws if there is none. */
+/** Calls `use(numbers, where)` for every line with numbers; throws if there is no such line. */
 template <typename Use>
 void forEachLine(std::istream& in, const std::string& path, const Use& use) {
     std::string text;
@@ -51,8 +51,8 @@ void forEachLine(std::istream& in, const std::string& path, const Use& use) {
         use(numbers, where);
         any = true;
     }
-    if (in.bad()) throw Error("cannot read '" + path + "': reading failed (is it a folder?)");
-    if (!any) throw Error("'" + path + "' is empty: no line with numbers in it");
+    if (in.bad()) throw Error("cannot read '" + path + "': reading failed (a folder?)");
+    if (!any) throw Error("'" + path + "' is empty");
 }
 
 std::ifstream opened(const std::string& path) {
@@ -77,8 +77,8 @@ void appendTum(Trajectory& trajectory, const std::vector<double>& numbers,
                const std::string& where) {
     if (!trajectory.stamps_s.empty() && numbers[0] <= trajectory.stamps_s.back())
         throw Error(where + (numbers[0] < trajectory.stamps_s.back()
-                                 ? ": the stamps do not rise; sort the file by time"
-                                 : ": the stamp of the pose before once more; remove one of them"));
+                                 ? ": stamps must increase; sort the file by time"
+                                 : ": duplicate stamp; remove one of the poses"));
     const Eigen::Quaterniond q(numbers[7], numbers[4], numbers[5], numbers[6]);
     if (std::abs(q.norm() - 1) > 1e-2) throw Error(where + ": the quaternion is not of length 1");
     trajectory.stamps_s.push_back(numbers[0]);
@@ -99,7 +99,7 @@ Trajectory trajectoryOf(std::istream& in, const std::string& path) {
         if (columns == 0) columns = numbers.size();
         if (numbers.size() != columns || (columns != 12 && columns != 8))
             throw Error(where + ": " + std::to_string(numbers.size()) +
-                        " numbers; a KITTI pose has 12 on every line, a TUM pose 8");
+                        " numbers; a KITTI pose has 12, a TUM pose 8");
         if (columns == 12)
             trajectory.poses.push_back(poseOf3x4(numbers, 0, where));
         else
@@ -167,7 +167,7 @@ std::vector<double> readTimes(const std::string& path) {
     std::vector<double> times;
     auto in = opened(path);
     forEachLine(in, path, [&](const std::vector<double>& numbers, const std::string& where) {
-        if (numbers.size() != 1) throw Error(where + ": one time in seconds is wanted");
+        if (numbers.size() != 1) throw Error(where + ": expected one time in seconds");
         times.push_back(numbers[0]);
     });
     return times;

@@ -9,7 +9,7 @@ namespace delio::graph {
 /** Covariances of the steps between successive nodes, summed up along the chain. */
 class Chain {
  public:
-    /** Of `nodes` nodes, with steps that are known exactly until set() is called. */
+    /** Chain of `nodes` nodes; steps are exact until set() is called. */
     explicit Chain(std::size_t nodes) : sums_(nodes, Matrix6::Zero()) {}
 
     /** The step from node `step` to the next: `covariance` in the frame of a node at `pose`. Before
@@ -18,7 +18,7 @@ class Chain {
         const Matrix6 A = adjointOf(pose);
         sums_[step + 1] = A * covariance * A.transpose();
     }
-    /** To be called once, when all steps are set. */
+    /** Call it once, after all steps are set. */
     void sumUp() {
         for (std::size_t i = 1; i < sums_.size(); ++i) sums_[i] += sums_[i - 1];
     }

@@ -20,7 +20,7 @@ bool isFinite(const Eigen::Isometry3d& pose) {
 void requireFinite(const Eigen::Isometry3d& pose, std::size_t node) {
     if (!isFinite(pose))
         throw Error("pose graph: the pose of node " + std::to_string(node) +
-                    " is not finite, or beyond 1e9 m");
+                    " is not finite or exceeds 1e9 m");
 }
 
 bool isPositiveDefinite(const Matrix6& m) {
@@ -41,17 +41,17 @@ std::string nameOf(std::size_t from, std::size_t to) {
 std::vector<OptionField> PoseGraphOptions::fields() const {
     return {
         {"skip_edges", &PoseGraphOptions::skip_edges,
-         "edges beyond the chain: 1 adds (i,i+2), 2 also (i,i+3), 0 none", 0, 100},
+         "edges in addition to (i,i+1): 1 adds (i,i+2), 2 also (i,i+3); 0: none", 0, 100},
         {"min_overlap", &PoseGraphOptions::min_overlap,
-         "share of a scan's lines that the other has lines next to; with less there is no such "
+         "minimum fraction of a scan's lines with a line of the other scan nearby, for such an "
          "edge",
          0, 1},
         {"window", &PoseGraphOptions::window,
-         "last nodes that are optimised while driving; 0: only at the end", 0, 1000},
-        {"max_iterations", &PoseGraphOptions::max_iterations, "limit of Levenberg-Marquardt steps",
-         1, 100000},
+         "number of latest nodes optimised during the drive; 0: optimise only at the end", 0, 1000},
+        {"max_iterations", &PoseGraphOptions::max_iterations,
+         "maximum number of Levenberg-Marquardt steps", 1, 100000},
         {"kernel_width", &PoseGraphOptions::kernel_width,
-         "width of the Geman-McClure kernel in standard deviations; 0: no robust kernel", 0, 1e9}};
+         "standard deviations; width of the Geman-McClure kernel; 0: no robust kernel", 0, 1e9}};
 }
 
 std::size_t PoseGraph::addNode(const Eigen::Isometry3d& initial) {
@@ -79,11 +79,11 @@ void PoseGraph::addEdge(std::size_t from, std::size_t to, const Eigen::Isometry3
 void PoseGraph::append(const Edge& edge, const Matrix6& information) {
     const std::string name = nameOf(edge.from, edge.to);
     if (edge.from >= poses_.size() || edge.to >= poses_.size())
-        throw Error("pose graph: " + name + " needs nodes that are not there (there are " +
+        throw Error("pose graph: " + name + " refers to missing nodes (there are " +
                     std::to_string(poses_.size()) + ")");
-    if (edge.from == edge.to) throw Error("pose graph: " + name + " goes from a node to itself");
+    if (edge.from == edge.to) throw Error("pose graph: " + name + " connects a node to itself");
     if (!isFinite(edge.increment.pose))
-        throw Error("pose graph: " + name + " is not finite, or beyond 1e9 m");
+        throw Error("pose graph: " + name + " is not finite or exceeds 1e9 m");
     // Finite too: a covariance of 1e-320 has no inverse in doubles.
     if (!isPositiveDefinite(information))
         throw Error("pose graph: the covariance of " + name + " cannot be inverted");
@@ -91,7 +91,7 @@ void PoseGraph::append(const Edge& edge, const Matrix6& information) {
     constexpr double kMostInformation = 1e20;
     if (information.cwiseAbs().maxCoeff() > kMostInformation)
         throw Error("pose graph: the information of " + name +
-                    " is more than 1e20: no edge is known that well");
+                    " exceeds 1e20, which is not plausible");
     edgesUpTo_[std::max(edge.from, edge.to)].push_back(edges_.size());
     edges_.push_back(edge);
     information_.push_back(information);
@@ -114,7 +114,8 @@ void PoseGraph::requireConnected(std::size_t firstFree) const {
                 representative(numberOf(edges_[i].to));
     for (std::size_t node = firstFree; node < poses_.size(); ++node)
         if (representative(numberOf(node)) != representative(0))
-            throw Error("pose graph: no edges connect node " + std::to_string(node) + " to node 0");
+            throw Error("pose graph: no path of edges connects node " + std::to_string(node) +
+                        " to node 0");
 }
 
 WhitenedGraph PoseGraph::whitened(std::size_t firstFree, const std::vector<bool>& doubtful) const {
@@ -147,7 +148,7 @@ void PoseGraph::takeFreePoses(const WhitenedGraph& graph) {
 }
 
 OptimisationResult PoseGraph::optimise(const PoseGraphOptions& options) {
-    if (poses_.empty()) throw Error("pose graph: there are no nodes");
+    if (poses_.empty()) throw Error("pose graph: no nodes");
     requireConnected(1);
     const double c = options.kernel_width;
     auto graph = whitened(1, c > 0 ? doubtfulEdges(*this, c) : std::vector<bool>{});
@@ -182,7 +183,7 @@ OptimisationResult PoseGraph::optimise(const PoseGraphOptions& options) {
 }
 
 OptimisationResult PoseGraph::optimiseLast(std::size_t count, const PoseGraphOptions& options) {
-    if (poses_.empty()) throw Error("pose graph: there are no nodes");
+    if (poses_.empty()) throw Error("pose graph: no nodes");
     const std::size_t firstFree = poses_.size() - std::min(count, poses_.size() - 1);
     requireConnected(firstFree);
     auto graph = whitened(firstFree, {});

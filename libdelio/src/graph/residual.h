@@ -11,11 +11,11 @@ struct Residual {
     Matrix6 dTo;    //!< the same for T_to * (exp(w), t)
 };
 
-/** Of the edge `increment` between nodes at `from` and `to`. */
+/** Residual of the edge `increment` between nodes at `from` and `to`. */
 Residual residualOf(const Eigen::Isometry3d& increment, const Eigen::Isometry3d& from,
                     const Eigen::Isometry3d& to);
 
-/** What the rows and columns of an edge's information matrix stand for. */
+/** Meaning of the rows and columns of an information matrix. */
 enum class InformationOf {
     /** delio::Increment's error [x y z wx wy wz], pose_true = pose * (exp(w), t): metres and
      *  radians, axes of the later frame. */

@@ -167,7 +167,7 @@ Eigen::Vector3d pointAt(const float* floats) {
     return {double{floats[0]}, double{floats[1]}, double{floats[2]}};
 }
 
-/** What all scans say of what was seen. */
+/** Votes of all scans about the voxels. */
 std::shared_ptr<const VisibilityVotes> votesOf(const MapParts& parts,
                                                const std::vector<Isometry3d>& poses) {
     auto votes = std::make_shared<VisibilityVotes>(parts.options.removal);
@@ -193,7 +193,7 @@ std::shared_ptr<const VisibilityVotes> votesOf(const MapParts& parts,
     return votes;
 }
 
-/** Sorts the points of scan after scan into what stands still and what does not. */
+/** Sorts the points of each scan into static and dynamic ones. */
 class Sorter {
  public:
     Sorter(const MapParts& parts, const VisibilityVotes& votes)
@@ -211,7 +211,7 @@ class Sorter {
             const Eigen::Vector3d at = sensorInWorld * pointAt(&floats[4 * k]);
             const bool isDynamic = votes_.isDynamic(at);
             const bool wasToldToMove = k >= scan.still;
-            // Told to move where most scans say that something stands: these are kept.
+            // Labelled as dynamic, but most scans hit this voxel as static: keep it.
             if (parts_.options.removal.enabled && wasToldToMove && !isDynamic) continue;
             const bool moves = isDynamic || wasToldToMove;
             if (!(moves ? dynamicVoxels_ : stillVoxels_).insert(at)) continue;

@@ -7,7 +7,7 @@
 #include "stored_scan.h"
 
 namespace delio::map {
-/** What a map is made of. */
+/** Input of a map. */
 struct MapParts {
     const std::vector<StoredScan>& scans;
     std::shared_ptr<const io::Spool> spool;  //!< null: there are no scans

@@ -81,7 +81,7 @@ std::vector<float> valuesOf(const MapPoints& points, const Value& value) {
     return values;
 }
 
-/** What is not known is 0 (map_point.h). */
+/** Unknown values are 0 (map_point.h). */
 bool isKnown(const MapPoints& points, const Value& value) {
     if (points.empty() || value.by == ColourBy::Height) return true;
     return std::any_of(points.begin(), points.end(), [&](const MapPoint& point) {
@@ -96,7 +96,7 @@ Colormap colormapNamed(const std::string& name) {
     if (name == "turbo") return Colormap::Turbo;
     if (name == "viridis") return Colormap::Viridis;
     if (name == "gray") return Colormap::Gray;
-    throw Error("there is no colormap '" + name + "'; choose turbo, viridis or gray");
+    throw Error("unknown colour map '" + name + "'; choose turbo, viridis or gray");
 }
 
 mrpt::img::TColor colourAt(Colormap colormap, double t) {
@@ -146,14 +146,14 @@ ColourBy colourByNamed(const std::string& name) {
         if (name == value.option) return value.by;
         known += (known.empty() ? "" : ", ") + std::string(value.option);
     }
-    throw Error("points cannot be coloured by '" + name + "'; choose one of " + known);
+    throw Error("cannot colour points by '" + name + "'; choose one of " + known);
 }
 
 Colours coloursOf(const MapPoints& points, const Colouring& colouring) {
     const Value& value = *std::find_if(kValues.begin(), kValues.end(),
                                        [&](const Value& v) { return v.by == colouring.by; });
     if (!isKnown(points, value))
-        throw Error("the map's points have no " + std::string(value.option) + " to be coloured by");
+        throw Error("the map's points have no " + std::string(value.option) + " to colour by");
     Colours colours{{}, value.name, value.unit, {}};
     colours.ofPoints.reserve(points.size());
     if (colouring.by == ColourBy::Normal) {

@@ -42,7 +42,7 @@ Points pointsAround(const MapPoints& points, const Isometry3d& vehicle) {
     return around;
 }
 
-/** Whether the ground may lie so; turns its normal upwards. */
+/** True if the plane can be the ground; orients its normal upwards. */
 bool mayBeGround(Plane& plane) {
     if (plane.normal().z() < 0) plane.coeffs() *= -1;
     if (!(plane.normal().z() > std::cos(kMaxTilt_deg * M_PI / 180))) return false;
@@ -94,8 +94,8 @@ bool fit(const Points& points, Plane& plane) {
 
 constexpr double kDeg = M_PI / 180;
 
-/** The plane of the ground around a vehicle, its normal upwards, in the map's frame. Throws Error
- *  where there is none. */
+/** The ground plane around a vehicle, with its normal upwards, in the map's frame. Throws Error if
+ *  no ground is found. */
 Plane planeOfGround(const MapPoints& points, const Isometry3d& vehicle) {
     const Points around = pointsAround(points, vehicle);
     Plane plane;
@@ -107,8 +107,8 @@ Plane planeOfGround(const MapPoints& points, const Isometry3d& vehicle) {
                 fit(on, plane);
     }
     if (!found)
-        throw Error("there is no ground within " + std::to_string(static_cast<int>(kReach_m)) +
-                    " m of the map's first pose that it could be levelled by");
+        throw Error("no ground found within " + std::to_string(static_cast<int>(kReach_m)) +
+                    " m of the map's first pose to level the map");
     return {Vector3d(vehicle.linear() * plane.normal()),
             Vector3d(vehicle * Vector3d(-plane.offset() * plane.normal()))};
 }

@@ -33,7 +33,7 @@ class GroundHeight {
     std::unordered_map<std::uint64_t, double> cells_;
 };
 
-/** Of each point above the ground around it. */
+/** Height of each point above the surrounding ground. */
 template <typename PointAt>
 std::vector<float> heightsAboveGround(std::size_t count, const PointAt& pointAt) {
     const GroundHeight ground(count, pointAt);
@@ -45,15 +45,15 @@ std::vector<float> heightsAboveGround(std::size_t count, const PointAt& pointAt)
     return heights;
 }
 
-/** The ground below the points, for telling what stands on it: the low points of each cell, but
- *  not more above those of the cells around than a steep street would be (so that the roof of a car
- *  is none), nor far below them (reflections in wet streets); straight lines between the cells. */
+/** Ground height below the points, to find objects that stand on it: the low points of each cell,
+ *  but not more above those of the cells around than a steep street would be (which excludes car
+ *  roofs), nor far below them (reflections in wet streets); straight lines between the cells. */
 class GroundSurface {
  public:
     /** @param cell edge of a cell in metres; the points' extent has to have less than 2^31 cells */
     GroundSurface(const MapPoints& points, double cell);
 
-    /** Where no cell around has points, NaN. */
+    /** NaN if no surrounding cell has points. */
     double at(double x, double y) const;
 
     /** False where the low points are an island of a few square metres: the top of a tree or a
@@ -71,7 +71,7 @@ class GroundSurface {
     void liftPits(std::vector<Low>& lows);
     void lowerWhatStandsOut(std::vector<Low>& lows);
     void findIslands(const std::vector<Low>& lows);
-    /** Those around it that go on at about its height. */
+    /** Surrounding cells of about the same height. */
     template <typename Visit>
     void visitNeighbours(std::uint32_t cell, const Visit& visit) const;
 

@@ -21,8 +21,8 @@ namespace {
 constexpr double kDeg = M_PI / 180;
 constexpr const char *kWhat = "scans for the map", *kOption = "--no-map";
 
-/** The points that are used: those that stand still, then those that move; of either the first one
- *  of each voxel. x y z intensity each. */
+/** Points used: first the static, then the dynamic ones, the first of each voxel. x y z intensity
+ *  each. */
 struct Thinned {
     io::Spool::Floats floats;
     std::size_t still = 0;
@@ -71,20 +71,20 @@ Eigen::Matrix3Xf finitePoints(const CPointsMap& points) {
 
 std::vector<OptionField> MapOptions::fields() const {
     return {
-        {"keyframe_distance", &MapOptions::keyframeDistance_m, "a keyframe every so many metres", 0,
+        {"keyframe_distance", &MapOptions::keyframeDistance_m, "m; distance between keyframes", 0,
          1e6},
-        {"keyframe_angle_deg", &MapOptions::keyframeAngle_deg,
-         "and after every turn by so many degrees", 0, 360},
+        {"keyframe_angle_deg", &MapOptions::keyframeAngle_deg, "deg; rotation between keyframes", 0,
+         360},
         {"voxel_size", &MapOptions::voxelSize_m,
-         "edge in metres of the voxels of which one point is kept; 0 keeps every point; where "
-         "absent: in small places less, down to a quarter",
+         "m; voxel size of the map, one point per voxel; 0: keep every point; if not set: 0.2, in "
+         "small places down to a quarter of that",
          0, 1e3},
         {"min_range", &MapOptions::minRange_m,
-         "metres; points nearer to the sensor (the car itself) are left out; where absent: in "
-         "small places less, down to a quarter",
+         "m; points closer to the sensor (the vehicle itself) are ignored; if not set: 2.5, in "
+         "small places down to a quarter of that",
          0, 1e6},
-        {"max_range", &MapOptions::maxRange_m,
-         "metres; points farther from the sensor are left out", 0, 1e6},
+        {"max_range", &MapOptions::maxRange_m, "m; points farther from the sensor are ignored", 0,
+         1e6},
     };
 }
 
@@ -130,7 +130,7 @@ bool MapBuilder::isFarFromLastKeyframe(const Isometry3d& pose) const {
            angleOf(turned) >= options_.keyframeAngle_deg * kDeg;
 }
 
-/** One that stands sees what comes and goes, too. */
+/** A standing vehicle also sees objects come and go. */
 bool MapBuilder::isFarFromLastView(const Isometry3d& pose, mrpt::Clock::time_point stamp) const {
     constexpr std::chrono::duration<double> kPause(0.45);  // stamps are rounded
     return views_ == 0 || stamp - viewStamp_ >= kPause ||

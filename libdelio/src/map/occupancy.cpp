@@ -19,7 +19,7 @@ namespace {
 constexpr double kGroundCell_m = 1;
 constexpr double kDeepest_m = -0.5;    // below the ground are reflections
 constexpr double kLongestStep_m = 10;  // between poses: over more than that nobody knows the way
-// What cells hold while the grid is made.
+// Cell states during construction.
 enum Mark : COccupancyGridMap2D::cellType {
     kUnknown,
     kGround,
@@ -65,7 +65,7 @@ Marks::Marks(const Eigen::AlignedBox2d& extent, double resolution) : resolution_
         throw Error("the grid would have " + digitsOf(std::round(width)) + " x " +
                     digitsOf(std::round(height)) + " cells, more than " +
                     digitsOf(std::round(kMostCells / 1e6)) +
-                    " million; take a coarser resolution or a part of the map");
+                    " million; use a coarser --resolution or --crop");
     firstX_ = numberOf(extent.min().x());
     firstY_ = numberOf(extent.min().y());
     const auto corner = [&](std::int64_t number) {
@@ -251,7 +251,7 @@ std::string quoted(const std::string& text) {
 COccupancyGridMap2D occupancyGrid(const MapPoints& points,
                                   const std::vector<std::vector<Eigen::Isometry3d>>& ways,
                                   const OccupancyOptions& options, const io::Trajectory& sensor) {
-    if (points.empty()) throw Error("the map has no points to make a grid of");
+    if (points.empty()) throw Error("the map has no points for a grid");
     Marks marks(extentOf(points, ways, options.halfWidth_m), options.resolution_m);
     // Not finer than two cells of the grid: memory stays within a few times that of the grid.
     const GroundSurface ground(points, std::max(kGroundCell_m, 2 * options.resolution_m));
@@ -281,7 +281,7 @@ void saveMapServer(const COccupancyGridMap2D& grid, const std::string& path) {
     const std::string image = imageBeside(path);
     std::error_code ignored;
     if (fs::is_directory(image, ignored))
-        throw Error("cannot write '" + image + "': there is a folder of that name");
+        throw Error("cannot write '" + image + "': a folder has this name");
     // One within the other: both are whole under their temporary names before either is renamed.
     io::replaceFile(image, [&](const std::string& temporary) {
         if (!writeImage(grid, temporary)) return false;

@@ -17,7 +17,7 @@ namespace delio::map {
 namespace {
 using Poses = std::vector<Eigen::Isometry3d>;
 
-/** Of three.js's examples: what turns the view, and lines wider than a pixel. */
+/** Examples of three.js that are embedded: orbit controls and wide lines. */
 constexpr const char* kExamples[] = {"controls/OrbitControls.js", "lines/LineSegmentsGeometry.js",
                                      "lines/LineMaterial.js", "lines/LineSegments2.js"};
 
@@ -27,10 +27,11 @@ std::string readScript(const std::filesystem::path& file, const std::string& pag
     read << in.rdbuf();
     std::string text = read.str();
     if (text.empty())
-        throw Error("cannot write '" + page + "': a part of three.js, which draws it, is not at '" +
-                    file.string() + "'; install Debian's libjs-three");
+        throw Error("cannot write '" + page + "': three.js is missing at '" + file.string() +
+                    "'; install the package libjs-three");
     if (text.find("</script") != std::string::npos || text.find("<!--") != std::string::npos)
-        throw Error("cannot write '" + page + "': '" + file.string() + "' cannot stand in a page");
+        throw Error("cannot write '" + page + "': '" + file.string() +
+                    "' cannot be embedded in a page");
     return text + '\n';
 }
 
@@ -42,7 +43,7 @@ std::string readThreeJs(const std::string& file, const std::string& page) {
     return text;
 }
 
-/** A row of numbers; `null` where what they say is not known. */
+/** JSON array of numbers; `null` for unknown values. */
 void writeRange(const char* name, const ValueRange& range, bool known, std::ostream& out) {
     out << '"' << name << "\":";
     if (known)
@@ -86,7 +87,7 @@ void writeColours(std::ostream& out) {
     out << '}';
 }
 
-/** Where values of the points lie: all of them, or all but the outliers. */
+/** Range of the values: of all points, or without outliers. */
 template <typename Value>
 ValueRange rangeOf(const MapPoints& points, bool robust, const Value& value) {
     std::vector<float> values;
@@ -205,7 +206,7 @@ void savePage(const PageContent& content, const std::string& path, const std::st
 
     const std::string& page = pageTexts().at("page.html");
     io::replaceTextFile(path, [&](std::ostream& out) {
-        // The page as it is, and what each {{name}} in it stands for.
+        // Template of the page, and the replacement of each {{name}}.
         for (std::size_t at = 0; at < page.size();) {
             const std::size_t begin = std::min(page.find("{{", at), page.size());
             out.write(&page[at], static_cast<std::streamsize>(begin - at));

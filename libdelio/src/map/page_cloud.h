@@ -10,7 +10,7 @@
 #include "map/ground.h"
 
 namespace delio::map {
-/** The values that the lowest and the highest stored number stand for. */
+/** Values of the lowest and the highest stored number. */
 struct PageScales {
     ValueRange intensity, time_s;
 };

@@ -7,7 +7,7 @@
 
 namespace delio::map {
 namespace {
-/** As PCL does: 0x00rrggbb in the bytes of a float. */
+/** PCL's packed colour: 0x00rrggbb in the bytes of a float. */
 void packColour(const mrpt::img::TColor& colour, char* to) {
     const std::uint32_t rgb =
         std::uint32_t{colour.R} << 16 | std::uint32_t{colour.G} << 8 | colour.B;
@@ -38,11 +38,11 @@ MapPoints loadPcd(const std::string& path) {
     const auto header = io::readPcdHeader(file);
     if (header.data == "binary_compressed")
         file.refuse(
-            "its data is compressed; write it once more as ascii or binary "
-            "(pcl_convert_pcd_ascii_binary IN.pcd OUT.pcd 1)");
+            "compressed data is not supported here; convert it with: pcl_convert_pcd_ascii_binary "
+            "IN.pcd OUT.pcd 1");
     if (header.data != "ascii" && header.data != "binary")
-        file.refuse("its data is '" + header.data + "'");
-    if (!header.points) file.refuse("it does not say how many points it has");
+        file.refuse("unsupported DATA '" + header.data + "'");
+    if (!header.points) file.refuse("the number of points is missing");
     return file.points(io::columnsOf(header, file), *header.points, header.data == "ascii");
 }
 }  // namespace delio::map

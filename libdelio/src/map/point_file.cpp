@@ -161,7 +161,7 @@ MapPoints PointFile::points(const std::vector<Column>& columns, std::size_t coun
             refuse("its points have no '" + std::string(field.ply) + "'");
     }
     const std::size_t stride = io::strideOf(columns);
-    // A header may promise more than there is: what is reserved is what the file has room for.
+    // A header may claim too much: reserve at most what the file can hold.
     const std::size_t least = ascii ? 2 * columns.size() - 1 : stride;
     MapPoints points;
     points.reserve(std::min(count, (bytesLeft() + 1) / least));

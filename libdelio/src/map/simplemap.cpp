@@ -33,7 +33,7 @@ void loadPoints(mrpt::obs::CObservation& observation, std::size_t keyframe,
     }
 }
 
-/** Of a scan that is no cloud: of a depth camera, or a 2D one. */
+/** Points of a scan that is not a cloud, such as a depth camera's or a 2D one. */
 mrpt::maps::CSimplePointsMap pointsOf(const mrpt::obs::CObservation& observation,
                                       const CPose3D& pose) {
     mrpt::maps::CSimplePointsMap points;
@@ -42,7 +42,7 @@ mrpt::maps::CSimplePointsMap pointsOf(const mrpt::obs::CObservation& observation
         points.insertObservation(observation, pose);
     } catch (const std::exception&) {
         throw Error("an observation of the simplemap, '" + observation.sensorLabel + "' (" +
-                    observation.GetRuntimeClass()->className + "), cannot be understood");
+                    observation.GetRuntimeClass()->className + ") is invalid");
     }
     return points;
 }
@@ -56,7 +56,8 @@ CSimpleMap loadSimplemap(const std::string& path) {
         if (!keyframe.pose || !keyframe.sf)
             throw Error("'" + path + "' has a keyframe without a pose or without observations");
         for (const auto& observation : *keyframe.sf) {
-            if (!observation) throw Error("'" + path + "' has a keyframe of no known observation");
+            if (!observation)
+                throw Error("'" + path + "' has a keyframe with an unsupported observation");
             loadPoints(*observation, i, path);
         }
     }
@@ -81,7 +82,7 @@ CPointsMapXYZI pointsOf(const CSimpleMap& map) {
                 try {
                     scan->load();
                 } catch (const std::exception& e) {
-                    throw Error("the map's points are in another file, '" +
+                    throw Error("the map's points are in the file '" +
                                 scan->getExternalStorageFile() + "': " + plainMessage(e));
                 }
                 if (scan->pointcloud)

@@ -14,14 +14,15 @@ struct StoredScan {
     Eigen::Isometry3d sensorPose = Eigen::Isometry3d::Identity();
     mrpt::Clock::time_point stamp;
     bool withIntensity = false, isKeyframe = false;
-    /** x y z intensity each, sensor's frame: first the `still` ones, then those told to move. */
+    /** x y z intensity each, sensor's frame: first the `still` static points, then the dynamic
+     *  ones. */
     io::Spool::Place points;
     std::size_t still = 0;
-    /** What it saw, of all its points; without floats: it is not asked what it looked through. */
+    /** Range image of all its points; may be empty if free space is not needed. */
     io::Spool::Place view;
     int viewFirstRow = 0;
 
-    /** Of the points that were told to stand still. */
+    /** Number of static points. */
     io::Spool::Place stillPoints() const { return {points.offset, 4 * still}; }
 };
 

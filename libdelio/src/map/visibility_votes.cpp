@@ -28,14 +28,13 @@ void count(std::uint16_t& counter) {
 }  // namespace
 
 std::vector<OptionField> RemovalOptions::fields() const {
-    return {
-        {"enabled", &RemovalOptions::enabled,
-         "true: once the drive is over, what scans looked through is taken out of the map"},
-        {"voxel_size", &RemovalOptions::voxelSize_m,
-         "m; edge of the voxels that scans are asked of", 0.02, 10},
-        {"cell_deg", &RemovalOptions::cell_deg, "deg; directions are told apart by this", 0.1, 10},
-        {"spacing", &RemovalOptions::spacing_m,
-         "m; between the scans that are asked (standing, one in half a second)", 0, 100}};
+    return {{"enabled", &RemovalOptions::enabled,
+             "true: after the drive, remove map points that other scans saw through"},
+            {"voxel_size", &RemovalOptions::voxelSize_m, "m; voxel size of the removal", 0.02, 10},
+            {"cell_deg", &RemovalOptions::cell_deg, "deg; angular resolution of the range images",
+             0.1, 10},
+            {"spacing", &RemovalOptions::spacing_m,
+             "m; distance between the scans that vote (while standing: one per 0.5 s)", 0, 100}};
 }
 
 std::size_t VisibilityVotes::Block::rankOf(unsigned number) const {
@@ -91,7 +90,7 @@ Eigen::Vector3f VisibilityVotes::pointOf(const Voxel& voxel, const Cell& cell) c
 
 void VisibilityVotes::look(const odometry::RangeImage& view, const Eigen::Isometry3d& sensorInWorld,
                            float reach_m) {
-    // Farther away small things stand between two rings.
+    // Farther away small objects lie between two rings.
     constexpr float kGap_m = 0.7F, kNearest_m = 2;
     const float farthest_m = std::min(reach_m, kGap_m / view.ringSpacing());
     const Eigen::Isometry3f toSensor = sensorInWorld.inverse().cast<float>();
@@ -123,8 +122,7 @@ const VisibilityVotes::Cell* VisibilityVotes::at(const Eigen::Vector3d& point) c
     return find((point.array() / options_.voxelSize_m).floor().cast<int>());
 }
 
-/** The lowest parts of what moves stand beside and below the rest; what they stand on lies below.
- */
+/** The lowest parts of dynamic objects are next to and below the rest, above the ground. */
 bool VisibilityVotes::isSurrounded(const Voxel& voxel) const {
     constexpr int kBeside = 2, kAbove = 3, kLeast = 4;
     int dynamic = 0, all = 0;

@@ -41,8 +41,8 @@ class ByteWriter {
     std::vector<std::uint8_t> bytes_;
 };
 
-/** Takes them out again; throws std::out_of_range where there is less than asked for, for a number
- *  that is not finite, and for a pose that is none. */
+/** Reads values back; throws std::out_of_range at the end of the data, for numbers that are not
+ *  finite, and for invalid poses. */
 class ByteReader {
  public:
     explicit ByteReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}

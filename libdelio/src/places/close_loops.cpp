@@ -13,7 +13,7 @@
 
 namespace delio::places {
 namespace {
-/** What a drift adds to the covariance of a step: it goes with the path, not with the scans. */
+/** Covariance added by drift, which grows with the path, not with the number of scans. */
 Matrix6 driftOf(const graph::Edge& step, const LoopOptions& options) {
     constexpr double kPer_m = 100;
     const double share = step.increment.pose.translation().norm() / kPer_m,
@@ -210,7 +210,7 @@ void refuseInconsistent(std::vector<LoopCandidate>& candidates, const std::vecto
     const Consistency consistency(candidates, submaps, level, options);
     for (auto& loop : candidates)
         if (loop.accepted() && consistency.leadsTooFar(loop))
-            loop.closure.reason = "farther than the drive may have drifted";
+            loop.closure.reason = "farther away than the odometry can have drifted";
     std::vector<std::size_t> loops;
     for (std::size_t i = 0; i < candidates.size(); ++i)
         if (candidates[i].accepted()) loops.push_back(i);
@@ -222,9 +222,9 @@ void refuseInconsistent(std::vector<LoopCandidate>& candidates, const std::vecto
             return k != i && consistency.apart(loop, candidates[k]).path_m <= kNeighbours_m;
         };
         if (std::find(chosen.begin(), chosen.end(), i) == chosen.end())
-            loop.closure.reason = "contradicts other loops";
+            loop.closure.reason = "inconsistent with other loops";
         else if (std::none_of(chosen.begin(), chosen.end(), isNeighbour))
-            loop.closure.reason = "no neighbour says the same";
+            loop.closure.reason = "not confirmed by a neighbouring submap";
     }
 }
 }  // namespace delio::places

@@ -14,7 +14,7 @@
 
 namespace delio::places {
 /** Fraction of what stands in one submap that may be where the other saw bare ground. With 0.3
- *  benchmark_loops closes no wrong loop (share/doc/loops.md). */
+ *  benchmark_loops closes no wrong loop (share/doc/method/loops.md). */
 constexpr double kMaxFreeSpaceConflict = 0.3;
 
 /** Error of a registration of two submaps beside its noise: drift within a submap bends it. */
@@ -84,8 +84,8 @@ class FreeSpace {
     FreeSpace(const HeightImage& image, const Eigen::Matrix3Xf& points);
 
     /** Takes the cells in which the other cloud is filled from 1 to 4 m (a wall, a hedge, a trunk)
-     *  and which this one observed, and gives the fraction that this one saw as bare ground. 0 if
-     *  there are none. `pose`: other to this. */
+     *  and which this one observed, and gives the fraction that this one saw as bare ground. 0
+     *  without such cells. `pose`: other to this. */
     double conflict(const HeightImage& other, const Eigen::Isometry3d& pose) const;
 
  private:

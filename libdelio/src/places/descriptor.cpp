@@ -100,7 +100,7 @@ int indexOf(double metres) { return static_cast<int>(std::floor(metres / HeightI
 
 using Scores = Eigen::Matrix<unsigned, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/** Of all shifts by whole cells about (x0, y0): how many bits of both images meet. */
+/** Number of common bits of both images, for all shifts by whole cells about (x0, y0). */
 Scores correlated(const HeightImage& image, const Eigen::Matrix2Xd& cells,
                   const std::vector<std::uint8_t>& bands, const Eigen::Vector2d& expected,
                   Eigen::Index reach) {
@@ -280,9 +280,9 @@ std::vector<Shift> shiftsOf(const HeightImage& image, const HeightImage& other, 
 }
 
 namespace {
-/** Of a levelled cloud a normal a voxel that is flat, which says as much as it has points. (Normals
- *  about each point, from nearest neighbours, found no other loops, and took eight times the
- *  instructions.) */
+/** One normal per flat voxel of a levelled cloud, weighted by its number of points. (Normals of
+ *  each point from nearest neighbours found no other loops and took eight times the instructions.)
+ */
 paper::SurfaceNormals wallsOf(const Eigen::Matrix3Xf& points) {
     PlaneMapOptions options;
     options.voxel_size = 1;

@@ -23,9 +23,9 @@ class WallOrientations {
  public:
     static constexpr Eigen::Index kBins = 720;  //!< of half a turn
 
-    /** Of the normals of a levelled cloud. */
+    /** Descriptor of the normals of a levelled cloud. */
     explicit WallOrientations(const paper::SurfaceNormals& surfaces);
-    /** Of what weights() of another one gave. */
+    /** From another one's weights(). */
     static WallOrientations ofWeights(Eigen::VectorXd weights) {
         WallOrientations walls;
         walls.weights_ = std::move(weights);
@@ -56,7 +56,7 @@ class HeightImage {
 
     /** `points`: metres, z up. */
     explicit HeightImage(const Eigen::Matrix3Xf& points);
-    /** Of what cells(), bands(), grounds() and heights() of another one gave. */
+    /** From another one's cells(), bands(), grounds() and heights(). */
     HeightImage(const Eigen::Matrix2Xd& cells, std::vector<std::uint8_t> bands,
                 Eigen::Matrix2Xd grounds, std::vector<double> heights);
 
@@ -72,7 +72,8 @@ class HeightImage {
     const std::vector<double>& heights() const { return heights_; }
 
  private:
-    /** What cells() gives, in halves of a cell: a long drive has thousands of images. */
+    /** Values of cells(), in halves of a cell, to save memory: a long drive has thousands of
+     *  images. */
     Eigen::Matrix<std::int16_t, 2, Eigen::Dynamic> halves_;
     Eigen::Matrix2Xd grounds_;
     std::vector<std::uint8_t> bands_;

@@ -14,7 +14,7 @@ namespace {
 std::vector<Eigen::Isometry3d> posesIn(const std::vector<Eigen::Isometry3d>& odometry,
                                        const std::vector<MapFix>& fixes) {
     const auto first = std::find_if(fixes.begin(), fixes.end(), isAnchor);
-    if (first == fixes.end()) throw Error("no scan was found in the map");
+    if (first == fixes.end()) throw Error("no scan could be localised in the map");
     auto anchor = static_cast<std::size_t>(first - fixes.begin());
     std::vector<Eigen::Isometry3d> poses;
     for (std::size_t i = 0; i < odometry.size(); ++i) {
@@ -80,7 +80,7 @@ class Both {
     places::DenseSubmapCache grounds_{6};
 };
 
-/** Where localisation puts the two submaps, registered and verified. */
+/** Registers and verifies two submaps from their localised poses. */
 void compare(Both& both, LoopCandidate& pair, const places::ClosureOptions& options) {
     constexpr double kMoved_m = 1;  // localisation is not off by that
     const auto from = both.ground(pair.from), to = both.ground(pair.to);
@@ -89,12 +89,12 @@ void compare(Both& both, LoopCandidate& pair, const places::ClosureOptions& opti
     pair.closure = closureOf(fromEnd, toEnd, pair.expected, options);
     const auto& level = pair.closure.level;
     if (pair.accepted() && pair.moved_m() > kMoved_m)
-        pair.closure.reason = "farther than localisation may be off";
+        pair.closure.reason = "farther away than the localisation can be wrong";
     if (pair.accepted() &&
         std::max(from->free.conflict(both.descriptor(pair.to).image, level),
                  to->free.conflict(both.descriptor(pair.from).image, level.inverse())) >
             places::kMaxFreeSpaceConflict)
-        pair.closure.reason = "walls of one are free space of the other";
+        pair.closure.reason = "free-space conflict";
     if (pair.accepted()) confirm(pair.closure, fromEnd, toEnd, options);
 }
 

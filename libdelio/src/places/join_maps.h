@@ -7,9 +7,9 @@
 #include "delio/places/stored_map.h"
 
 namespace delio {
-/** A drive's pose graph in a map's frame: `graph` (a node a scan) with another edge, from node 0,
- * for each scan that was registered to the map. Those nodes lie where they were measured; the
- * odometry puts the others. Error if no scan was found in the map. */
+/** A drive's pose graph in a map's frame: `graph` (one node per scan) with an additional edge from
+ *  node 0 for each scan registered to the map. These nodes are at their measured poses; the
+ *  odometry gives the others. Throws Error if no scan was localised in the map. */
 graph::PoseGraph anchored(const graph::PoseGraph& graph, const std::vector<MapFix>& fixes);
 
 /** Two maps that were joined. */

@@ -44,7 +44,8 @@ void SubmapStore::add(const Eigen::Matrix3Xf& points) {
 }
 
 const std::vector<Shift>& SubmapStore::repetitions(std::size_t submap, double reach) {
-    constexpr double kApart_m = 4;  // nearer, walls along the way look alike, and are one place
+    constexpr double kApart_m =
+        4;  // nearer, walls along the road are similar, and count as one place
     constexpr std::size_t kMost = 6;
     repetitions_.resize(descriptors_.size());
     auto& shifts = repetitions_[submap];
@@ -71,7 +72,7 @@ namespace {
 constexpr double kDeg = M_PI / 180;
 
 /** Fraction of a submap's height image that may look the same elsewhere within the search radius.
- *  With 0.55 benchmark_loops closes no wrong loop (share/doc/loops.md). */
+ *  With 0.55 benchmark_loops closes no wrong loop (share/doc/method/loops.md). */
 constexpr double kMaxSelfSimilarity = 0.55;
 
 /** Rotations first, then the shift under each; the best shifts, of whatever rotation. */
@@ -107,15 +108,14 @@ bool differ(const Closure& a, const Closure& b) {
 }  // namespace
 
 std::vector<OptionField> LoopOptions::fields() const {
-    return {{"min_path", &LoopOptions::min_path, "m; what is seen again after less path is no loop",
-             1, 1e6},
+    return {{"min_path", &LoopOptions::min_path, "m; minimum path length of a loop", 1, 1e6},
             {"drift", &LoopOptions::drift,
-             "share of the path by which the odometry is off along each level axis (standard "
-             "deviation)",
+             "assumed odometry drift along each horizontal axis, as a fraction of the path "
+             "(standard deviation)",
              1e-6, 1},
             {"rival", &LoopOptions::rival,
-             "share of the best place's overlap that another place may have", 0, 1},
-            {"reach", &LoopOptions::reach, "m; no place is looked for farther off", 1, 1000}};
+             "maximum overlap of the second-best place, as a fraction of the best one's", 0, 1},
+            {"reach", &LoopOptions::reach, "m; maximum search distance", 1, 1000}};
 }
 
 Drift driftOf(const PathSegment& driven, const LoopOptions& options) {
@@ -194,7 +194,7 @@ void LoopSearch::search(LoopCandidate& pair) {
     constexpr double kLeast_rad = 5 * kDeg;
     const PathSegment driven = between(submaps_[pair.from].driven, submaps_[pair.to].driven);
     const double turn_rad = kLeast_rad + driftOf(driven, options_).turn_rad;
-    pair.closure.reason = "nothing alike";
+    pair.closure.reason = "no similar place";
     pair.closure.level = pair.expected;
     double rival = 0;  // overlap of the best one elsewhere
     const auto shifts = shiftsOf(store_->descriptor(pair.from), store_->descriptor(pair.to), pair,
@@ -216,12 +216,12 @@ void LoopSearch::search(LoopCandidate& pair) {
         pair.imageOverlap = shift.overlap;
     }
     if (pair.accepted() && freeSpaceConflict(pair) > kMaxFreeSpaceConflict)
-        pair.closure.reason = "walls of one are free space of the other";
+        pair.closure.reason = "free-space conflict";
     if (pair.accepted() && (repeats(pair.from, pair.reach_m) || repeats(pair.to, pair.reach_m)))
-        pair.closure.reason = "the place repeats itself";
+        pair.closure.reason = "ambiguous: the place is self-similar";
     if (pair.accepted()) confirm(pair.closure, from, to, closure_);
     if (pair.accepted() && rival > options_.rival * pair.closure.overlap)
-        pair.closure.reason = "two places look alike";
+        pair.closure.reason = "ambiguous: a second place is as similar";
 }
 
 double LoopSearch::freeSpaceConflict(const LoopCandidate& pair) const {

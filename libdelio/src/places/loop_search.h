@@ -11,7 +11,7 @@ namespace delio::places {
 class SubmapStore;
 
 /** Height drift as a fraction of the path (standard deviation): twice LoopOptions::drift, as in the
- *  drives of share/doc/loops.md. */
+ *  drives of share/doc/method/loops.md. */
 constexpr double kDriftUp = 0.01;
 /** Rotation drift after 100 m of path, degrees (standard deviation about any axis); it grows with
  *  the square root of the path. */

@@ -52,8 +52,8 @@ void LoadedMap::follow(const Eigen::Vector3d& place) {
 namespace {
 constexpr unsigned kConfirmed = 3;  // scans that have to agree before a place counts as found
 constexpr unsigned kPatience = 5;   // scans that may disagree before the map counts as left
-/** Fraction of the standing points of a scan that have to stand in the map: half, as other traffic
- * and new parked cars hide the rest. */
+/** Minimum inlier ratio of a scan's points above the ground: half, because other traffic and parked
+ *  cars may hide the rest. */
 constexpr double kMinInlierRatio = 0.5;
 /** Metres of path after which a vehicle outside the map is searched for again: less shows little
  * that is new. */
@@ -79,10 +79,10 @@ double sigma_m(const Increment& pose) {
 
 std::vector<OptionField> LocalisationOptions::fields() const {
     using Me = LocalisationOptions;
-    return {{"drift", &Me::drift,
-             "share of the path by which the odometry may be off outside the map (standard "
-             "deviation)",
-             1e-6, 1}};
+    return {
+        {"drift", &Me::drift,
+         "assumed odometry drift outside the map, as a fraction of the path (standard deviation)",
+         1e-6, 1}};
 }
 
 MapTracker::MapTracker(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& search,
@@ -113,11 +113,11 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
                                            const Eigen::Matrix3d& level, const Increment& predicted,
                                            MapFix& fix) {
     constexpr double kMeets_m = 0.3, kLeast_m = 0.5, kMost_m = 2;
-    // Posts in a row look alike, but not as much as the place.
+    // Rows of posts are similar to each other, but less than to the right place.
     const double usual = (now_.where == Whereabouts::kInMap ? 0.8 : 0.85) * now_.usualInlierRatio;
     local_.follow(predicted.pose.translation());
     const auto& map = local_.map();
-    fix.reason = points.cols() == 0 ? "no points" : "the map has nothing here";
+    fix.reason = points.cols() == 0 ? "no points" : "no map points here";
     if (!map.isUsable() || points.cols() == 0) return {};
     const odometry::ScanView view = viewOf(points);
     const auto placed = map.place(view.coarse, predicted.pose,
@@ -129,10 +129,10 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
     const auto standing = places::aboveGround((level * view.thinned).cast<float>());
     if (standing.cols() > 0)
         fix.inlierRatio = map.shareAt(standing, found.pose() * turned(level.transpose()), kMeets_m);
-    fix.reason = "does not look like the map";
+    fix.reason = "inlier ratio too low";
     if (!found.valid || fix.inlierRatio < std::max(kMinInlierRatio, usual)) return {};
     fix.reason.clear();
-    // Along what the map does not show the odometry goes on, and so does what it is off.
+    // Along axes that the map does not constrain, the odometry and its error continue.
     const Eigen::Matrix3d R = predicted.pose.linear();
     const Eigen::Matrix3d drifted = R * predicted.covariance.topLeftCorner<3, 3>() * R.transpose();
     const auto& unseen = found.translation.unobservedAxes;
@@ -142,8 +142,8 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
     return incrementOf(found.rotation, found.translation);
 }
 
-/** Of a scan that was compared with the map. Until the next ones have confirmed a place, what was
- *  believed before goes on beside it. */
+/** Result for a scan that was compared with the map. Until the next scans confirm a place, the
+ *  previous hypothesis is kept as well. */
 void MapTracker::judge(const std::optional<Increment>& found, double inlierRatio) {
     constexpr double kForget = 0.1;
     const bool isInMap = now_.where == Whereabouts::kInMap;
@@ -193,7 +193,7 @@ bool MapTracker::isTimeToSearch() const {
            (now_.scans <= kAtFirst || now_.unsearched_m >= spacing);
 }
 
-/** What was seen last, in the latest scan's frame, levelled. */
+/** Latest points, in the latest scan's frame, levelled. */
 Eigen::Matrix3Xf MapTracker::recentCloud(const Eigen::Matrix3d& level) const {
     const Eigen::Isometry3d here = now_.odometry * turned(level.transpose());
     Eigen::Index count = 0;
@@ -223,7 +223,7 @@ std::optional<Increment> MapTracker::search(const Eigen::Matrix3d& level, MapFix
     fix.reason = found.reason;
     if (!found.reason.empty()) return {};
     Increment there{found.pose * turned(level), Matrix6::Zero()};
-    fix.reason = "found farther off than it may be";
+    fix.reason = "found farther away than possible";
     if (known && (there.pose.translation() - known->pose.translation()).norm() > reach) return {};
     there.covariance.diagonal() << Eigen::Vector3d::Constant(kFound_m * kFound_m),
         Eigen::Vector3d::Constant(kFound_rad * kFound_rad);
@@ -234,7 +234,7 @@ std::optional<Increment> MapTracker::search(const Eigen::Matrix3d& level, MapFix
 MapFix MapTracker::add(const Increment& increment, const Eigen::Matrix3Xf& points,
                        const Eigen::Vector3d& up) {
     MapFix fix;
-    fix.reason = "not searched for at this scan";
+    fix.reason = "no search at this scan";
     const Eigen::Matrix3d level = odometry::turnedUp(up).cast<double>();
     const double moved_m = increment.pose.translation().norm();
     now_.odometry = now_.odometry * increment.pose;

@@ -53,8 +53,8 @@ class MapTracker {
     /** The vehicle's pose in the map's frame at the next scan, if it is known to some metres. */
     void expect(const Eigen::Isometry3d& vehicle);
 
-    /** The next scan: the vehicle's increment since the one before; what stands still of it, in the
-     *  vehicle's frame; the unit vector that points up there. */
+    /** Adds the next scan: the vehicle's increment, its static points in the vehicle's frame, and
+     *  the unit vector that points up there. */
     MapFix add(const Increment& increment, const Eigen::Matrix3Xf& points,
                const Eigen::Vector3d& up);
 
@@ -76,7 +76,7 @@ class MapTracker {
     struct State {
         Whereabouts where = Whereabouts::kUnknown;
         Belief belief;
-        Belief otherwise;             //!< what is believed if the next scans do not confirm that
+        Belief otherwise;             //!< hypothesis used if the next scans do not confirm this one
         double usualInlierRatio = 0;  //!< running mean of MapFix::inlierRatio; 0: not known
         unsigned confirmed = 0;       //!< scans in a row that agree with the map
         unsigned missed = 0;          //!< and that do not

@@ -65,7 +65,7 @@ class PlaceIndex::Overlaps {
                 layers_[band * area_ + i] = (place.bands[i] >> band) & 1;
     }
 
-    /** What is looked at from now on. */
+    /** Current search window. */
     void take(const Turned& turned) {
         seen_.clear();
         for (const auto& cell : turned.cells) {

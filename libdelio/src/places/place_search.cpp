@@ -12,16 +12,16 @@ using places::Shift;
 namespace {
 constexpr double kDeg = M_PI / 180;
 
-/** As places::kMaxFreeSpaceConflict, but stricter: nothing else is known of where the cloud was
- *  taken. */
+/** Like places::kMaxFreeSpaceConflict, but stricter, because there is no other information about
+ *  the cloud's position. */
 constexpr double kMaxFreeSpaceConflict = 0.2;
 
 Eigen::Isometry3d poseOf(const Shift& shift) {
     return isometry(rotationExp(shift.yaw * Eigen::Vector3d::UnitZ()), shift.translation);
 }
 
-/** In fine, about a match: rotations first, then the shift under each. The best, and others
- *  beside it: what stands in rows looks alike from one to the next. */
+/** Fine search around a match: rotations first, then the translation for each. Returns the best and
+ *  its neighbours, because objects in rows are similar to each other. */
 std::vector<Shift> refined(const places::Descriptor& place, const places::Descriptor& cloud,
                            const Shift& seen) {
     constexpr double kTurn_rad = 7 * kDeg, kReach_m = 8, kApart_m = 2;
@@ -48,9 +48,9 @@ bool isElsewhere(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 std::vector<OptionField> PlaceSearchOptions::fields() const {
     using Me = PlaceSearchOptions;
     return {{"min_overlap", &Me::min_overlap,
-             "share of what stands in the scans that has to stand in the map", 0, 1},
-            {"rival", &Me::rival, "share of the best place's overlap that another place may have",
-             0, 1}};
+             "minimum fraction of the scans' structure above the ground that is in the map", 0, 1},
+            {"rival", &Me::rival,
+             "maximum overlap of the second-best place, as a fraction of the best one's", 0, 1}};
 }
 
 PlaceSearch::PlaceSearch(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& options)
@@ -116,7 +116,7 @@ FoundPlace PlaceSearch::registered(const Hypothesis& hypothesis, const places::D
     if (found.reason.empty() && found.overlap < options_.min_overlap)
         found.reason = "too little overlap";
     if (found.reason.empty() && found.conflict > kMaxFreeSpaceConflict)
-        found.reason = "walls of one are free space of the other";
+        found.reason = "free-space conflict";
     return found;
 }
 
@@ -135,7 +135,7 @@ FoundPlace PlaceSearch::verified(const std::vector<places::PlaceMatch>& matches,
         places[i] = registered(found[i], *grounds[i], seen, ground);
     });
     FoundPlace best;
-    best.reason = "nothing alike";
+    best.reason = "no similar place";
     for (const auto& place : places) {
         const bool isFound = place.reason.empty(), hasBest = best.reason.empty();
         if (isFound != hasBest ? isFound : place.overlap > best.overlap) best = place;
@@ -144,7 +144,8 @@ FoundPlace PlaceSearch::verified(const std::vector<places::PlaceMatch>& matches,
     for (const auto& place : places)
         if (place.reason.empty() && isElsewhere(place.pose, best.pose))
             best.rival = std::max(best.rival, place.overlap);
-    if (best.rival > options_.rival * best.overlap) best.reason = "two places look alike";
+    if (best.rival > options_.rival * best.overlap)
+        best.reason = "ambiguous: a second place is as similar";
     return best;
 }
 }  // namespace delio

@@ -9,7 +9,7 @@
 #include "places/place_index.h"
 
 namespace delio {
-/** Where a cloud was found in the map, or why it was not. */
+/** Result of a place search: pose in the map, or the reason of the failure. */
 struct FoundPlace {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< the cloud's frame to the map's
     double overlap = 0;      //!< RegistrableSubmap::support() of the cloud by the map

@@ -144,7 +144,7 @@ class StoredMap::Writer {
         std::vector<std::uint8_t> packed(size);
         if (compress2(packed.data(), &size, plain.data(), plain.size(), Z_DEFAULT_COMPRESSION) !=
             Z_OK)
-            throw Error("a part of a stored map cannot be packed");
+            throw Error("cannot compress a part of the stored map");
         const Part part{end_, size, plain.size(), checksumOf(packed.data(), size)};
         out_.write(reinterpret_cast<const char*>(packed.data()),
                    static_cast<std::streamsize>(size));
@@ -219,19 +219,20 @@ StoredMap::StoredMap(const std::string& path) : path_(path) {
         const bool whole = fstat(file_, &status) == 0 &&
                            pread(file_, head.data(), kHead, 0) == static_cast<ssize_t>(kHead);
         if (!whole || !std::equal(kMagic.begin(), kMagic.end(), head.begin()))
-            throw Error("'" + path + "' is no stored map");
+            throw Error("'" + path + "' is not a stored map");
         size_ = static_cast<std::uint64_t>(status.st_size);
         ByteReader reader(head);
         for (std::size_t i = 0; i < kMagic.size(); ++i) reader.get<char>();
         const auto version = reader.get<std::uint32_t>();
         if (version != kVersion)
-            throw Error("'" + path + "' is a stored map of version " + std::to_string(version) +
-                        "; this program reads version " + std::to_string(kVersion));
+            throw Error("'" + path + "' is a stored map with format version " +
+                        std::to_string(version) + "; this program reads version " +
+                        std::to_string(kVersion));
         const Part index = Writer::get(reader);
         const auto size = reader.get<std::uint64_t>();
         if (reader.get<std::uint32_t>() != checksumOf(head.data(), kHead - 4))
-            damaged("its head is not what was written");
-        if (size > size_) damaged("it is cut off");
+            damaged("wrong checksum of the header");
+        if (size > size_) damaged("the file is cut off");
         readIndex(index);
     } catch (...) {
         close(file_);
@@ -246,22 +247,22 @@ void StoredMap::damaged(const std::string& how) const {
 }
 
 std::vector<std::uint8_t> StoredMap::read(const Part& part) const {
-    if (part.offset > size_ || part.bytes > size_ - part.offset) damaged("it is cut off");
+    if (part.offset > size_ || part.bytes > size_ - part.offset) damaged("the file is cut off");
     if (part.unpacked > std::min(io::kMostBytes, 2000 * part.bytes + 100))
         damaged("a part is too large");
     std::vector<std::uint8_t> packed(part.bytes), plain(part.unpacked);
     for (std::size_t done = 0; done < packed.size();) {
         const auto count = pread(file_, packed.data() + done, packed.size() - done,
                                  static_cast<off_t>(part.offset + done));
-        if (count <= 0) damaged("it cannot be read");
+        if (count <= 0) damaged("the file cannot be read");
         done += static_cast<std::size_t>(count);
     }
     if (checksumOf(packed.data(), packed.size()) != part.checksum)
-        damaged("a part is not what was written");
+        damaged("wrong checksum of a part");
     uLongf size = plain.size();
     if (uncompress(plain.data(), &size, packed.data(), packed.size()) != Z_OK ||
         size != plain.size())
-        damaged("a part cannot be unpacked");
+        damaged("a part cannot be decompressed");
     return plain;
 }
 
@@ -288,7 +289,7 @@ void StoredMap::readIndex(const Part& index) {
             clouds_.push_back(Writer::get(reader));
         }
     } catch (const std::exception&) {
-        damaged("its index cannot be understood");
+        damaged("invalid index");
     }
     level_ = places::levelFrames(submaps_, graph_.poses());
 }
@@ -304,7 +305,7 @@ places::Descriptor StoredMap::descriptor(std::size_t submap) const {
     try {
         return getSketch(reader);
     } catch (const std::out_of_range&) {
-        damaged("a descriptor cannot be understood");
+        damaged("invalid descriptor");
     }
 }
 
@@ -314,7 +315,7 @@ Eigen::Matrix3Xf StoredMap::points(std::size_t submap) const {
     try {
         return getPoints(reader);
     } catch (const std::out_of_range&) {
-        damaged("points cannot be understood");
+        damaged("invalid points");
     }
 }
 

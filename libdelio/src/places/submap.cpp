@@ -9,7 +9,7 @@
 
 namespace delio::places {
 namespace {
-/** Who stands still sees nothing more, drives no path and has no end of scans. */
+/** A standing vehicle adds no path and unlimited scans, so its scans are ignored. */
 bool isMuch(const Eigen::Isometry3d& moved) {
     constexpr double kMuch_m = 0.5, kMuch_rad = 0.2;
     return moved.translation().norm() >= kMuch_m || angleOf(moved.linear()) >= kMuch_rad;
@@ -17,12 +17,12 @@ bool isMuch(const Eigen::Isometry3d& moved) {
 }  // namespace
 
 std::vector<OptionField> SubmapOptions::fields() const {
-    return {{"path", &SubmapOptions::path, "m; a submap ends after so much path", 1, 1e4},
+    return {{"path", &SubmapOptions::path, "m; path length after which a submap ends", 1, 1e4},
             {"straight", &SubmapOptions::straight,
-             "m; or so far from where it began, whichever comes first", 1, 1e4},
-            {"spacing", &SubmapOptions::spacing, "m; its points are so far apart", 0.05, 2},
-            {"radius", &SubmapOptions::radius, "m; what lies farther from the sensor is left out",
-             5, 1e4}};
+             "m; distance from its start after which a submap ends", 1, 1e4},
+            {"spacing", &SubmapOptions::spacing, "m; distance between points of a submap", 0.05, 2},
+            {"radius", &SubmapOptions::radius, "m; points farther from the sensor are ignored", 5,
+             1e4}};
 }
 
 void PathSegment::add(const Increment& increment, double moved_m) {

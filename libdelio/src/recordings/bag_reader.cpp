@@ -25,7 +25,7 @@ bool endsIn(const std::string& text, const std::string& end) {
            text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/** What the bag says of the sensor of `topic`; empty: it does not. */
+/** Metadata of the sensor of `topic` in the bag; may be empty. */
 std::string recordedDescription(const std::string& topic, const OpenSource& open) {
     const auto bag = open();
     const Topic* found = nullptr;
@@ -44,42 +44,41 @@ std::string recordedDescription(const std::string& topic, const OpenSource& open
         return "";  // cut off before it came
     }
 }
-/** The topic that is asked for, or the only one with scans. Throws Error, which does not name the
- *  file, where there is none, there are several, or that one has no scans; it lists what there
- *  is. */
+/** The requested topic, or the only one with scans. Throws an Error that lists the topics (without
+ *  the file's name) if there is no such topic, there are several, or it has no scans. */
 Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
-    if (topics.empty()) throw Error("holds no messages");
+    if (topics.empty()) throw Error("contains no messages");
     std::vector<Topic> scans;
     for (const Topic& topic : topics)
         if (scanTypeOf(topic) != ScanType::kNone) scans.push_back(topic);
-    if (scans.empty()) throw Error("holds no topic with scans, but " + listed(topics));
+    if (scans.empty()) throw Error("contains no topic with LiDAR scans, only " + listed(topics));
     if (asked.empty() && scans.size() > 1)
-        throw Error("holds scans of several topics: choose one with --sensor-label: " +
+        throw Error("contains several topics with scans; choose one with --sensor-label: " +
                     listed(scans));
     if (asked.empty()) return scans.front();
     const auto found = std::find_if(scans.begin(), scans.end(),
                                     [&](const Topic& topic) { return topic.name == asked; });
     if (found != scans.end()) return *found;
-    std::vector<Topic> ending;  // in what was asked for, as a whole name: /lidar/points in points
+    std::vector<Topic> ending;  // `points` matches /lidar/points, as a whole name
     for (const Topic& topic : scans)
         if (endsIn(topic.name, "/" + asked)) ending.push_back(topic);
     if (ending.size() > 1)
-        throw Error("holds scans of several topics '" + asked + "': choose one of " +
+        throw Error("contains several topics that match '" + asked + "'; choose one of " +
                     listed(ending));
     if (ending.empty())
-        throw Error("holds no scans of the topic '" + asked + "', but of " + listed(scans));
+        throw Error("contains no scans of the topic '" + asked + "', only of " + listed(scans));
     return ending.front();
 }
 
-/** The json of the Ouster whose packets are in `topic`: the file `source.sensorFile`, what the
- *  topic .../metadata of the bag says whose name has the most in common with it, or the .json
- *  beside the bag. Throws Error where there is none of them. */
+/** The json of the Ouster whose packets are in `topic`: the file `source.sensorFile`, the bag's
+ *  topic .../metadata with the longest common prefix, or the .json next to the bag. Throws Error if
+ *  none exists. */
 SideFile ousterDescription(const ScanSource& source, const std::string& topic,
                            const OpenSource& open) {
     if (!source.sensorFile.empty()) {
         SideFile file = sideFile(source.sensorFile);
         if (file.text.empty())
-            throw Error("needs the sensor's description, but '" + source.sensorFile +
+            throw Error("needs the sensor's metadata, but '" + source.sensorFile +
                         "' is missing or empty");
         return file;
     }
@@ -146,7 +145,7 @@ class BagReader : public ScanReader {
     }
 
  private:
-    /** At the first messages. A fault is told when its scan is read. */
+    /** Called for the first messages. A fault is reported when its scan is read. */
     void lookAhead(const OpenSource& open) {
         constexpr std::size_t kMessages = 8;  // some may be empty
         try {

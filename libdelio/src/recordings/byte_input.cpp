@@ -15,22 +15,22 @@ namespace delio::io {
 namespace {
 using Buffer = std::vector<std::uint8_t>;
 
-/** What one call of a library took and gave. */
+/** Bytes consumed and produced by one call of a decompression library. */
 struct Progress {
     std::size_t taken = 0, given = 0;
     bool ended = false;
 };
 
 [[noreturn]] void damaged(const std::string& compression) {
-    throw Error("is damaged: a chunk's " + compression + " data cannot be unpacked");
+    throw Error("is damaged: " + compression + " data of a chunk cannot be decompressed");
 }
 
 /** Calls `step(from, bytes, to, room)` until its frame ends. */
 template <typename Step>
 void unpackBy(const std::string& name, const Buffer& packed, std::uint64_t size, Buffer& out,
               const Step& step) {
-    // Memory grows with what comes out, at first by copies, then in place: large memory that is
-    // reserved takes none until it is written to.
+    // Memory grows with the decompressed data, at first by copies, then in place: large reserved
+    // memory costs nothing until it is written.
     constexpr std::uint64_t kFirst = 1 << 20, kCopied = 16 << 20;
     std::size_t taken = 0, given = 0;
     for (bool ended = false; !ended;) {
@@ -105,7 +105,7 @@ void unpackZstd(const Buffer& packed, std::uint64_t size, Buffer& out) {
 
 void unpack(const std::string& compression, const Buffer& packed, std::uint64_t size, Buffer& out) {
     if (size > kMostBytes)
-        throw Error("is damaged: a chunk of " + std::to_string(size) + " bytes is announced");
+        throw Error("is damaged: a chunk claims " + std::to_string(size) + " bytes");
     out.clear();
     if (compression == "bz2")
         unpackBz2(packed, size, out);
@@ -114,7 +114,7 @@ void unpack(const std::string& compression, const Buffer& packed, std::uint64_t 
     else if (compression == "zstd")
         unpackZstd(packed, size, out);
     else
-        throw Error("has a chunk of the unknown compression '" + compression + "'");
+        throw Error("uses the unsupported compression '" + compression + "'");
 }
 
 namespace {
@@ -131,7 +131,7 @@ void ByteInput::read(void* to, std::uint64_t bytes) {
 void ByteInput::check(std::uint64_t bytes) const {
     if (bytes > left()) tooShort();
     if (bytes > kMostBytes)
-        throw Error("is damaged: " + std::to_string(bytes) + " bytes in one piece are announced");
+        throw Error("is damaged: " + std::to_string(bytes) + " bytes are claimed for one block");
 }
 
 void ByteInput::read(std::vector<std::uint8_t>& to, std::uint64_t bytes) {
@@ -181,7 +181,7 @@ void FileInput::get(void* to, std::size_t bytes) {
 }
 
 void FileInput::pass(std::uint64_t bytes) {
-    // A seek drops what was read ahead: small steps are read.
+    // A seek discards the read-ahead buffer, so small steps are read instead.
     char scratch[4096];
     if (bytes <= sizeof(scratch))
         get(scratch, bytes);
@@ -191,7 +191,7 @@ void FileInput::pass(std::uint64_t bytes) {
 
 void FileInput::tooShort() const {
     throw Error("is cut off: at byte " + std::to_string(position()) +
-                " more is announced than its " + std::to_string(bytes_) + " bytes");
+                " more data is claimed than its " + std::to_string(bytes_) + " bytes");
 }
 
 Bytes MemoryInput::view(std::vector<std::uint8_t>&, std::uint64_t bytes) {
@@ -205,7 +205,7 @@ void MemoryInput::get(void* to, std::size_t bytes) {
 }
 
 void MemoryInput::tooShort() const {
-    throw Error("is damaged: in a chunk of " + std::to_string(bytes_.size()) +
-                " bytes more is announced at byte " + std::to_string(position()));
+    throw Error("is damaged: a chunk of " + std::to_string(bytes_.size()) +
+                " bytes claims more data at byte " + std::to_string(position()));
 }
 }  // namespace delio::io

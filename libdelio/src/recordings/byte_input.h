@@ -10,8 +10,8 @@
 #include "message_source.h"
 
 namespace delio::io {
-/** Bytes to be read from front to back. No length is believed: what is asked for beyond the end is
- *  an Error ("is cut off at byte N") before memory is taken for it. */
+/** Bytes to be read from front to back. No length is trusted: reading beyond the end is an Error
+ *  ("is cut off at byte N") before memory is allocated. */
 class ByteInput {
  public:
     ByteInput() = default;
@@ -94,9 +94,9 @@ class MemoryInput : public ByteInput {
 };
 
 /** Unpacks `packed`, which is a whole bz2 stream ("bz2"), LZ4 frame ("lz4") or zstd frame ("zstd"),
- *  into `out`. `size`: what comes out as the bag has it, at most kMostBytes; memory is taken as
- * bytes come out, not for what is announced. Throws Error for any other compression, damaged or cut
- * data, and where another number of bytes comes out. */
+ *  into `out`. `size`: decompressed size according to the bag, at most kMostBytes; memory grows
+ *  with the actual data. Throws Error for any other compression, damaged or cut data, and a wrong
+ *  size. */
 void unpack(const std::string& compression, const std::vector<std::uint8_t>& packed,
             std::uint64_t size, std::vector<std::uint8_t>& out);
 }  // namespace delio::io

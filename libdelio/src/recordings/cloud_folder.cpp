@@ -64,7 +64,9 @@ FilesByExtension scansIn(const fs::path& folder) {
     return files;
 }
 
-/** A KITTI folder up to two levels below this one, the first by name; empty: there is none. */
+/** The first KITTI folder by name, up to two levels below this one; empty if there is no such
+ * folder.
+ */
 fs::path kittiFolderIn(const fs::path& folder, int levels = 2) {
     std::vector<fs::path> inner;
     std::error_code fault;
@@ -84,18 +86,18 @@ fs::path kittiFolderIn(const fs::path& folder, int levels = 2) {
 FilesByExtension::value_type onlyKindOf(const FilesByExtension& files, const fs::path& folder) {
     if (files.empty()) {
         const fs::path drive = kittiFolderIn(folder);
-        throw Error("'" + folder.string() + "' holds no .pcd, .ply, .bin, .txt or .csv: no scans" +
+        throw Error("'" + folder.string() +
+                    "' contains no .pcd, .ply, .bin, .txt or .csv: no scans" +
                     (drive.empty() ? ""
-                                   : ", but KITTI's drives in folders of their own: give one of "
-                                     "them, as '" +
+                                   : ", only folders of KITTI drives; give one of them, such as '" +
                                          drive.string() + "'"));
     }
     if (files.size() == 1) return *files.begin();
     std::string kinds;
     for (const auto& [extension, ofKind] : files)
         kinds += (kinds.empty() ? "" : ", ") + std::to_string(ofKind.size()) + " " + extension;
-    throw Error("'" + folder.string() + "' holds files of several kinds (" + kinds +
-                "); leave those of one kind in it");
+    throw Error("'" + folder.string() + "' contains several kinds of files (" + kinds +
+                "); keep only one kind");
 }
 }  // namespace
 
@@ -111,7 +113,7 @@ CloudFolder::CloudFolder(const fs::path& folder) : FilesReader("lidar") {
     lookAtTimes();
 }
 
-/** What the times of points mean is known from several scans. A fault is told when its scan is
+/** The meaning of point times is inferred from several scans. A fault is reported when its scan is
  *  read. */
 void CloudFolder::lookAtTimes() {
     constexpr std::size_t kScans = 8;  // some may be empty

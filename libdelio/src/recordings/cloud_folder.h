@@ -9,11 +9,11 @@
 #include "point_table.h"
 
 namespace delio::io {
-/** Reads a folder of .pcd, .ply, .bin, .txt or .csv files, a scan each (see ScanTimes). Nothing is
- *  known of the drive itself, so meta() is none; `stamp_s` is as the source has it. */
+/** Reads a folder of .pcd, .ply, .bin, .txt or .csv files, one scan each (see ScanTimes). There are
+ *  no metadata, so meta() is empty; `stamp_s` is that of the source. */
 class CloudFolder : public FilesReader {
  public:
-    /** Throws Error where there are none or several kinds of them, and as timesOf(). */
+    /** Throws Error if there are no such files or several kinds, and as timesOf(). */
     explicit CloudFolder(const std::filesystem::path& folder);
 
     const std::optional<DriveMeta>& meta() const override { return meta_; }

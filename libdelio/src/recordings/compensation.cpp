@@ -81,7 +81,7 @@ double rateOf(const std::vector<Beam>& beams) {
     return rates.size() < kFewest ? 0 : quantile(rates, 0.5);
 }
 
-/** Of each beam, how far its azimuth is from that of an even turn: its ring's median is 0. */
+/** Deviation of each beam's azimuth from uniform rotation, minus the ring's median. */
 std::vector<double> deviations(const std::vector<Beam>& beams, double rate) {
     std::vector<double> all;
     for (std::size_t begin = 0; begin < beams.size();) {
@@ -103,7 +103,7 @@ std::vector<double> deviations(const std::vector<Beam>& beams, double rate) {
     return all;
 }
 
-/** What is left of the rate, by least squares. */
+/** Residual rate, by least squares. */
 double slopeOf(const std::vector<Beam>& beams, const std::vector<double>& deviations) {
     double time = 0, deviation = 0, covariance = 0, variance = 0;
     const auto count = static_cast<double>(beams.size());
@@ -118,8 +118,7 @@ double slopeOf(const std::vector<Beam>& beams, const std::vector<double>& deviat
     }
     return variance > 0 ? covariance / variance : 0;
 }
-/** What is left of the deviations, rad, when one motion of the sensor is taken out, even but for
- * its turning: the quantile `share` of it. */
+/** Quantile `share` of the deviations, rad, after removing one uniform motion of the sensor. */
 double leftByMotion(const std::vector<Beam>& beams, const std::vector<double>& deviations,
                     double share) {
     constexpr int kUnknowns = 6;

@@ -29,12 +29,12 @@ std::string sizeOf(const Image& image) {
 
 void checkSizes(const CObservationRotatingScan& scan) {
     if (scan.rangeImage.rows() != scan.rowCount)
-        throw Error("a rotating scan of " + std::to_string(scan.rowCount) +
-                    " rows whose range image has " + std::to_string(scan.rangeImage.rows()));
+        throw Error("a rotating scan with " + std::to_string(scan.rowCount) +
+                    " rows has a range image with " + std::to_string(scan.rangeImage.rows()));
     const std::string range = sizeOf(scan.rangeImage), intensity = sizeOf(scan.intensityImage);
     if (scan.intensityImage.size() != 0 && intensity != range)
-        throw Error("a rotating scan whose intensity image (" + intensity +
-                    ") is not of the size of its range image (" + range + ")");
+        throw Error("a rotating scan has an intensity image (" + intensity +
+                    ") of another size than its range image (" + range + ")");
 }
 
 /** MRPT 2.5.8 cannot read its own table of 64 lasers. */
@@ -42,7 +42,7 @@ const VelodyneCalibration& calibrationOf(const CObservationRotatingScan& scan) {
     if (scan.rowCount != 16 && scan.rowCount != 32)
         throw Error("a rotating scan of model '" + scan.lidarModel + "' with " +
                     std::to_string(scan.rowCount) +
-                    " rows: its elevation angles are not known (those of 16 and 32 rows are)");
+                    " rows is not supported: elevation angles are known for 16 and 32 rows only");
     return VelodyneCalibration::LoadDefaultCalibration(scan.rowCount == 16 ? "VLP16" : "HDL32");
 }
 
@@ -154,7 +154,7 @@ void decode(const CObservation3DRangeScan& observation, Scan& scan) {
     if (observation.hasPoints3D) {
         const auto size = observation.points3D_x.size();
         if (observation.points3D_y.size() != size || observation.points3D_z.size() != size)
-            throw Error("its points have unlike numbers of coordinates");
+            throw Error("its x, y and z have different lengths");
         points->resize(observation.points3D_x.size());
         for (std::size_t i = 0; i < observation.points3D_x.size(); ++i)
             points->setPointFast(i, observation.points3D_x[i], observation.points3D_y[i],
@@ -191,7 +191,7 @@ Scan decodeObservation(const mrpt::obs::CObservation& observation) {
     constexpr double kFarthest_m = 1e9;  // as the pose graph has it
     if (!scan.sensorPose.matrix().allFinite() ||
         !(scan.sensorPose.translation().cwiseAbs().maxCoeff() < kFarthest_m))
-        throw Error("the pose of its sensor on the vehicle is not finite, or beyond 1e9 m");
+        throw Error("the pose of its sensor on the vehicle is not finite or exceeds 1e9 m");
     return scan;
 }
 }  // namespace delio::io

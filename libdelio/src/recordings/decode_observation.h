@@ -18,10 +18,10 @@ Scan decodeObservation(const mrpt::obs::CObservation& observation);
 
 /** Fills `points` (metres, sensor frame, row by row; a CPointsMapXYZI with intensities 0 to 1 where
  *  the scan has an intensity image) and `rings` (the rows) of `scan` from a range image. Only its
- *  own returns, the strongest, are taken, not those of `rangeOtherLayers`. Images that
- *  CObservationRotatingScan::fromVelodyne() made are told by the model that it writes: theirs turn
- *  clockwise, and the lasers of a column lag behind one another.
- *  Throws Error where rows and images disagree in size, or the elevation angles are not known: MRPT
- *  keeps none with the scan, and those of Velodyne's models of 16 and 32 rows are taken. */
+ *  own returns, the strongest, are taken, not those of `rangeOtherLayers`. Images of
+ *  CObservationRotatingScan::fromVelodyne() are recognised by their model: they rotate clockwise,
+ * and the lasers of a column fire one after the other. Throws Error if rows and images have
+ * different sizes, or if the elevation angles are unknown: MRPT does not store them, so those of
+ * Velodyne's models with 16 and 32 rows are used. */
 void decodeRotatingScan(const mrpt::obs::CObservationRotatingScan& observation, Scan& scan);
 }  // namespace delio::io

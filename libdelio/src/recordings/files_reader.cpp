@@ -64,7 +64,7 @@ std::vector<double> readTimesFile(const fs::path& file) {
         const auto date = number ? std::nullopt : unixTimeOfDate(std::string(*line));
         if (!date || !words.empty())
             throw Error("'" + file.string() + "', line " + std::to_string(row) +
-                        ": it has to be a time, in seconds or as a date and time like the others");
+                        ": expected a time in seconds, or a date and time like the other lines");
         dates.push_back(*date);
     }
     if (!dates.empty()) return dates;
@@ -124,7 +124,7 @@ ScanTimes timesOf(const fs::path& folder, std::vector<fs::path>& scans) {
         if (times.stamps_s.size() != scans.size())
             throw Error("'" + file->string() + "' has " + std::to_string(times.stamps_s.size()) +
                         " times, but there are " + std::to_string(scans.size()) + " scans in '" +
-                        folder.string() + "'; complete or remove it");
+                        folder.string() + "'; complete or remove the file");
     } else {
         times.stamps_s = timesOfNames(scans);
         times.nominal = times.stamps_s.empty();

@@ -39,9 +39,9 @@ struct Happened {
 
 /** Warnings of both decoders. */
 inline std::string interpolatedTimes(const std::string& parts) {
-    return "interpolated the times of " + parts + ", which were not within their turn";
+    return "interpolated the times of " + parts + ", which lay outside their revolution";
 }
 inline std::string noTimes(const std::string& turns) {
-    return "no times for the points of " + turns + ": the sensor's times of them make no sense";
+    return "no point times in " + turns + ": the sensor's times are invalid";
 }
 }  // namespace delio::io

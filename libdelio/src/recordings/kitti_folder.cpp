@@ -36,7 +36,7 @@ namespace {
 std::size_t numberOf(const fs::path& file) {
     const std::string stem = file.stem().string();
     if (stem.empty() || stem.size() > 18 || stem.find_first_not_of("0123456789") != stem.npos)
-        throw Error("'" + file.string() + "': a scan's name has to be a number, as KITTI has it");
+        throw Error("'" + file.string() + "': KITTI scans must have a number as name");
     return std::stoul(stem);
 }
 
@@ -46,7 +46,7 @@ std::vector<fs::path> scansIn(const fs::path& folder) {
         if (entry.path().extension() == ".bin") scans.push_back(entry.path());
     std::sort(scans.begin(), scans.end(),
               [](const fs::path& a, const fs::path& b) { return numberOf(a) < numberOf(b); });
-    if (scans.empty()) throw Error("'" + folder.string() + "' holds no .bin file: no scans");
+    if (scans.empty()) throw Error("'" + folder.string() + "' contains no .bin file: no scans");
     return scans;
 }
 
@@ -86,12 +86,11 @@ std::vector<Row> rowsOf(const std::vector<fs::path>& scans, const std::vector<Ro
     for (const auto& scan : scans) {
         const std::size_t number = numberOf(scan);
         if (number >= rows.size())
-            throw Error("'" + file.string() + "' has " + std::to_string(rows.size()) +
-                        " rows but scan " + scan.filename().string() + " needs one; " +
-                        (chosen.empty() ? ""
-                                        : "shorten the drive with --count " +
-                                              std::to_string(chosen.size()) + " or ") +
-                        "complete the file");
+            throw Error(
+                "'" + file.string() + "' has " + std::to_string(rows.size()) + " rows but scan " +
+                scan.filename().string() + " needs one; " +
+                (chosen.empty() ? "" : "use --count " + std::to_string(chosen.size()) + " or ") +
+                "complete the file");
         chosen.push_back(rows[number]);
     }
     return chosen;
@@ -104,7 +103,7 @@ fs::path wholePath(const fs::path& folder) {
 
 void useNominalTimes(KittiDrive& drive, const std::string& missing) {
     drive.nominalTimes = true;
-    drive.warnings.push_back(missing + " is not there: scans are taken as 0.1 s apart");
+    drive.warnings.push_back(missing + " not found: assuming 0.1 s between scans");
     for (const auto& scan : drive.scans)
         drive.times_s.push_back(0.1 * static_cast<double>(numberOf(scan)));
 }
@@ -131,15 +130,15 @@ void readOdometrySequence(const fs::path& folder, KittiDrive& drive) {
     if (fs::exists(calib)) {
         if (!readCalibration(calib.string()).hasTr)
             drive.warnings.push_back("'" + calib.string() +
-                                     "' has no Tr: nothing can be brought to the cam0 frame");
+                                     "' has no Tr: no results in the cam0 frame");
         drive.calibText = textOf(calib);
         // Scans of other sensors come in KITTI's format, too, but not with its cameras.
         if (("\n" + drive.calibText).find("\nP0:") != std::string::npos)
             takeKittisSensor(drive.meta);
     } else {
         drive.warnings.push_back("'" + calib.string() +
-                                 "' is not there: the sensor is not taken for KITTI's, which needs "
-                                 "scan.vertical_correction_deg=0.205");
+                                 "' not found: assuming that this is not KITTI's own HDL-64E; if "
+                                 "it is, add --set scan.vertical_correction_deg=0.205");
     }
     // KITTI's own layout has dataset/sequences/NN and dataset/poses/NN.txt.
     const fs::path whole = wholePath(folder);
@@ -192,7 +191,7 @@ CPose3D rigid(const Rows& rows, const std::string& R, const std::string& T, cons
 CPose3D poseOfOxts(const fs::path& file, double& scale) {
     const auto row = delio::numbersIn(textOf(file));
     if (row.size() < 6)
-        throw Error("'" + file.string() + "' does not begin with six numbers, as OXTS files do");
+        throw Error("'" + file.string() + "' does not start with six numbers, as OXTS files do");
     const double lat = row[0], lon = row[1], alt = row[2], roll = row[3], pitch = row[4],
                  yaw = row[5];
     constexpr double earthRadius_m = 6378137.0;
@@ -208,7 +207,7 @@ void readOxts(const fs::path& folder, const CPose3D& imuToCam0, KittiDrive& driv
     for (const auto& scan : drive.scans) {
         const fs::path file = folder / "oxts" / "data" / (scan.stem().string() + ".txt");
         if (!fs::exists(file)) {
-            drive.warnings.push_back("'" + file.string() + "' is not there: no ground truth");
+            drive.warnings.push_back("'" + file.string() + "' not found: no ground truth");
             drive.poseRows.clear();
             return;
         }
@@ -241,7 +240,7 @@ void readRawDrive(const fs::path& folder, KittiDrive& drive) {
     drive.posesName = (folder / "oxts").string();
     if (!fs::exists(veloToCam) || !fs::exists(camToCam)) {
         drive.warnings.push_back("'" + veloToCam.string() + "' or '" + camToCam.string() +
-                                 "' is not there: no calibration and no ground truth");
+                                 "' not found: no calibration and no ground truth");
         return;
     }
     const CPose3D Tr = rigid(readRawCalibration(camToCam), "R_rect_00", "", camToCam) +
@@ -266,7 +265,7 @@ fs::path kittiFolderOf(const fs::path& folder) {
 
 KittiDrive openKittiDrive(const fs::path& folder, std::size_t start, std::size_t count) {
     if (!fs::is_directory(folder))
-        throw Error("'" + folder.string() + "' is not a folder; name a KITTI sequence or drive");
+        throw Error("'" + folder.string() + "' is not a folder; give a KITTI sequence or drive");
     const bool raw = fs::is_directory(folder / "velodyne_points" / "data");
     const fs::path scanFolder = raw ? folder / "velodyne_points" / "data" : folder / "velodyne";
     if (!fs::is_directory(scanFolder))
@@ -276,7 +275,7 @@ KittiDrive openKittiDrive(const fs::path& folder, std::size_t start, std::size_t
     drive.scans = scansIn(scanFolder);
     if (start >= drive.scans.size())
         throw Error("'" + folder.string() + "' has " + std::to_string(drive.scans.size()) +
-                    " scans: none left from --start " + std::to_string(start) + " on");
+                    " scans; none left after --start " + std::to_string(start) + " on");
     const auto begin = drive.scans.begin() + static_cast<std::ptrdiff_t>(start);
     const std::size_t left = drive.scans.size() - start;
     const std::size_t used = count == 0 ? left : std::min(count, left);
@@ -297,7 +296,7 @@ mrpt::maps::CPointsMap::Ptr readPoints(const fs::path& file) {
     refuseOtherLayout(file, bytes);
     if (bytes.size() % kPoint != 0)
         throw Error("'" + file.string() + "' is cut off: its size (" +
-                    std::to_string(bytes.size()) + " bytes) is no multiple of 16");
+                    std::to_string(bytes.size()) + " bytes) is not a multiple of 16");
     auto points = mrpt::maps::CPointsMapXYZI::Create();
     points->resize(bytes.size() / kPoint);
     for (std::size_t i = 0; i < points->size(); ++i) {

@@ -15,7 +15,7 @@ class KittiReader : public FilesReader {
      *  openKittiDrive(). */
     explicit KittiReader(const std::filesystem::path& folder);
 
-    /** What is missing but not needed, a line each. */
+    /** Missing optional parts, one line each. */
     const std::vector<std::string>& warnings() const { return drive_.warnings; }
 
     const std::optional<DriveMeta>& meta() const override { return meta_; }

@@ -125,18 +125,18 @@ void McapFile::enterChunk(std::uint64_t bytes) {
     if (taken > bytes || packedBytes > bytes - taken)
         throw Error("is damaged: a chunk is longer than its record");
     if (compression.empty()) {
-        if (isCut) {  // what is there of it is read in place
+        if (isCut) {  // read in place, as far as it exists
             chunkIsCut_ = true;
             return;
         }
-        if (packedBytes != size) throw Error("is damaged: a chunk of two sizes");
+        if (packedBytes != size) throw Error("is damaged: a chunk has two sizes");
         file_.read(chunk_.bytes(), packedBytes);
     } else {
         file_.read(packed_, packedBytes);
         unpack(compression, packed_, size, chunk_.bytes());
     }
     if (crc != 0 && checksum(chunk_.bytes()) != crc)
-        throw Error("is damaged: a chunk's checksum is wrong");
+        throw Error("is damaged: a chunk has the wrong checksum");
     chunk_.rewind();
     file_.skip(bytes - taken - packedBytes);
 }
@@ -150,7 +150,7 @@ std::optional<Message> McapFile::readMessage(ByteInput& in, std::uint64_t bytes)
     const auto channel = channels_.find(id);
     if (channel == channels_.end())
         throw Error("is damaged: a message of channel " + std::to_string(id) +
-                    ", which is not described");
+                    ", which has no description");
     const auto& [topic, type, encoding, messages] = channel->second;
     if (only_ && topic != *only_) {
         in.skip(bytes - kMessageStart);

@@ -7,17 +7,18 @@
 namespace delio::io {
 namespace {
 [[noreturn]] void tooShort(std::size_t size) {
-    throw Error("the message of " + std::to_string(size) + " bytes is cut off or of another type");
+    throw Error("the message of " + std::to_string(size) + " bytes is cut off or has another type");
 }
 }  // namespace
 
 WireReader::WireReader(const Bytes& message, Encoding encoding)
     : data_(message.data), size_(message.size), ros1_(encoding == Encoding::kRos1) {
-    if (encoding == Encoding::kOther) throw Error("the message is written neither as ros1 nor cdr");
+    if (encoding == Encoding::kOther)
+        throw Error("the message is neither in ROS 1 nor CDR encoding");
     if (ros1_) return;
     if (size_ < 4) tooShort(size_);
     // Plain CDR: 0 is big-endian, 1 little-endian; the rest of the header says nothing.
-    if (data_[0] != 0 || data_[1] > 1) throw Error("the message is of an unknown kind of CDR");
+    if (data_[0] != 0 || data_[1] > 1) throw Error("the message has an unknown CDR encoding");
     bigEndian_ = data_[1] == 0;
     data_ += 4;
     size_ -= 4;

@@ -19,7 +19,7 @@ struct Bytes {
 
 /** How ROS 1 and ROS 2 write a message; kOther: neither. */
 enum class Encoding { kRos1, kCdr, kOther };
-/** Of "ros1" and "cdr", as MCAP and ROS 2 name them. */
+/** Parses "ros1" and "cdr", the names in MCAP and ROS 2. */
 Encoding encodingOf(const std::string& name);
 
 /** A topic of a bag. */
@@ -45,7 +45,7 @@ class MessageSource {
     MessageSource(const MessageSource&) = delete;
     MessageSource& operator=(const MessageSource&) = delete;
 
-    /** What there is in the bag; of one without an index, in its first 64 MiB. */
+    /** Topics of the bag; without an index, those in its first 64 MiB. */
     const std::vector<Topic>& topics() const { return topics_; }
 
     /** Messages of other topics are passed over from here on; to be called before next(). */

@@ -9,12 +9,12 @@
 #include "delio/recordings/scan_reader.h"
 
 namespace delio::io {
-/** Where the fields of an Ouster's packets lie, in bytes; numbers are little-endian. */
+/** Byte offsets of the fields in Ouster packets; numbers are little-endian. */
 struct OusterLayout {
     std::size_t header = 0, footer = 0;  //!< of a packet
     std::size_t columnHeader = 0, columnFooter = 0;
     std::size_t pixel = 0;
-    bool legacy = false;          //!< frame and status stand in each column, not in the header
+    bool legacy = false;          //!< frame and status are in each column, not in the header
     std::size_t rangeBytes = 4;   //!< of the pixel's first field
     std::uint32_t rangeMask = 0;  //!< of that
     std::uint32_t rangeUnit_mm = 1;
@@ -34,7 +34,7 @@ struct OusterIds {
     }
 };
 
-/** What an Ouster's json says of the sensor. Metres and radians. */
+/** Metadata of an Ouster sensor (json). Metres and radians. */
 struct OusterInfo {
     std::string product;  //!< e.g. "OS-1-128"; empty: it does not say
     OusterIds ids;
@@ -53,12 +53,12 @@ struct OusterInfo {
     }
 };
 
-/** Understands the flat description of firmware 1 and 2 and the nested one of later firmware. Keys
- *  that old firmware leaves out have its defaults; a gen-1 sensor's beams begin 12.163 mm out.
- *  Throws Error, which names `name` and the key, where one is missing or not what it should be. */
+/** Reads the flat json of firmware 1 and 2 and the nested one of later firmware. Keys missing in
+ *  old firmware have its defaults; a gen-1 sensor's beams begin 12.163 mm out. Throws Error, which
+ *  names `name` and the key, where one is missing or not what it should be. */
 OusterInfo readOusterInfo(const std::string& json, const std::string& name);
 
-/** Whether packets of so many bytes may be an Ouster's, whichever it is. */
+/** True if packets of this size can come from an Ouster. */
 bool isOusterPacketSize(std::size_t bytes);
 
 /** One turn of an Ouster as it was sent: `columns` columns of `rows` pixels, staggered (pixels of a
@@ -102,7 +102,7 @@ class OusterPacket {
     bool valid(std::size_t column) const;
     /** When it was measured, by the sensor's clock. */
     std::uint64_t time_ns(std::size_t column) const;
-    /** Where in the turn: 0 to before info.columns, unless the packet is damaged. */
+    /** Column number in the revolution: less than info.columns, unless the packet is damaged. */
     std::size_t place(std::size_t column) const;
     /** Copies a valid column to its place. */
     void copyTo(OusterFrame& frame, std::size_t column) const;
@@ -116,7 +116,7 @@ class OusterPacket {
     const std::uint8_t* bytes_;
 };
 
-/** Where every pixel of an Ouster's turn looks: tables that make points of ranges, in the sensor's
+/** Directions of all pixels of an Ouster, as tables that convert ranges to points in the sensor's
  *  frame (x forward, away from the connector). */
 class OusterBeams {
  public:

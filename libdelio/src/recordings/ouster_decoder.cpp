@@ -18,8 +18,8 @@ namespace delio::io {
 namespace {
 /** Takes the first return, the strongest. Points come column by column, so in the order of time,
  *  and upper rows first; their intensity is the reflectivity, 255 being 1. Columns that the sensor
- *  calls invalid and pixels without a return are left out, and so is what comes of a turn after the
- *  next one began, and the packets of another sensor than the json describes. */
+ *  calls invalid and pixels without a return are left out, and so are packets of a revolution that
+ *  arrive after the next one has begun, and packets of sensors other than the json's. */
 class OusterDecoder : public PacketDecoder {
  public:
     OusterDecoder(const std::string& json, const std::string& name)
@@ -61,11 +61,11 @@ std::string textOf(const OusterIds& ids) {
 }
 
 Error OusterDecoder::foreign() const {
-    std::string text = "the packets are of the Ouster with " + textOf(foreignIds_) + ", '" + name_ +
-                       "' describes that with " + textOf(info_.ids) +
-                       "; give the json that was recorded with them (--sensor-info)";
+    std::string text = "the packets come from the Ouster with " + textOf(foreignIds_) + ", '" +
+                       name_ + "' describes the one with " + textOf(info_.ids) +
+                       "; give the json recorded with these packets (--sensor-info)";
     if (foreignIds_.serial == info_.ids.serial)
-        text += ", or take initialization_id out of it if the sensor was only restarted in between";
+        text += ", or remove initialization_id from it if the sensor was only restarted";
     return Error(text);
 }
 
@@ -80,7 +80,7 @@ void OusterDecoder::leaveOut(const OusterIds& ids) {
 std::vector<std::string> OusterDecoder::findings() const {
     std::vector<std::string> findings;
     if (packets_ > 0 && foreign_.count > 0)
-        findings.push_back("left out " + foreign_.of("packet") + " of the Ouster with " +
+        findings.push_back("ignored " + foreign_.of("packet") + " of the Ouster with " +
                            textOf(foreignIds_) + ", which '" + name_ + "' does not describe");
     if (mended_.count > 0) findings.push_back(interpolatedTimes(mended_.of("column")));
     if (untimed_.count > 0) findings.push_back(noTimes(untimed_.of("turn")));
@@ -89,8 +89,8 @@ std::vector<std::string> OusterDecoder::findings() const {
 
 bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double received_s) {
     if (!takes(bytes))
-        throw Error("an Ouster's packet of " + std::to_string(bytes) + " bytes; '" + name_ +
-                    "' describes one of " + std::to_string(info_.packetBytes()));
+        throw Error("an Ouster packet of " + std::to_string(bytes) + " bytes; '" + name_ +
+                    "' describes packets of " + std::to_string(info_.packetBytes()));
     const OusterPacket packet(info_, payload);
     if (const OusterIds ids = packet.ids(); !info_.ids.fit(ids)) {
         leaveOut(ids);
@@ -100,11 +100,12 @@ bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double r
     for (std::size_t column = 0; column < info_.columnsPerPacket; ++column) {
         if (!packet.valid(column)) continue;
         if (packet.place(column) >= info_.columns)
-            throw Error("an Ouster's packet has column " + std::to_string(packet.place(column)) +
+            throw Error("an Ouster packet has column " + std::to_string(packet.place(column)) +
                         "; '" + name_ + "' has " + std::to_string(info_.columns));
         const std::uint16_t number = packet.frameOf(column);
         if (frame_ && number != frame_->number) {
-            // Numbers begin anew after 65535. An older one is late, a much older one a restart.
+            // Numbers wrap after 65535. A slightly older one is late; a much older one means a
+            // restart.
             constexpr int kLate = 16;
             const auto ahead =
                 static_cast<std::int16_t>(static_cast<std::uint16_t>(number - frame_->number));
@@ -130,9 +131,9 @@ void OusterDecoder::finish() {
         (info_.columnsUsed + info_.columnsPerPacket - 1) / info_.columnsPerPacket;
     if (packets_ < turn)
         throw Error("only " + std::to_string(packets_) + " of the " + std::to_string(turn) +
-                    " packets of a turn: there is no scan in less than half a turn");
+                    " packets of a revolution; a scan needs at least half a revolution");
     throw Error("no scan in " + std::to_string(packets_) +
-                " packets of an Ouster: their columns are marked as not measured");
+                " Ouster packets: their columns are marked as invalid");
 }
 
 double OusterDecoder::stampOf(const OusterFrame& frame, const std::optional<OusterTimes>& times) {

@@ -31,16 +31,16 @@ std::optional<OusterLayout> layoutOf(const std::string& profile) {
     return {};
 }
 
-/** Reads keys that stand at the top, or in one of several groups. */
+/** Reads keys at the top level or in one of several groups. */
 class Reader {
  public:
     Reader(const std::string& text, const std::string& name) : name_(name) {
         try {
             root_ = Json::parse(text);
         } catch (const Json::exception&) {
-            throw Error("'" + name_ + "' is not a json");
+            throw Error("'" + name_ + "' is not valid JSON");
         }
-        if (!root_.is_object()) throw Error("'" + name_ + "' is not a json of an Ouster");
+        if (!root_.is_object()) throw Error("'" + name_ + "' is not an Ouster metadata json");
     }
 
     [[noreturn]] void refuse(const std::string& key, const std::string& fault) const {
@@ -54,11 +54,11 @@ class Reader {
         try {
             return json->get<Value>();
         } catch (const Json::exception&) {
-            refuse(key, "is not what it should be");
+            refuse(key, "has the wrong type");
         }
     }
 
-    /** A number, or a text of one; 0 where there is none. */
+    /** A number, or a text with a number; 0 if it is missing. */
     std::uint64_t idOf(const std::string& key) const {
         const Json* const json = lookUp(key);
         if (json && json->is_number_unsigned()) return json->get<std::uint64_t>();
@@ -72,7 +72,7 @@ class Reader {
     template <typename Value>
     Value get(const std::string& key) const {
         auto value = find<Value>(key);
-        if (!value) refuse(key, "is missing: not the description of an Ouster");
+        if (!value) refuse(key, "is missing: not an Ouster metadata json");
         return *value;
     }
 
@@ -108,7 +108,7 @@ std::size_t columnsOf(const Reader& reader) {
     const auto mode = reader.get<std::string>("lidar_mode");
     for (const std::size_t columns : {512U, 1024U, 2048U, 4096U})
         if (mode.rfind(std::to_string(columns) + "x", 0) == 0) return columns;
-    reader.refuse("lidar_mode", "is not known: '" + mode + "'");
+    reader.refuse("lidar_mode", "is not supported: '" + mode + "'");
 }
 
 std::optional<Eigen::Matrix4d> matrixOf(const Reader& reader, const std::string& key) {
@@ -131,10 +131,10 @@ double usualBeamOut_mm(const std::string& product) {
 void readBeams(const Reader& reader, OusterInfo& info) {
     info.elevations = anglesOf(reader, "beam_altitude_angles");
     info.azimuths = anglesOf(reader, "beam_azimuth_angles");
-    if (info.elevations.empty()) reader.refuse("beam_altitude_angles", "are none");
-    if (info.elevations.size() > kMostRows) reader.refuse("beam_altitude_angles", "are too many");
+    if (info.elevations.empty()) reader.refuse("beam_altitude_angles", "is empty");
+    if (info.elevations.size() > kMostRows) reader.refuse("beam_altitude_angles", "is too long");
     if (info.azimuths.size() != info.elevations.size())
-        reader.refuse("beam_azimuth_angles", "are not as many as beam_altitude_angles");
+        reader.refuse("beam_azimuth_angles", "has another length than beam_altitude_angles");
     info.beamOut_m = kMetresPerMm * reader.find<double>("lidar_origin_to_beam_origin_mm")
                                         .value_or(usualBeamOut_mm(info.product));
     if (const auto beam = matrixOf(reader, "beam_to_lidar_transform")) {
@@ -159,7 +159,7 @@ void readColumns(const Reader& reader, OusterInfo& info) {
     const auto columns = static_cast<std::int64_t>(info.columns);
     if (window->size() != 2 || window->at(0) < 0 || window->at(1) < 0 || window->at(0) >= columns ||
         window->at(1) >= columns)
-        reader.refuse("column_window", "is not of two columns of a turn");
+        reader.refuse("column_window", "does not hold two valid columns");
     info.columnsUsed =
         static_cast<std::size_t>((window->at(1) - window->at(0) + columns) % columns + 1);
 }
@@ -175,14 +175,15 @@ OusterInfo readOusterInfo(const std::string& json, const std::string& name) {
     info.rows = info.elevations.size();
     if (reader.find<Json>("pixels_per_column") &&
         countOf(reader, "pixels_per_column", kMostRows) != info.rows)
-        reader.refuse("beam_altitude_angles", "are not as many as pixels_per_column says");
+        reader.refuse("beam_altitude_angles", "does not match pixels_per_column");
     readColumns(reader, info);
     const auto profile = reader.find<std::string>("udp_profile_lidar").value_or(kLegacy);
     const auto layout = layoutOf(profile);
     if (!layout)
-        reader.refuse("udp_profile_lidar",
-                      "is not known: '" + profile +
-                          "'; LEGACY, RNG15_RFL8_NIR8 and RNG19_RFL8_SIG16_NIR16 (_DUAL) are");
+        reader.refuse(
+            "udp_profile_lidar",
+            "is not supported: '" + profile +
+                "'; supported are LEGACY, RNG15_RFL8_NIR8 and RNG19_RFL8_SIG16_NIR16 (_DUAL)");
     info.layout = *layout;
     return info;
 }
@@ -268,13 +269,14 @@ SideFile ousterJsonBeside(const std::string& recording, const std::uint8_t* pack
             std::remove_if(fitting.begin(), fitting.end(),
                            [&](const SideFile& json) { return !fits(json, packet, bytes); }),
             fitting.end());
-    // Where none fits, the likeliest one says in what it does not.
+    // If none fits, the most similar one gives the error message.
     if (fitting.empty()) fitting = all;
     keepMostAlike(fitting, stem);
     if (fitting.size() == 1) return fitting.front();
-    throw Error("holds an Ouster's packets, but their description '" + own.string() +
-                "' is not there" +
-                (fitting.empty() ? "" : ", and several others may be it: " + listed(fitting)) +
-                "; name it with --sensor-info");
+    throw Error(
+        "contains Ouster packets, which need the sensor's metadata: '" + own.string() +
+        "' not found" +
+        (fitting.empty() ? "" : ", and several other files could be it: " + listed(fitting)) +
+        "; choose one with --sensor-info FILE.json");
 }
 }  // namespace delio::io

@@ -36,7 +36,7 @@ class PacketDecoder {
     /** e.g. "Velodyne VLP-16"; empty until it is known. */
     virtual std::string sensor() const = 0;
 
-    /** What was left out or taken in another way than it was sent, a line each. */
+    /** Ignored or corrected data, one line per kind. */
     virtual std::vector<std::string> findings() const { return {}; }
 };
 

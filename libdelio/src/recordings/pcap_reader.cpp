@@ -33,7 +33,7 @@ std::string addressText(std::uint32_t address) {
     return text;
 }
 
-/** What tells a sensor from others of its kind: where its packets go to and come from. */
+/** Identifies a sensor among others of its kind: source and destination of its packets. */
 struct Sender {
     std::string kind;
     std::uint16_t port = 0;
@@ -85,7 +85,7 @@ class PcapReader : public ScanReader {
     std::string foundJson_;  //!< beside the recording, under another name
     std::size_t count_ = 0;
     bool pointTimes_ = false, ended_ = false;
-    std::string fault_;  //!< what ended the recording, told after the scans before
+    std::string fault_;  //!< fault that ended the recording, reported after the scans before it
 };
 
 PcapReader::PcapReader(const ScanSource& source) : source_(source), stream_(source.path) {
@@ -97,10 +97,10 @@ PcapReader::PcapReader(const ScanSource& source) : source_(source), stream_(sour
     std::string seen;
     for (const std::string& other : others_) seen += (seen.empty() ? "" : ", ") + other;
     throw Error(
-        named() + " has no packets of " +
+        named() + " contains no packets of " +
         (source_.label.empty() ? "a Velodyne or an Ouster" : "the sensor '" + source_.label + "'") +
-        (decoder_ ? " that fit '" + source_.sensorFile + "'" : "") +
-        (seen.empty() ? "" : "; there are those of " + seen));
+        (decoder_ ? " that match '" + source_.sensorFile + "'" : "") +
+        (seen.empty() ? "" : "; it contains packets of " + seen));
 }
 
 std::optional<Sender> PcapReader::senderOf(const UdpPacket& packet) const {
@@ -118,7 +118,7 @@ void PcapReader::makeDecoder(const std::string& kind, const UdpPacket& packet) {
     if (source_.sensorFile.empty()) {
         if (source_.path == "-")
             throw Error(
-                "an Ouster's pcap from standard input needs the sensor's json: --sensor-info");
+                "an Ouster pcap from standard input needs the sensor's json (--sensor-info)");
         try {
             source_.sensorFile = ousterJsonBeside(source_.path, packet.payload, packet.bytes).name;
         } catch (const Error& e) {
@@ -208,7 +208,7 @@ std::optional<Scan> PcapReader::next() {
 
 Recording PcapReader::recording() const {
     Recording recording;
-    recording.kind = "pcap" + (foundJson_.empty() ? "" : ", described by '" + foundJson_ + "'");
+    recording.kind = "pcap" + (foundJson_.empty() ? "" : ", metadata '" + foundJson_ + "'");
     recording.sensor = decoder_->sensor();
     recording.pointTimes = pointTimes_;
     recording.motionCompensated = false;

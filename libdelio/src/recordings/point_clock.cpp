@@ -9,8 +9,8 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewest = 8;  // points, of which some are of another part of a turn
 
-/** Times of measured points, of a large scan a part of them. A zero is none: many drivers write it
- *  for "no time". */
+/** Times of measured points (a sample of large scans). Zeros are ignored: many drivers write 0 for
+ *  "no time". */
 std::vector<double> sampleOf(const RecordedTimes& times) {
     constexpr std::size_t kEnough = 8192;
     std::vector<double> values;
@@ -128,8 +128,8 @@ bool PointClock::accepts(const Range& range, std::size_t scan) {
     contradictions_ = other_ && *other_ == other ? contradictions_ + 1 : 1;
     other_ = other;
     if (contradictions_ < kPatience || !fits(other, range)) return false;
-    findings_.add("times of points are in " + nameOf(other.unit_s) + " from here on, not in " +
-                      nameOf(clock_->unit_s) + " or not counted from the same as before",
+    findings_.add("point times are in " + nameOf(other.unit_s) + " from here on instead of " +
+                      nameOf(clock_->unit_s) + " or have another zero",
                   scan);
     clock_ = other;
     goesOn_ = false;
@@ -149,10 +149,8 @@ void PointClock::watch(double first, const Range& range, std::size_t scan) {
         const bool isLate =
             now.usual_s > 0 && passed_s > kMany * now.usual_s && passed_s > kMany * stamped_s;
         if (passed_s <= 0 || isLate)
-            findings_.add(
-                "times of points jump although the stamps do not (scans are missing or "
-                "in another order)",
-                scan);
+            findings_.add("point times jump but stamps do not (scans are missing or out of order)",
+                          scan);
         else
             now.usual_s = passed_s;
     }
@@ -164,16 +162,13 @@ std::vector<float> PointClock::secondsOf(RecordedTimes times) {
     const auto range = rangeOf(times);
     if (!range) return {};
     if (!accepts(*range, times.scan)) {
-        findings_.add("scans whose point times make no sense are used without times", times.scan);
+        findings_.add("invalid point times: scans used without times", times.scan);
         return {};
     }
     if (goesOn_)
-        findings_.add(
-            "times of points go on from scan to scan and are taken from each scan's first "
-            "point",
-            times.scan);
-    if (wrapped > 0)
-        findings_.add("times of points passed 2^32 and were put right", times.scan, wrapped);
+        findings_.add("point times continue across scans: counted from each scan's first point",
+                      times.scan);
+    if (wrapped > 0) findings_.add("point times wrapped at 2^32: corrected", times.scan, wrapped);
     const double length = range->last - range->first;
     const auto isNear = [&](double time, double margin) {
         // A zero that is farther from the others is no time.
@@ -196,8 +191,7 @@ std::vector<float> PointClock::secondsOf(RecordedTimes times) {
         impossible += !isPossible && times.isMeasured[i];
     }
     if (impossible > 0)
-        findings_.add("points without a time, or with an impossible one, are left out", times.scan,
-                      impossible);
+        findings_.add("points without a valid time: ignored", times.scan, impossible);
     return seconds;
 }
 }  // namespace delio::io

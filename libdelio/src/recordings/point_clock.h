@@ -29,11 +29,11 @@ class PointClock {
      *  Empty where the scan has no times: all zero, or they do not fit the clock. */
     std::vector<float> secondsOf(RecordedTimes times);
 
-    /** What was left out or taken in another way, a line each. */
+    /** Ignored or corrected data, one line per kind. */
     std::vector<std::string> findings() const { return findings_.lines(); }
 
  private:
-    /** Where nearly all times of a scan lie, in its own unit. */
+    /** Range of nearly all times of a scan, in its unit. */
     struct Range {
         double first = 0, last = 0;
         std::size_t count = 0;  //!< of times

@@ -40,10 +40,10 @@ void check(const PointLayout& layout, std::size_t bytes, std::size_t count) {
     for (const auto& field : layout.fields) {
         const std::size_t size = bytesOf(field.kind);
         if (size == 0)
-            throw Error("its field '" + field.name + "' is of kind " +
-                        std::to_string(static_cast<int>(field.kind)) + ", which is not known");
+            throw Error("its field '" + field.name + "' has the unknown type " +
+                        std::to_string(static_cast<int>(field.kind)));
         if (layout.step < size || field.offset > layout.step - size)
-            throw Error("its field '" + field.name + "' does not lie within a point of " +
+            throw Error("its field '" + field.name + "' lies outside the point of " +
                         std::to_string(layout.step) + " bytes");
     }
     if (layout.step == 0 || count > bytes / layout.step)

@@ -40,10 +40,9 @@ void readValues(const std::string& file, std::size_t count, std::vector<Value>& 
     in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(bytes));
     if (!in) throw Error("cannot read '" + file + "'");
 }
-/** Takes rings and times of the points from the files STEM.ring (uint16) and STEM.time (float32,
- *  seconds from the stamp), one value a point, where they are there; NaN: the point has no time.
- *  Throws Error where a file cannot be read or has not one value for each point, or a time is
- *  beyond 1 s. */
+/** Reads rings and times of the points from STEM.ring (uint16) and STEM.time (float32, seconds from
+ *  the stamp), one value per point, if they exist; NaN: no time. Throws Error if a file cannot be
+ *  read or has another number of values, or if a time is beyond 1 s. */
 void readPointExtras(const std::string& stem, Scan& scan) {
     const std::size_t count = scan.points->size();
     readValues(stem + ".ring", count, scan.rings);
@@ -51,7 +50,7 @@ void readPointExtras(const std::string& stem, Scan& scan) {
     constexpr float kLongest_s = 1;  // no LiDAR turns slower than so
     for (const float time_s : scan.times_s)
         if (std::abs(time_s) > kLongest_s)
-            throw Error("'" + stem + ".time' has a time of " + digitsOf(time_s) +
+            throw Error("'" + stem + ".time' has a point time of " + digitsOf(time_s) +
                         " s from its scan's stamp");
 }
 
@@ -70,7 +69,7 @@ RawlogReader::RawlogReader(const std::string& path, std::string label, std::stri
       chosen_(!label_.empty()),
       meta_(readDriveMeta(path_)),
       in_(std::make_unique<GzInput>(path_)) {
-    if (in_->getTotalBytesCount() == 0) throw Error("'" + path_ + "' is empty: not a rawlog");
+    if (in_->getTotalBytesCount() == 0) throw Error("'" + path_ + "' is empty");
 }
 
 RawlogReader::~RawlogReader() = default;
@@ -155,20 +154,20 @@ bool RawlogReader::readEntry() {
         object = archive.next();
     } catch (const std::exception& e) {
         ended_ = true;
-        // Nothing was left to read: the end of the rawlog. Otherwise something is only half there,
-        // or is damaged and perhaps claims more than there is memory for.
+        // No bytes left: the end of the rawlog. Otherwise an object is incomplete or damaged, and
+        // may claim more memory than available.
         if (in_->getPosition() == before && before > 0 && in_->endedWell()) return false;
         if (!archive.refused().empty())
             throw Error("'" + path_ + "' holds '" + archive.refused() + "' (byte " +
-                        std::to_string(before) + "), which is not read from a rawlog");
+                        std::to_string(before) + "), a class that is not supported in rawlogs");
         throw Error("'" + path_ + "' " +
-                    (before == 0 ? "is not a rawlog, or damaged at its very beginning"
+                    (before == 0 ? "is not a rawlog, or is damaged at its start"
                                  : "is cut off or damaged " +
                                        (count_ == 0 ? "before its first scan"
                                                     : "after scan " + std::to_string(count_ - 1)) +
                                        " (byte " + std::to_string(before) + ")") +
                     (isOfUnknownClass(e)
-                         ? ", or holds what this MRPT does not know: " + plainMessage(e)
+                         ? ", or contains something unknown to this MRPT: " + plainMessage(e)
                          : ""));
     }
     const auto accept = [&](const CObservation::Ptr& observation) {

@@ -12,7 +12,7 @@ RecognisedReader::RecognisedReader(std::unique_ptr<ScanReader> source)
     recognise();
 }
 
-/** Reads the next scan of the source into `ahead_`; false where there is none. */
+/** Reads the next scan of the source into `ahead_`; false at the end. */
 bool RecognisedReader::readOne() {
     if (ended_) return false;
     try {
@@ -33,8 +33,7 @@ bool RecognisedReader::readOne() {
 void RecognisedReader::dropUnfitTimes(Scan& scan) {
     if (scan.times_s.size() != scan.points->size() || timesFitDirections(scan)) return;
     scan.times_s.clear();
-    findings_.add("point times do not fit the directions of the points and are not used",
-                  scan.index);
+    findings_.add("point times contradict the azimuths: not used", scan.index);
 }
 
 /** Empty scans tell nothing. */
@@ -92,7 +91,7 @@ void RecognisedReader::leaveOutFirst() {
     const auto first = std::find_if_not(ahead_.begin(), ahead_.end(), isUntimed);
     if (first == ahead_.end() || first->times_s.empty()) return;
     for (; isUntimed(ahead_.front()); ahead_.pop_front())
-        findings_.add("first scans are left out because they have no point times, as the next have",
+        findings_.add("first scans without point times, unlike the later ones: ignored",
                       ahead_.front().index);
 }
 

@@ -79,7 +79,7 @@ std::map<std::string, std::string> parseFields(const std::vector<std::uint8_t>& 
             throw Error("is damaged: a field is longer than its record's header");
         const std::string field(reinterpret_cast<const char*>(bytes.data()) + at, length);
         const auto equals = field.find('=');
-        if (equals == std::string::npos) throw Error("is damaged: a field without a name");
+        if (equals == std::string::npos) throw Error("is damaged: a field has no name");
         fields[field.substr(0, equals)] = field.substr(equals + 1);
         at += length;
     }
@@ -91,14 +91,14 @@ Number valueOf(const std::map<std::string, std::string>& fields, const std::stri
     const auto field = fields.find(name);
     Number value = 0;
     if (field == fields.end() || field->second.size() != sizeof(value))
-        throw Error("is damaged: a record without '" + name + "'");
+        throw Error("is damaged: a record lacks '" + name + "'");
     std::memcpy(&value, field->second.data(), sizeof(value));
     return value;
 }
 
 std::string textOf(const std::map<std::string, std::string>& fields, const std::string& name) {
     const auto field = fields.find(name);
-    if (field == fields.end()) throw Error("is damaged: a record without '" + name + "'");
+    if (field == fields.end()) throw Error("is damaged: a record lacks '" + name + "'");
     return field->second;
 }
 Ros1Bag::Ros1Bag(const std::string& path) : MessageSource(path), file_(path) {
@@ -159,13 +159,13 @@ void Ros1Bag::enterChunk(const Record& record) {
     const std::string compression = textOf(record.fields, "compression");
     const std::uint64_t size = valueOf<std::uint32_t>(record.fields, "size");
     if (compression == "none") {
-        // Its records are read in place: what is there of a chunk that is cut off comes out.
+        // Records are read in place, so the intact part of a cut chunk is used.
         chunkEnd_ = file_.position() + record.bytes;
         return;
     }
     file_.read(packed_, record.bytes);
     // A recorder that was ended fills in the sizes of its last chunk no more.
-    if (record.bytes == 0) throw Error("ends in a compressed chunk that was not finished");
+    if (record.bytes == 0) throw Error("ends in an unfinished compressed chunk");
     unpack(compression, packed_, size, chunk_.bytes());
     chunk_.rewind();
 }
@@ -175,7 +175,7 @@ std::optional<Message> Ros1Bag::readMessage(const Record& record, ByteInput& in)
     const auto connection = connections_.find(id);
     if (connection == connections_.end())
         throw Error("is damaged: a message of connection " + std::to_string(id) +
-                    ", which is not described");
+                    ", which has no description");
     const auto& [topic, type] = connection->second;
     if (only_ && topic != *only_) {
         in.skip(record.bytes);

@@ -83,7 +83,7 @@ void checkHeader(const std::string& path) {
     if (!in) throw Error("cannot be opened");
     in.read(header.data(), static_cast<std::streamsize>(header.size()));
     if (header.compare(0, kZstd.size(), kZstd) == 0)
-        throw Error("is compressed: unpack it first (zstd -d)");
+        throw Error("is compressed; decompress it first (zstd -d)");
     if (header.compare(0, kMagic.size(), kMagic) != 0)
         throw Error("is not a ROS 2 database (sqlite3)");
     // sqlite3 takes what is missing of its last page for zeros. A page size of 1 is 65536; the
@@ -155,7 +155,7 @@ void Ros2Database::distrust() {
                      "FROM pragma_table_xinfo('messages') WHERE hidden <> 0)");
     computed.step();
     if (computed.integer(0) != 2 || computed.integer(1) != 0)
-        throw Error("has no tables 'topics' and 'messages', so it is no ROS 2 database");
+        throw Error("is not a ROS 2 database: no tables 'topics' and 'messages'");
     // Nothing in it is longer than the file.
     constexpr std::uintmax_t kLeast = 1 << 20;
     const auto bytes = std::clamp<std::uintmax_t>(fs::file_size(path_), kLeast, kMostBytes);
@@ -229,7 +229,7 @@ Ros2Folder::Ros2Folder(const std::string& folder)
     try {
         readMetadata(path_);
     } catch (const YAML::Exception& e) {
-        throw Error("has a metadata.yaml that cannot be understood (" + e.msg + ")");
+        throw Error("has an invalid metadata.yaml (" + e.msg + ")");
     }
     if (files_.empty()) throw Error("has a metadata.yaml that names no files");
     try {
@@ -245,7 +245,7 @@ void Ros2Folder::readMetadata(const std::string& yaml) {
     if (!bag || !bag.IsMap()) throw Error("has a metadata.yaml that does not describe a ROS 2 bag");
     const auto mode = bag["compression_mode"] ? bag["compression_mode"].as<std::string>() : "";
     if (!mode.empty() && mode != "NONE" && mode != "none")
-        throw Error("is compressed: unpack it first (ros2 bag convert)");
+        throw Error("is compressed; convert it first (ros2 bag convert)");
     for (const auto& file : bag["relative_file_paths"]) {
         // Older bags have their own folder's name in it.
         const fs::path name = file.as<std::string>(), inside = fs::path(folder_) / name;
@@ -262,7 +262,7 @@ void Ros2Folder::readMetadata(const std::string& yaml) {
 void Ros2Folder::open() {
     path_ = files_[done_];
     const std::string extension = fs::path(path_).extension().string();
-    if (!fs::is_regular_file(path_)) throw Error("is not there, though metadata.yaml names it");
+    if (!fs::is_regular_file(path_)) throw Error("is named in metadata.yaml but does not exist");
     if (extension == ".mcap")
         source_ = mcapSource(path_);
     else

@@ -77,18 +77,18 @@ class CloudMaker : public ScanMaker {
         const std::size_t step = cloud.layout.step;
         if (count > 0 && (step == 0 || count > cloud.data.size / step))
             throw Error(std::to_string(cloud.rows) + " x " + std::to_string(cloud.columns) +
-                        " points of " + std::to_string(step) + " bytes are announced, there are " +
-                        std::to_string(cloud.data.size) + " bytes");
+                        " points of " + std::to_string(step) +
+                        " bytes are claimed, but there are " + std::to_string(cloud.data.size) +
+                        " bytes");
         return count;
     }
 
-    /** Takes out what rows are padded with. A row step that cannot be one is not believed: some
-     *  drivers leave it 0. */
+    /** Removes the padding of rows. An impossible row step is ignored: some drivers leave it 0. */
     void compact(Cloud& cloud) {
         const std::size_t row = cloud.columns * cloud.layout.step;
         if (cloud.rows < 2 || cloud.rowStep <= row) return;
         if (cloud.rowStep > (cloud.data.size - row) / (cloud.rows - 1))
-            throw Error("its rows of " + std::to_string(cloud.rowStep) + " bytes are beyond its " +
+            throw Error("its rows of " + std::to_string(cloud.rowStep) + " bytes exceed its " +
                         std::to_string(cloud.data.size) + " bytes");
         rows_.resize(cloud.rows * row);
         for (std::size_t i = 0; i < cloud.rows; ++i)
@@ -123,8 +123,8 @@ class PacketMaker : public ScanMaker {
     void finish() override {
         if (!anyTaken_ && otherBytes_ > 0)
             throw Error("packets of " + std::to_string(otherBytes_) +
-                        " bytes, which the sensor's json does not describe; give the json that "
-                        "was recorded with them (--sensor-info)");
+                        " bytes do not match the sensor's json; give the json recorded with these "
+                        "packets (--sensor-info)");
         decoder_->finish();
     }
     std::optional<Scan> take() override { return decoder_->take(); }
@@ -137,7 +137,7 @@ class PacketMaker : public ScanMaker {
         const std::size_t packets = in.length(8 + kVelodynePacket);
         if (packets > kMostPackets)
             throw Error("the message has " + std::to_string(packets) +
-                        " packets: a turn has some hundred");
+                        " packets; a revolution has a few hundred");
         for (std::size_t i = 0; i < packets; ++i) {
             const double stamp_s = in.time();
             addPacket(in.bytes(kVelodynePacket), stamp_s == 0 ? log_s : stamp_s);

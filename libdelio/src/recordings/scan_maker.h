@@ -9,7 +9,7 @@
 #include "packet_decoder.h"
 
 namespace delio::io {
-/** What scans are made of: sensor_msgs/PointCloud2, velodyne_msgs/VelodyneScan, or Ouster's
+/** Makes scans from messages: sensor_msgs/PointCloud2, velodyne_msgs/VelodyneScan, or Ouster's
  *  PacketMsg. */
 enum class ScanType { kNone, kCloud, kVelodyne, kOuster };
 /** kNone: a topic's messages hold no scans (Ouster's packets of its IMU are of that kind, too). */
@@ -35,14 +35,14 @@ class ScanMaker {
     virtual std::optional<Scan> take() = 0;
     /** e.g. "Velodyne VLP-16"; empty: not known. */
     virtual std::string sensor() const = 0;
-    /** What was left out or taken in another way than it was written, a line each. */
+    /** Ignored or corrected data, one line per kind. */
     virtual std::vector<std::string> findings() const { return {}; }
 };
 
 /** A scan a message, stamped as its header says, or with the time at which it was recorded where
  *  that is zero. */
 std::unique_ptr<ScanMaker> makeCloudMaker();
-/** Of messages with packets, of Velodyne or of Ouster: a scan a turn, whatever a message holds.
- *  finish() throws Error where no scan was made of the packets. */
+/** For messages with packets of Velodyne or Ouster: one scan per revolution, independent of the
+ *  messages. finish() throws Error if the packets gave no scan. */
 std::unique_ptr<ScanMaker> makePacketMaker(ScanType type, std::unique_ptr<PacketDecoder> decoder);
 }  // namespace delio::io

@@ -49,8 +49,7 @@ std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
         throw Error("cannot read '" + source.path + "': no such file or folder");
     if (source.path != "-" && !fs::is_directory(source.path) && !fs::is_regular_file(source.path))
         throw Error("'" + source.path +
-                    "' is neither a file nor a folder: a pipe is read from standard input, by the "
-                    "name -");
+                    "' is neither a file nor a folder; read a pipe from standard input with -i -");
     return std::make_unique<RecognisedReader>(fs::is_directory(source.path) ? openFolder(source)
                                                                             : openFile(source));
 }
@@ -66,8 +65,8 @@ std::string nameOfDrive(const std::string& path) {
     const std::string name =
         printable(fs::is_directory(whole) ? whole.filename().string() : whole.stem().string());
     if (!isFileName(name))
-        throw Error("a drive cannot be called '" + name + "', as '" + path +
-                    "' is: rename the recording");
+        throw Error("a drive cannot have the name '" + name + "' (from '" + path +
+                    "'): rename the recording");
     return name;
 }
 
@@ -87,7 +86,7 @@ std::string beginOfInput() {
         close(ends[0]);
         close(ends[1]);
     }
-    if (read < 0) throw Error("cannot read standard input: it is neither a pipe nor a file");
+    if (read < 0) throw Error("cannot read standard input: not a pipe or file");
     if (read == 0) throw Error("standard input is empty");
     return {bytes.data(), static_cast<std::size_t>(read)};
 }
@@ -126,22 +125,23 @@ FileKind kindOf(const std::string& path) {
     const std::string extension = fs::path(path).extension().string();
     for (const char* cloud : {".pcd", ".ply", ".bin", ".txt", ".csv"})
         if (extension == cloud)
-            throw Error("'" + path + "' is one file of a drive: name the folder that holds all");
+            throw Error("'" + path + "' is a single scan; give the folder that contains all scans");
     if (begins(bytes, "#ROSBAG"))
-        throw Error("'" + path + "' is a ROS bag of another version than 2.0: rosbag fix mends it");
+        throw Error("'" + path +
+                    "' is a ROS bag of a version other than 2.0; convert it with rosbag fix");
     for (const char* other : {".osf", ".zstd", ".las", ".laz"})
         if (extension == other)
-            throw Error(
-                "'" + path + "': " + other +
-                " files are not read; inputs.md of DeLiO's documentation lists those that are");
+            throw Error("'" + path + "': " + other +
+                        " files are not supported; inputs.md in DeLiO's documentation lists the "
+                        "supported formats");
     return FileKind::kRawlog;
 }
 
 std::string describe(const Recording& recording) {
-    std::string text = recording.sensor.empty() ? "a LiDAR of unknown model" : recording.sensor;
+    std::string text = recording.sensor.empty() ? "unknown LiDAR" : recording.sensor;
     if (recording.rate_hz) text += ", " + rounded(*recording.rate_hz, 3) + " Hz";
     if (recording.startsEmpty)
-        text += ", no points in its first scans";
+        text += ", first scans empty";
     else
         text += recording.pointTimes ? ", points with times" : ", points without times";
     const std::string how = recording.compensationMeasured  ? " (measured)"

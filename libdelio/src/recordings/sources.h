@@ -8,9 +8,9 @@
 namespace delio::io {
 enum class FileKind { kRawlog, kPcap, kRos1Bag, kRos2Database, kMcap };
 
-/** What a file is by its first bytes; "-": standard input, of which nothing is taken. What is none
- *  of the others is taken for a rawlog, which has no mark of its own. Throws Error where it cannot
- *  be read, or is a single cloud or another format that is known but not read. */
+/** Format of a file by its first bytes; "-": standard input, from which nothing is consumed.
+ *  Unrecognised files are treated as rawlogs, which have no magic number. Throws Error if the file
+ *  cannot be read, is a single cloud, or has a known but unsupported format. */
 FileKind kindOf(const std::string& path);
 
 /** Read the messages with scans of one topic. Throw as openScans(). */

@@ -15,7 +15,7 @@ bool StampOrder::isClockSet(const std::deque<Scan>& ahead) const {
     return (wasSet_ || ahead.size() >= kWindow) && std::all_of(ahead.begin(), ahead.end(), late);
 }
 
-/** Where sorted scans are as far apart as usual. One that has a wrong stamp is not. */
+/** True if sorted scans have the usual interval, which a scan with a wrong stamp has not. */
 std::size_t StampOrder::earliestOf(const std::deque<Scan>& ahead) const {
     std::size_t earliest = 0;
     for (std::size_t i = 1; i < std::min(kWindow, ahead.size()); ++i) {
@@ -71,8 +71,7 @@ std::optional<Scan> StampOrder::take(std::deque<Scan>& ahead) {
     const std::size_t index = ahead.front().index;
     if (isClockSet(ahead)) {
         findings_.add(
-            "stamps do not rise (the clock was set back or stands): they are counted on "
-            "from the scan before",
+            "stamps do not increase (clock set back or stopped): continued from the previous scan",
             index);
         const double passed_s = usual_s_ > 0 ? usual_s_ : kOfASpinningLidar_s;
         added_s_ = *latest_s_ + passed_s - ahead.front().stamp_s;
@@ -82,14 +81,13 @@ std::optional<Scan> StampOrder::take(std::deque<Scan>& ahead) {
     wasSet_ = false;
     const std::size_t place = earliestOf(ahead);
     if (isOutOfOrder(ahead, ahead.front().stamp_s - ahead[place].stamp_s)) {
-        findings_.add("scans with a stamp out of order are left out", index);
+        findings_.add("scans with a stamp out of order: ignored", index);
         ahead.pop_front();
         passedOver_ = 0;
         return {};
     }
     if (place > 0)
-        findings_.add("scans that were recorded out of order are sorted by their stamps",
-                      ahead[place].index);
+        findings_.add("scans recorded out of order: sorted by stamp", ahead[place].index);
     return give(ahead, place);
 }
 }  // namespace delio::io

@@ -9,9 +9,9 @@
 #include "findings.h"
 
 namespace delio::io {
-/** Gives scans with rising stamps, whatever the recorder wrote. Scans that came in another order
- * are sorted. A scan whose stamp does not rise is left out. Where none of the next scans rises, the
- *  clock was set back or stands: stamps count on from the scan before. One a drive. */
+/** Returns scans with increasing stamps. Swapped scans are sorted. A scan whose stamp does not
+ *  increase is ignored. Where none of the next scans rises, the clock was set back or stands:
+ *  stamps count on from the scan before. One a drive. */
 class StampOrder {
  public:
     /** How many scans take() compares. */
@@ -21,7 +21,7 @@ class StampOrder {
      *  unless the drive ends before. Nothing: that scan is left out. */
     std::optional<Scan> take(std::deque<Scan>& ahead);
 
-    /** What was left out or changed, a line each. */
+    /** Ignored or changed scans, one line per kind. */
     std::vector<std::string> findings() const { return findings_.lines(); }
 
  private:
@@ -36,8 +36,8 @@ class StampOrder {
     std::optional<double> latest_s_;  //!< stamp of the scan that was given last
     double usual_s_ = 0;              //!< from one scan to the next; 0: not known
     double added_s_ = 0;              //!< to the stamps that were recorded
-    bool wasSet_ = false;             //!< the scan before came with a clock that was set or stands
-    std::size_t passedOver_ = 0;      //!< how often the first of `ahead` was
+    bool wasSet_ = false;  //!< the scan before came with a clock that was set back or stopped
+    std::size_t passedOver_ = 0;  //!< how often the first of `ahead` was
     Findings findings_;
 };
 }  // namespace delio::io

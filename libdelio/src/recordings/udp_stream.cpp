@@ -35,7 +35,7 @@ constexpr std::size_t kUdpHeader = 8;
 
 bool isVlan(std::uint16_t type) { return type == 0x8100 || type == 0x88A8 || type == 0x9100; }
 
-/** Where the protocol stands in a link's header, and how long that is. */
+/** Offset of the protocol field in a link header, and the header's length. */
 struct Link {
     int type;
     std::size_t protocolAt, header;
@@ -68,16 +68,16 @@ UdpStream::UdpStream(const std::string& path) : path_(path) {
         pcap_fopen_offline_with_tstamp_precision(file, PCAP_TSTAMP_PRECISION_NANO, reason.data());
     if (!opened) {
         if (file != stdin) std::fclose(file);
-        throw Error(named(path) + " is not a pcap or cut off at its very beginning (" +
-                    reason.data() + ")");
+        throw Error(named(path) + " is not a pcap or is cut off at its start (" + reason.data() +
+                    ")");
     }
     pcap_ = std::shared_ptr<pcap>(opened, pcap_close);
     linkType_ = pcap_datalink(opened);
     if (!isKnown(linkType_)) {
         const char* const name = pcap_datalink_val_to_name(linkType_);
-        throw Error(named(path) + ": its packets are of link type " +
+        throw Error(named(path) + ": unsupported link type " +
                     (name ? name : std::to_string(linkType_)) +
-                    "; Ethernet, Linux cooked, loopback and raw IP are known");
+                    "; supported are Ethernet, Linux cooked, loopback and raw IP");
     }
     std::error_code none;
     const auto size = path == "-" ? 0 : std::filesystem::file_size(path, none);

@@ -37,7 +37,7 @@ class IpFragments {
     std::list<Datagram> open_;
 };
 
-/** What one UDP datagram of a recording holds; good until the next one is read. */
+/** Content of one UDP datagram; valid until the next one is read. */
 struct UdpPacket {
     const std::uint8_t* payload = nullptr;
     std::size_t bytes = 0;
@@ -63,7 +63,7 @@ class UdpStream {
 
  private:
     struct View;
-    /** What an Ethernet-like frame carries if that is IPv4. */
+    /** IPv4 payload of an Ethernet-like frame. */
     std::optional<View> ipOf(const View& frame) const;
     std::optional<UdpPacket> udpOf(const View& ip);
 

@@ -42,7 +42,7 @@ void decodeVelodynePackets(
     const mrpt::obs::VelodyneCalibration& calibration, double minRange, double maxRange,
     Scan& scan);
 
-/** What else than its calibration a decoder has to know of a sensor. */
+/** Properties of a sensor that a decoder needs besides its calibration. */
 struct VelodyneLayout {
     FiringTimes firing;
     double unit_m = 0.002;  //!< of a return's distance

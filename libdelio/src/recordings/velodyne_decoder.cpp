@@ -22,7 +22,7 @@ namespace {
 using Packet = mrpt::obs::CObservationVelodyneScan::TVelodyneRawPacket;
 constexpr std::size_t kBlocks = 12, kBlockBytes = 100;
 constexpr int kTurn = 36000;  // of azimuths, 0.01 deg
-/** More packets than any turn has: a sensor that stands still must not fill the memory. */
+/** More packets than any revolution has, so that a stopped sensor does not fill the memory. */
 constexpr std::size_t kMostPackets = 4000;
 
 /** Turns begin where the azimuth passes 0, between two blocks. Its packet is part of both turns,
@@ -66,11 +66,11 @@ class VelodyneDecoder : public PacketDecoder {
 };
 
 bool VelodyneDecoder::add(const std::uint8_t* payload, std::size_t bytes, double received_s) {
-    if (!takes(bytes)) throw Error("a Velodyne's packet of " + std::to_string(bytes) + " bytes");
+    if (!takes(bytes)) throw Error("a Velodyne packet of " + std::to_string(bytes) + " bytes");
     const std::string name = velodyneModelName(payload);
     if (model_.name.empty()) model_ = velodyneModel(name, calibrationFile_);
     if (model_.name != name)
-        throw Error("a packet of a Velodyne " + name + " among those of a " + model_.name);
+        throw Error("a packet of the Velodyne " + name + " is among packets of a " + model_.name);
     std::uint32_t clock_us = 0;
     std::memcpy(&clock_us, payload + kBlocks * kBlockBytes, sizeof(clock_us));
     const double time_s = clock_.timeOf(clock_us, received_s);
@@ -102,7 +102,7 @@ void VelodyneDecoder::finish() {
     if (taken_ == 0 || made_ > 0) return;
     throw Error("only " + std::to_string(turnedInAll_ / 100) + " of 360 degrees in " +
                 std::to_string(taken_) + " packets of a " + sensor() +
-                ": there is no scan in less than half a turn");
+                "; a scan needs at least half a revolution");
 }
 
 std::vector<std::string> VelodyneDecoder::findings() const {
@@ -227,7 +227,7 @@ bool mayBeCalibration(const std::string& yaml) {
 
 VelodyneCalibration readCalibration(const std::string& file) {
     if (!std::filesystem::is_regular_file(file))
-        throw Error("there is no calibration '" + file + "'");
+        throw Error("no such calibration file: '" + file + "'");
     VelodyneCalibration calibration;
     bool read = false;
     try {
@@ -240,7 +240,7 @@ VelodyneCalibration readCalibration(const std::string& file) {
         read = false;
     }
     if (!read || calibration.empty())
-        throw Error("'" + file + "' is not a Velodyne's calibration (.xml or .yaml)");
+        throw Error("'" + file + "' is not a Velodyne calibration (.xml or .yaml)");
     return calibration;
 }
 
@@ -252,8 +252,8 @@ std::size_t lasersOf(const std::string& name) {
 const char* const kDecoded = "HDL-64E, HDL-32E, VLP-16, Puck Hi-Res and VLP-32C";
 
 [[noreturn]] void refuse(const std::string& model) {
-    throw Error("packets of a Velodyne " + model + " are not decoded, those of " + kDecoded +
-                " are; give the clouds (PointCloud2) that its driver makes of them");
+    throw Error("packets of the Velodyne " + model + " are not supported (supported: " + kDecoded +
+                "); record PointCloud2 messages with its driver instead");
 }
 }  // namespace
 
@@ -266,7 +266,7 @@ std::string velodyneModelName(const std::uint8_t* packet) {
         if (block[1] == 0xCC || block[1] == 0xBB) refuse("VLS-128 (Alpha Prime)");
         secondBank = secondBank || block[1] == 0xDD;
     }
-    // Its last two bytes tell its status in turn, not what it is.
+    // Its last two bytes cycle through status values and do not identify the model.
     if (secondBank) return "HDL-64E";
     switch (packet[kFactoryByte]) {
         case 0x21:
@@ -289,8 +289,8 @@ std::string velodyneModelName(const std::uint8_t* packet) {
     }
     std::array<char, 8> byte{};
     std::snprintf(byte.data(), byte.size(), "0x%02X", packet[kFactoryByte]);
-    throw Error(std::string("a packet of a Velodyne that is not known (factory byte ") +
-                byte.data() + "); " + kDecoded + " are");
+    throw Error(std::string("a packet of an unknown Velodyne (factory byte ") + byte.data() +
+                "); supported are " + kDecoded);
 }
 
 VelodyneModel velodyneModel(const std::string& name, const std::string& calibrationFile) {
@@ -300,11 +300,11 @@ VelodyneModel velodyneModel(const std::string& name, const std::string& calibrat
         calibrationFile.empty() ? usualCalibration(name) : readCalibration(calibrationFile);
     const std::size_t lasers = model.calibration.laser_corrections.size();
     if (lasers == 0)
-        throw Error("there is no usual calibration of a Velodyne " + name +
-                    "; give the sensor's with --sensor-info");
+        throw Error("there is no standard calibration of the Velodyne " + name +
+                    "; give the sensor's own with --sensor-info");
     if (lasers != lasersOf(name))
-        throw Error("the calibration '" + calibrationFile + "' is of " + std::to_string(lasers) +
-                    " lasers, the packets are of a Velodyne " + name);
+        throw Error("the calibration '" + calibrationFile + "' has " + std::to_string(lasers) +
+                    " lasers but the packets come from a Velodyne " + name);
     model.layout.firing = firingTimes(lasers);
     if (name == "VLP-32C") {
         model.layout.firing = {2.304, 55.296, 2};

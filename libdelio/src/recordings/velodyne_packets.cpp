@@ -69,8 +69,8 @@ double packetPeriod_us(const std::vector<Packet>& packets) {
     return *middle > 0 && *middle < kSlowest_us ? *middle : 0;
 }
 
-/** The block with the first returns of those that block `b` holds second returns of, or none. It is
- *  told by its azimuth: the packet's byte for the return mode is another thing on an HDL-64E. */
+/** The block with the first returns for the second returns in block `b`, if any. It has the same
+ *  azimuth; the packet's return-mode byte has another meaning on an HDL-64E. */
 const Block* firstReturns(const Packet& packet, int b) {
     const Block& block = packet.blocks[b];
     for (int i = b - 1; i >= 0 && packet.blocks[i].rotation() == block.rotation(); --i)
@@ -204,14 +204,14 @@ class Decoder {
 void checkCalibration(const std::vector<LaserCalibration>& lasers) {
     if (lasers.empty())
         throw Error(
-            "a Velodyne scan without its calibration; record it with a calibration file of the "
+            "a Velodyne scan has no calibration; record it with the calibration file of the "
             "sensor");
     if (lasers.size() != 16 && lasers.size() != 32 && lasers.size() != 64)
-        throw Error("a Velodyne scan of " + std::to_string(lasers.size()) +
-                    " lasers; models of 16, 32 and 64 are known");
+        throw Error("a Velodyne scan with " + std::to_string(lasers.size()) +
+                    " lasers is not supported; 16, 32 and 64 are");
 }
 
-/** The usual step; 0 where there is none. */
+/** The usual step; 0 if unknown. */
 double medianStep(const std::vector<double>& values) {
     if (values.size() < 2) return 0;
     std::vector<double> steps;

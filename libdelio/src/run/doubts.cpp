@@ -35,8 +35,8 @@ void count(const Eigen::Matrix3Xd& axes, const RunRow& row, std::array<std::size
 }
 
 std::string ofAll(const Stretches& found, std::size_t pairs) {
-    return mrpt::format("%zu of %zu scans (at most %zu in a row, from scan %zu)", found.scans,
-                        pairs, found.longest, found.from);
+    return mrpt::format("%zu of %zu scans (longest run %zu, from scan %zu)", found.scans, pairs,
+                        found.longest, found.from);
 }
 }  // namespace
 
@@ -82,8 +82,7 @@ const char* stateOf(const RunRow& row) {
 std::string textOf(const Stretches& found, std::size_t scans) {
     auto count = std::to_string(scans);
     if (found.longest == 0) return count;
-    return count +
-           mrpt::format(", at most %zu in a row (from scan %zu)", found.longest, found.from);
+    return count + mrpt::format(", longest run %zu (from scan %zu)", found.longest, found.from);
 }
 
 std::string weakAxesOf(const Doubts& doubts) {
@@ -104,27 +103,26 @@ std::vector<std::string> warningsOf(const Doubts& doubts) {
     const double many = kMany * static_cast<double>(doubts.pairs);
     std::vector<std::string> warnings;
     if (static_cast<double>(doubts.predicted.scans) > many)
-        warnings.push_back(ofAll(doubts.predicted, doubts.pairs) +
-                           " could not be registered: their motion is a prediction, and the poses "
-                           "before and after a long row of them do not belong together; the column "
-                           "reason of scans.csv says why");
+        warnings.push_back(
+            ofAll(doubts.predicted, doubts.pairs) +
+            " could not be registered: their motion is predicted, and poses before and after a "
+            "long run of them may not fit together; see the column 'reason' of scans.csv");
     if (static_cast<double>(doubts.weak.scans) > many)
         warnings.push_back(
-            ofAll(doubts.weak, doubts.pairs) + " were observed weakly (" + weakAxesOf(doubts) +
-            "; the vehicle's axes): what they see looks the same anywhere on these axes, "
-            "so that the motion there is the prediction, or a rest that may be none; "
-            "take it from another sensor (wheels, GNSS, gyroscope)");
+            ofAll(doubts.weak, doubts.pairs) + " are weakly observed (" + weakAxesOf(doubts) +
+            "; the vehicle's axes): the scene does not constrain the motion along these axes, so "
+            "it is predicted there and may wrongly show a standstill; add wheel odometry, GNSS or "
+            "an IMU for these axes (tutorials.md, section 5)");
     if (doubts.lost.scans > 0)
-        warnings.push_back(
-            ofAll(doubts.lost, doubts.pairs) +
-            " were lost: where the sensor went meanwhile is not known, and the poses "
-            "before and after them do not belong together; the column state of "
-            "scans.csv names them");
+        warnings.push_back(ofAll(doubts.lost, doubts.pairs) +
+                           " are lost: where the sensor went meanwhile is not known, and the poses "
+                           "before and after them do not fit together; see the column 'state' of "
+                           "scans.csv");
     if (doubts.interrupted.scans > 0)
         warnings.push_back(ofAll(doubts.interrupted, doubts.pairs) +
-                           " follow a pause, or a clock that was set: the motion before them was "
-                           "searched for; where it was not found (predicted in scans.csv) the "
-                           "drive begins anew");
+                           " follow a time gap or a clock jump: the motion across it was searched "
+                           "for; where scans.csv says 'predicted' it was not found, and the "
+                           "trajectories before and after are not connected");
     return warnings;
 }
 
@@ -141,12 +139,12 @@ std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes,
             mrpt::format("scans %zu to %zu", rows[i].scan, rows[end - 1].scan);
         if (where == Whereabouts::kUnknown && end - i > kAtFirst)
             warnings.push_back(scans +
-                               " were not found in the stored map: their poses are the "
-                               "odometry's, from where it was found");
+                               " were not localised in the stored map: their poses are the "
+                               "odometry's, relative to the first localised scan");
         if (where == Whereabouts::kOutside)
             warnings.push_back(scans +
-                               " are outside the stored map: their poses are the "
-                               "odometry's, from where it was left");
+                               " are outside the stored map: their poses are the odometry's, "
+                               "continued from the map's border");
         i = end;
     }
     return warnings;

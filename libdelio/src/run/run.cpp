@@ -88,15 +88,16 @@ void Run::readSideFiles(const io::SideFile& calib, const io::SideFile& poses,
     if (!calib.text.empty()) {
         record_.calibration = io::calibrationIn(calib.text, calib.name);
         if (!record_.calibration.hasTr)
-            warn("'" + calib.name + "' has no Tr: trajectory_kitti_cam0.txt is left out");
+            warn("'" + calib.name + "' has no Tr: trajectory_kitti_cam0.txt is not written");
     }
     if (truth.empty() && poses.text.empty()) return;
     truthIsCam0_ = truth.empty() || truthIsCam0;
     if (truthIsCam0_ && !record_.calibration.hasTr) {
         const std::string why =
-            "true poses of cam0 need Tr, and " +
-            (calib.name.empty() ? "there is no calib.txt" : "'" + calib.name + "' has none");
-        if (!truth.empty()) throw Error(why + "; give poses of the vehicle instead");
+            "ground truth in the cam0 frame needs Tr, but " +
+            (calib.name.empty() ? "there is no calib.txt" : "'" + calib.name + "' has no Tr");
+        if (!truth.empty())
+            throw Error(why + "; give vehicle poses instead (--ground-truth-frame vehicle)");
         warn(why + ": no evaluation");
         return;
     }
@@ -115,21 +116,20 @@ RunRow Run::process(const Scan& scan, double read_ms) {
     }
     if (record_.stampsRise && !rows.empty() && scan.stamp_s <= rows.back().stamp_s) {
         record_.stampsRise = false;
-        warn(
-            mrpt::format("scan %zu is not later than the one before: trajectory_tum.txt is left "
-                         "out",
-                         scan.index));
+        warn(mrpt::format(
+            "scan %zu is not later than the previous one: trajectory_tum.txt is not written",
+            scan.index));
     }
     rows.push_back(row);
     try {
         if (rows_) rows_->add(row, slam_.trajectory().poses.back());
     } catch (const std::exception& e) {
-        warn("the rows so far are not kept while the drive goes on: " + plainMessage(e));
+        warn("intermediate results cannot be written: " + plainMessage(e));
     }
     return row;
 }
 
-/** What a listener has is of no use once it has failed: its part of the results is left out. */
+/** The results of a failed listener are not written. */
 void Run::switchOff(const FailedListener& failed, std::size_t scan) {
     const std::string what = std::string("the listener '") + failed.listener->name() +
                              "' failed at scan " + std::to_string(scan) +
@@ -147,7 +147,7 @@ void Run::switchOff(const FailedListener& failed, std::size_t scan) {
     drop(loops_);
 }
 
-/** Where there are none, the graph stays as it was. */
+/** Without loops the graph is unchanged. */
 void Run::closeLoops() {
     auto closed = loops_->close(record_.graph, graphOptions(record_.options, settings_));
     record_.searchedLoops = searchesLoops();
@@ -162,8 +162,9 @@ void Run::closeLoops() {
 void Run::anchor() {
     record_.fixes = follower_->fixes();
     if (!record_.isLocalised()) {
-        const std::string what = "no scan of the drive was found in the map '" + record_.storedMap +
-                                 "': the poses are the odometry's, in the frame of its first scan";
+        const std::string what = "no scan of the drive could be localised in the map '" +
+                                 record_.storedMap +
+                                 "': the poses are the odometry's, relative to the first scan";
         return settings_.mayBeElsewhere ? warn(what) : fail(what);
     }
     for (const auto& warning : warningsOf(record_.fixes, record_.rows)) warn(warning);
@@ -187,7 +188,7 @@ void Run::optimiseGraph() {
         if (follower_) anchor();
     } catch (const std::exception& e) {
         // What the odometry found is worth keeping.
-        fail("the pose graph was not optimised: " + plainMessage(e));
+        fail("pose graph was not optimised: " + plainMessage(e));
     }
 }
 
@@ -225,8 +226,7 @@ void Run::extend() {
     record_.joints = std::move(both.joints);
     if (both.accepted == 0)
         return fail(
-            "the map was not extended: no submap of the drive could be registered to it "
-            "beyond doubt (joints.csv says why)");
+            "the map was not extended: no submap of the drive was accepted (see joints.csv)");
     record_.extended = true;
     record_.addedSubmaps = both.added;
     stored_ = std::move(both.content);
@@ -244,12 +244,12 @@ evaluation::Comparison Run::compared(const io::Trajectory& vehicle) const {
                      : vehicle;
     try {
         auto found = evaluation::compare(*truth_, estimate, {}, &used);
-        if (found.reference.size() < 2) throw Error("fewer than two scans have a true pose");
+        if (found.reference.size() < 2) throw Error("fewer than two scans have ground truth");
         return found;
     } catch (const evaluation::WrongFrames&) {
-        throw Error(std::string("the true poses do not look like poses of ") +
+        throw Error(std::string("the ground truth does not look like poses of ") +
                     (truthIsCam0_ ? "cam0" : "the vehicle") +
-                    ": their axes are swapped; see --ground-truth-frame");
+                    ": the axes are swapped; see --ground-truth-frame");
     }
 }
 

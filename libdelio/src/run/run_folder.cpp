@@ -66,8 +66,8 @@ std::string storedMapIn(const std::string& path) {
     if (!fs::is_directory(path)) return path;
     const RunFolder folder(path);
     if (folder.has(RunFolder::kStoredMap)) return folder.path(RunFolder::kStoredMap);
-    throw Error("'" + path + "' holds no " + RunFolder::kStoredMap +
-                ": is it the folder of a delio-slam run (without --no-map) that has ended?");
+    throw Error("'" + path + "' contains no " + RunFolder::kStoredMap +
+                "; give the folder of a finished delio-slam run (without --no-map)");
 }
 
 std::string RunFolder::path(const char* name) const { return (fs::path(folder_) / name).string(); }
@@ -143,7 +143,7 @@ std::string RunFolder::write(RunRecord record, const RunMaps& maps,
                              const Illustrate& illustrate) const {
     std::error_code fault;
     fs::create_directories(folder_, fault);
-    if (fault) throw Error("cannot make the folder '" + folder_ + "': " + fault.message());
+    if (fault) throw Error("cannot create the folder '" + folder_ + "': " + fault.message());
     // What a kill leaves lies with the rest of the run that was killed, if there is a place.
     const std::string incomplete = path(kIncomplete);
     io::PartialFolder partial(folder_, folder_,

@@ -284,7 +284,7 @@ Summary readSummary(const std::string& path) {
         summary.searched_loops = static_cast<bool>(node["loops_closed"]);
         return summary;
     } catch (const std::exception& e) {
-        throw Error("cannot understand '" + path + "': " + plainMessage(e));
+        throw Error("cannot parse '" + path + "': " + plainMessage(e));
     }
 }
 }  // namespace delio::run

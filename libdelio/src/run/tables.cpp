@@ -97,7 +97,7 @@ std::vector<LoopRow> readLoopTable(const std::string& path) {
                 numberIn<std::size_t>(columns[i] < cells.size() ? cells[columns[i]] : "");
             if (!number)
                 throw Error("'" + path + "', line " + std::to_string(line) + ": '" + names[i] +
-                            "' is not a count");
+                            "' is not a number");
             values[i] = *number;
         }
         const std::string reason = columns[3] < cells.size() ? cells[columns[3]] : "";
@@ -157,7 +157,7 @@ std::vector<LocalisationRow> readLocalisationTable(const std::string& path) {
         while (kind < kNames.size() && cell(where) != kNames[kind]) ++kind;
         if (!number || kind == kNames.size())
             throw Error("'" + path + "', line " + std::to_string(line) +
-                        ": no scan, or none of unknown, in_map and outside");
+                        ": expected a scan number and one of unknown, in_map, outside");
         rows.push_back({*number, static_cast<Whereabouts>(kind), cell(measured) == "1"});
     }
     return rows;
@@ -178,7 +178,8 @@ RowFiles::RowFiles(fs::path folder) : folder_(std::move(folder)) {
     std::error_code fault;
     fs::remove_all(folder_, fault);
     if (!fault) fs::create_directories(folder_, fault);
-    if (fault) throw Error("cannot make the folder '" + folder_.string() + "': " + fault.message());
+    if (fault)
+        throw Error("cannot create the folder '" + folder_.string() + "': " + fault.message());
     scans_.path = folder_ / RunFolder::kScans;
     trajectory_.path = folder_ / RunFolder::kOdometry;
 }

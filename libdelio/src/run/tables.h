@@ -22,10 +22,10 @@ void writeLoopTable(const std::vector<places::LoopCandidate>& candidates, const 
 /** Throws Error with file and line where a column is missing or malformed. */
 std::vector<LoopRow> readLoopTable(const std::string& path);
 
-/** Writes localisation.csv, a row a scan: where the vehicle was in the map as it was known then
+/** Writes localisation.csv, one row per scan: the vehicle's pose in the map as known at that time
  *  (unknown, in_map, outside; x y z and quaternion in the map's frame, and the upper triangle of
- * the covariance in the order of delio::Increment), how much of the scan stands in the map, and why
- * it was not measured. Error where the file cannot be written. */
+ *  the covariance in the order of delio::Increment), the inlier ratio, and why the pose was not
+ *  measured. Throws Error if the file cannot be written. */
 void writeLocalisationTable(const std::vector<RunRow>& rows, const std::vector<MapFix>& fixes,
                             const std::string& path);
 

@@ -19,7 +19,7 @@ void Localiser::expect(const Eigen::Isometry3d& vehicle) { follower_->expect(veh
 Localisation Localiser::process(const Scan& scan) {
     auto report = slam_.process(scan);
     if (!report.failed.empty()) fault_ = report.failed.front().message;
-    if (!fault_.empty()) throw Error("the localisation ended: " + fault_);
+    if (!fault_.empty()) throw Error("localisation stopped: " + fault_);
     return {std::move(report.step), follower_->fixes().back()};
 }
 
@@ -27,7 +27,7 @@ std::optional<mrpt::poses::CPose3DPDFGaussian> Localiser::process(
     const mrpt::obs::CObservation& observation) {
     if (!io::isScan(observation))
         throw Error("an observation of class " +
-                    std::string(observation.GetRuntimeClass()->className) + " is no LiDAR scan");
+                    std::string(observation.GetRuntimeClass()->className) + " is not a LiDAR scan");
     Scan scan = io::decodeObservation(observation);
     scan.index = observations_++;
     scan.time = observation.timestamp;

@@ -13,7 +13,7 @@ namespace delio {
 using mrpt::config::CConfigFileMemory;
 
 namespace {
-/** MRPT's reader passes silently over what it does not understand. */
+/** MRPT's reader silently ignores lines that it does not understand. */
 void requireIniLines(const std::string& text) {
     std::istringstream in(text);
     bool inSection = false;
@@ -30,12 +30,12 @@ void requireIniLines(const std::string& text) {
     }
 }
 
-/** MRPT puts in what $env{NAME} and $eval{FORMULA} stand for, and throws where one has no end. */
+/** MRPT expands $env{NAME} and $eval{FORMULA}, and throws if one is not closed. */
 CConfigFileMemory configOf(const std::string& text) {
     try {
         return CConfigFileMemory(text);
     } catch (const std::exception& e) {
-        throw Error("options cannot be understood: " + plainMessage(e));
+        throw Error("cannot parse the options: " + plainMessage(e));
     }
 }
 
@@ -58,7 +58,7 @@ Options Options::ofProfile(const std::string& name) {
     if (text == profileTexts().end()) {
         std::string known;
         for (const auto& profile : profileNames()) known += (known.empty() ? "" : ", ") + profile;
-        throw Error("there is no profile '" + name + "'; the profiles are: " + known);
+        throw Error("unknown profile '" + name + "'; choose one of: " + known);
     }
     Options options;
     options.load(text->second);
@@ -125,7 +125,7 @@ void Options::set(const std::string& assignment) {
     // A key that begins like a comment or a section would be one.
     if (equals == assignment.npos || dot > equals || dot + 1 == equals ||
         std::string("#;[").find(assignment[dot + 1]) != std::string::npos)
-        throw Error("'" + assignment + "' is not of the form section.key=value");
+        throw Error("'" + assignment + "' does not have the form section.key=value");
     load("[" + assignment.substr(0, dot) + "]\n" + assignment.substr(dot + 1) + "\n");
 }
 

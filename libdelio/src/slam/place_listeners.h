@@ -11,9 +11,9 @@
 #include "places/map_tracker.h"
 
 namespace delio {
-/** Keeps a drive as submaps, looks for places that it comes back to while it goes on, and closes
- *  its loops when it is over. The search has a thread of its own (where more than one may be used),
- *  and finds the same whenever it gets the time. */
+/** Stores a drive as submaps, searches for revisited places during the drive, and closes the loops
+ *  at its end. The search has a thread of its own (where more than one may be used), and finds the
+ *  same whenever it gets the time. */
 class LoopCloser : public SlamListener {
  public:
     /** `folder`: where submaps are put aside, see LoopSearch. */
@@ -28,7 +28,7 @@ class LoopCloser : public SlamListener {
     places::ClosedLoops close(const graph::PoseGraph& graph,
                               const graph::PoseGraphOptions& optimisation);
 
-    /** What is known when the loops are closed. */
+    /** State needed to close the loops. */
     const places::LoopSearch& search() const { return search_; }
     /** Time that the search has taken, beside the drive and after it. */
     double search_ms() const { return search_ms_; }

@@ -44,11 +44,11 @@ class SwitchedOff : public SlamListener {
     std::string name_;
 };
 
-/** All poses after it would be what it is. */
+/** All later poses would be wrong, too. */
 void requireFinite(const Increment& increment, const Scan& scan) {
     if (!increment.pose.matrix().allFinite() || !increment.covariance.allFinite())
         throw Error("scan " + std::to_string(scan.index) +
-                    ": the odometry gave an increment that is not finite");
+                    ": the odometry returned an increment that is not finite");
 }
 }  // namespace
 
@@ -57,7 +57,7 @@ void Slam::attach(std::shared_ptr<SlamListener> listener) {
 }
 
 void Slam::requireOpen() const {
-    if (!odometry_) throw Error("the drive is closed: it takes no more scans");
+    if (!odometry_) throw Error("the drive is finished and accepts no more scans");
 }
 
 void Slam::tell(const SlamScan& scan, ScanReport& report) {

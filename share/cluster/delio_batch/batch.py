@@ -46,7 +46,7 @@ class Batch:
     def __init__(self, out: str):
         self.out = os.path.abspath(out)
         if not self.out.isprintable():
-            raise Problem("the name of the output folder has characters that cannot be printed: choose another")
+            raise Problem("the name of the output folder has control characters; choose another name")
         self.settings: dict = {}
         self.tasks: list = []
         self._made: list = []  # by this run
@@ -88,7 +88,7 @@ class Batch:
         remove_file(self.state_file(task))
 
     def expect(self, tasks: list) -> None:
-        """These are about to be done again: what is known of them is history."""
+        """Forgets the earlier results of tasks that will be repeated."""
         for task in tasks:
             state = self.state(task)
             if state.get("state", "waiting") != "waiting":
@@ -113,11 +113,11 @@ class Batch:
                 rows = [file.readline()] if only >= 0 else file.readlines()
             self.tasks = [Task(**json.loads(row)) for row in rows]
         except FileNotFoundError:
-            raise Problem(f"'{self.out}' is no folder of a batch: it has no batch.jsonl") from None
+            raise Problem(f"'{self.out}' is not the folder of a batch: no batch.jsonl") from None
         except OSError as error:
             raise Problem(f"cannot read {reason(error)}") from None
         except (ValueError, TypeError, KeyError):
-            raise Problem(f"'{self.list_file}' is damaged: begin again in another folder") from None
+            raise Problem(f"'{self.list_file}' is damaged; start again in another folder") from None
         return self
 
     def _save(self) -> None:
@@ -133,13 +133,13 @@ class Batch:
             if [task.identity() for task in old.tasks] == [task.identity() for task in tasks]:
                 settings = {**old.settings, **settings}
             elif not update:
-                raise Problem(f"'{self.out}' holds another batch ({len(old.tasks)} tasks): choose another folder, "
-                              "or take this list in its place by --update (what is done stays)")
+                raise Problem(f"'{self.out}' contains another batch ({len(old.tasks)} tasks); choose another folder "
+                              "or replace its list with --update (finished tasks are kept)")
             self._replaced = old
         for task in tasks:
             if self.is_done(task) and read_json(self.record(task)).get("work") != task.work():
-                raise Problem(f"'{self.result(task)}' was made of another input, or with other options: "
-                              "remove it, or choose another folder")
+                raise Problem(f"'{self.result(task)}' was made from another input or with other options; "
+                              "remove it or choose another folder")
         self.tasks, self.settings = tasks, {"id": secrets.token_hex(4), **settings}
         if not self._replaced:
             self._made.append(self.list_file)
@@ -159,7 +159,7 @@ class Batch:
 
     # ---- one at a time
     def lock(self) -> None:
-        """Makes the folder, and holds it until this process ends, in whatever way."""
+        """Creates the folder and locks it until this process ends."""
         try:
             for folder in (self.out, self.work(), self.path("logs")):
                 above = folder
@@ -176,7 +176,7 @@ class Batch:
                     raise
             self._lock = handle
         except BlockingIOError:
-            raise Problem(f"another delio-batch works in '{self.out}': wait for it (--status says how far it "
+            raise Problem(f"another delio-batch is running in '{self.out}': wait for it (--status says how far it "
                           "is)") from None
         except OSError as error:
             raise Problem(f"cannot write '{self.out}': {reason(error)}") from None

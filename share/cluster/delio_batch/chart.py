@@ -93,7 +93,7 @@ def draw(batch, rows: list) -> list:
         if not done:
             continue
         if not shutil.which("gnuplot"):
-            say("gnuplot, which draws sweeps, is not installed; install the package gnuplot-nox")
+            say("charts of sweeps need gnuplot; install the package gnuplot-nox")
             return []
         with partial_folder(picture) as folder:
             partial = os.path.join(folder, "chart.png")
@@ -105,5 +105,5 @@ def draw(batch, rows: list) -> list:
         if is_drawn:
             pictures.append(picture)
         else:
-            say(f"the chart of {key} cannot be drawn: {(drawn.stderr.strip().splitlines() or ['?'])[-1]}")
+            say(f"the chart of {key} failed: {(drawn.stderr.strip().splitlines() or ['?'])[-1]}")
     return pictures

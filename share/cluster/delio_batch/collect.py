@@ -24,7 +24,7 @@ def outcome(batch: Batch, task: Task, running: set, waiting: set) -> tuple:
     if task.number in waiting or word == "waiting":
         return "waiting", state
     if word == "running":
-        return "lost", {**state, "line": f"ended without a word on {state.get('host', '?')} "
+        return "lost", {**state, "line": f"stopped without a message on {state.get('host', '?')} "
                                          "(killed with all its processes: limits of time or memory, or the node)"}
     return "failed", state  # stopped, and not in the queue again
 
@@ -72,12 +72,12 @@ def _draw_page(batch: Batch, scored: list) -> str:
     # What delio-eval refuses of one variant would cost the page.
     usable = {drive: tasks for drive, tasks in drives.items() if all(good for _, good in tasks)}
     if len(scored) > MOST_ON_A_PAGE:
-        say(f"{len(scored)} results are too many for a page: see {batch.path('table.tsv')}")
+        say(f"{len(scored)} results are too many for a report; see {batch.path('table.tsv')}")
         return ""
     compare = batch.settings.get("compare", [])
     variants = list(dict.fromkeys(task.variant for tasks in usable.values() for task, _ in tasks))
     if not variants:
-        say("no result has a truth that it could be scored against: there is no page")
+        say("no result has ground truth: no report is written")
         return ""
     truths = batch.work(f"truth.{os.getpid()}")
     os.makedirs(truths)
@@ -137,12 +137,12 @@ def _summarise(batch: Batch, rows: list, counts: dict, fault: str, charts: list)
     peak = max((float(row.get("peak_mb") or 0) for row in rows), default=0)
     say(f"{counts.get('done', 0)} of {len(rows)} tasks done" +
         "".join(f", {counts[word]} {word}" for word in ("failed", "lost", "running", "waiting") if counts.get(word)) +
-        f"; {total:.3f} CPU hours, {peak:.0f} MB at most")
+        f"; {total:.3f} CPU hours, {peak:.0f} MB peak memory")
     if fault:
-        say(f"the page cannot be made: {fault}")
+        say(f"the report failed: {fault}")
     elif os.path.exists(batch.path("report", "report.html")):
-        say(f"page: {batch.path('report', 'report.html')}")
+        say(f"report: {batch.path('report', 'report.html')}")
     say("table: " + ", ".join([batch.path("table.tsv")] + charts))
     if counts.get("failed") or counts.get("lost"):
-        say(f"failed ones are in {batch.path('failed.tsv')}; --retry does them again")
+        say(f"failed tasks are listed in {batch.path('failed.tsv')}; --retry repeats them")
 

@@ -9,43 +9,42 @@ import textwrap
 from .base import Problem, plain, run_tool
 
 ABOUT = """\
-delio-batch: many drives, on a Slurm cluster or on this machine
+delio-batch: processes many drives on a Slurm cluster or on this machine
 
 Usage: delio-batch -o OUT --slurm|--local=N [OPTION]... INPUT... [-- SLAM_OPTION...]
   or:  delio-batch -o OUT --slurm|--local=N --retry
   or:  delio-batch --status=OUT
 
-Runs delio-slam on every input with every profile and every value of swept
-options, each in a task of its own, and collects the results. What is done is
-kept: the same command goes on where it was ended. What follows -- goes to
+Runs delio-slam on every input, with every profile and every value of the swept
+options, one task each, and collects the results. Finished tasks are kept: after
+an interruption, the same command continues. Arguments after -- are passed to
 delio-slam.
 """
 
 END = """
 Writes:
-  VARIANT/DRIVE/          what delio-slam leaves, and task.json: time, memory,
+  VARIANT/DRIVE/          results of delio-slam, and task.json: time, memory,
                           errors
-  logs/VARIANT/DRIVE.log  what delio-slam said
-  report/                 delio-eval's page of all drives whose truth is known
-  table.tsv               a row a task: state, errors, CPU hours, peak memory
+  logs/VARIANT/DRIVE.log  messages of delio-slam
+  report/                 delio-eval's report of all drives with ground truth
+  table.tsv               per task: state, errors, CPU hours, peak memory
   failed.tsv              failed tasks, each with the last line of its log
   sweep-KEY.png           error and time over the values of a swept option
-  batch.jsonl             the list of tasks, which no later command changes
+  batch.jsonl             the list of tasks
 
 Examples:
-  All of KITTI, and how far it is:
+  Process all of KITTI and show the progress:
       $ delio-batch -o out --slurm dataset
       $ delio-batch --status out
-  A sweep over two options, twelve variants of each drive, on four cores:
+  Sweep two options (12 variants of each drive) on four cores:
       $ delio-batch -o out --local 4 --set plane_map.voxel_size=0.4,0.5,0.6 \\
           --set scan.max_range=50,75,100,120 fleet/*.rawlog -- --no-map
 
 Exit status:
-  0    success; with --slurm: all is in the queue, or done
-  1    failed tasks, or a failed run; one line on stderr says what, where and
-       what to do
-  2    bad command line
-  130  interrupted; the same command goes on
+  0    success; with --slurm: all tasks are queued or done
+  1    tasks failed, or the run failed; stderr says why, in one line
+  2    wrong command line
+  130  interrupted; the same command continues
 """
 
 OWN = ("-i", "--input", "-o", "--output", "--profile", "--threads", "--force", "--gui",
@@ -78,7 +77,7 @@ def _lines_of(action) -> list:
 
 def _count(text: str) -> int:
     if not re.fullmatch(r"[0-9]{1,9}", text) or int(text) == 0:
-        raise argparse.ArgumentTypeError(f"wants a whole number, 1 or more, not '{text}'")
+        raise argparse.ArgumentTypeError(f"needs a whole number of at least 1, not '{text}'")
     return int(text)
 
 
@@ -86,42 +85,42 @@ def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="delio-batch", add_help=False, allow_abbrev=False)
     add = parser.add_argument
     add("inputs", nargs="*", default=[], help=argparse.SUPPRESS)
-    add("-o", "--output", metavar="OUT", help="Folder of the batch, where every node sees it")
+    add("-o", "--output", metavar="OUT", help="Folder of the batch; every node must see it")
     add("-i", "--input", metavar="INPUT", action="append", default=[], dest="more_inputs",
-        help="What delio-slam reads, or KITTI's root for all its sequences; as INPUT without -i; may be repeated")
+        help="Input of delio-slam, or KITTI's root folder for all its sequences; the same as INPUT without -i; may be repeated")
     add("-l", "--list", metavar="FILE", action="append", default=[], dest="lists",
-        help="Inputs, a line each (\"-\": of standard input); after a tab the file of its true poses, after further "
-             "tabs options of delio-slam for it alone; may be repeated")
-    add("-0", "--null", action="store_true", help="Entries of lists end with a NUL byte, as of find -print0")
+        help="File with one input per line (\"-\": standard input); optionally, after tabs, its ground-truth file and "
+             "options of delio-slam for this input; may be repeated")
+    add("-0", "--null", action="store_true", help="List entries end with a NUL byte, as from find -print0")
     add("--profile", metavar="NAME", action="append", default=[], dest="profiles",
         help="Profile of delio-slam; default: accurate; may be repeated")
     add("--set", metavar="section.key=A,B,...", action="append", default=[], dest="sets",
-        help="An option of delio-slam; with several values a variant each; may be repeated")
+        help="Option of delio-slam; several values make one variant each; may be repeated")
     add("--truth", metavar="DIR",
-        help="True poses as DIR/DRIVE.txt; default: where delio-slam finds them beside an input")
-    add("--lengths", metavar="100,200,...", help="Lengths of delio-eval's segments in metres")
+        help="Ground truth as DIR/DRIVE.txt; default: where delio-slam finds it next to the input")
+    add("--lengths", metavar="100,200,...", help="Segment lengths of delio-eval, metres")
     add("--compare", metavar="NAME=DIR", action="append", default=[],
-        help="Poses of another program (DRIVE.txt) on the same page; may be repeated")
-    add("--slurm", action="store_true", help="Submit job arrays, and a job that collects after them")
-    add("--local", metavar="N", type=_count, help="Run N tasks at a time on this machine, by GNU parallel")
+        help="Poses of another program (DRIVE.txt) for the same report; may be repeated")
+    add("--slurm", action="store_true", help="Submit job arrays and a job that collects their results")
+    add("--local", metavar="N", type=_count, help="Run N tasks at a time on this machine with GNU parallel")
     add("--retry", action="store_true",
-        help="Do failed tasks again; those that were killed get twice the time and memory")
+        help="Repeat failed tasks; killed tasks get twice the time and memory")
     add("--update", action="store_true",
-        help="Take this list in the place of the one that OUT has; what is done stays")
-    add("--wait", action="store_true", help="With --slurm: end when all has been collected")
+        help="Replace the list in OUT by this one; finished tasks are kept")
+    add("--wait", action="store_true", help="With --slurm: wait until all results are collected")
     add("--threads", metavar="N", type=_count,
-        help="Threads of a task; default: 1, with --local what the machine has for each")
-    add("--scratch", metavar="DIR", help="Where tasks work, on a disk of the node; default: in OUT")
-    add("--time", metavar="MIN", type=_count, help="Most minutes of a task; default: by the size of its input")
-    add("--mem", metavar="MB", type=_count, help="Memory of a task; default: by the size of its input")
+        help="Threads per task; default: 1, with --local the machine's cores divided by N")
+    add("--scratch", metavar="DIR", help="Temporary folder on a local disk of the node; default: in OUT")
+    add("--time", metavar="MIN", type=_count, help="Time limit of a task, minutes; default: from the size of its input")
+    add("--mem", metavar="MB", type=_count, help="Memory of a task, MB; default: from the size of its input")
     add("--max-running", metavar="N", type=_count,
-        help="With --slurm: tasks at a time at most; default: as the queue has it")
-    add("-p", "--partition", metavar="NAME", help="Partition of Slurm")
-    add("-A", "--account", metavar="NAME", help="Account of Slurm")
+        help="With --slurm: maximum number of running tasks; default: the queue's limit")
+    add("-p", "--partition", metavar="NAME", help="Slurm partition")
+    add("-A", "--account", metavar="NAME", help="Slurm account")
     add("--sbatch", metavar="OPTION", action="append", default=[],
-        help="Another option of sbatch, as --sbatch=--qos=low; may be repeated")
-    add("--status", metavar="OUT", help="Say what of a batch is done, runs, has failed, and when it ends")
-    add("--collect", metavar="OUT", help="Make report, table and charts of what is done by now")
+        help="Another option of sbatch, such as --sbatch=--qos=low; may be repeated")
+    add("--status", metavar="OUT", help="Show which tasks are done, running or failed, and the expected end")
+    add("--collect", metavar="OUT", help="Write report, table and charts of the finished tasks")
     add("-h", "--help", action="store_true", help="Displays usage information and exits.")
     add("--version", action="store_true", help="Displays version information and exits.")
     add("--run-task", nargs=2, help=argparse.SUPPRESS)
@@ -144,22 +143,22 @@ def parse(words: list) -> argparse.Namespace:
     if line.status or line.collect or line.run_task:
         return line
     if not line.output:
-        parser.error("--output is missing: which folder are the results to go to?")
+        parser.error("--output is missing")
     if bool(line.local) == line.slurm:
-        parser.error("give --slurm, or --local=N for this machine")
+        parser.error("give --slurm or --local=N")
     if line.wait and not line.slurm:
-        parser.error("--wait is for --slurm: a run on this machine ends when all is done")
+        parser.error("--wait needs --slurm; a local run ends when all tasks are done")
     if line.compare and any(not re.fullmatch(r"[^=\t\r\n]+=.+", text) for text in line.compare):
-        parser.error("--compare wants NAME=DIR")
+        parser.error("--compare needs NAME=DIR")
     for word in line.slam_options:
         name = word.partition("=")[0]
         if name in OWN:
-            parser.error(f"{name} after --: is for delio-batch to set")
+            parser.error(f"{name} after -- is set by delio-batch")
     if (line.lists or line.inputs) and not line.profiles:
         line.profiles = ["accurate"]
     is_new = line.profiles or line.sets or line.slam_options or line.update or line.truth
     if not line.lists and not line.inputs and is_new:
-        parser.error("inputs are missing; without any, the list that OUT has is gone on with as it is")
+        parser.error("inputs are missing; to continue OUT's own list, give neither inputs nor other options")
     return line
 
 
@@ -182,5 +181,5 @@ def check_options(variants: list, options: list) -> None:
             words += ["--set", setting]
         done = run_tool(words + options)
         if done.returncode != 0:
-            lines = done.stderr.strip().splitlines() or ["delio-slam said nothing"]
+            lines = done.stderr.strip().splitlines() or ["delio-slam printed nothing"]
             raise Problem(plain(lines[-1].removeprefix("delio-slam: ")), 2)

@@ -27,7 +27,7 @@ class Variant:
 
 
 def read_list(path: str, null: bool) -> list:
-    """A line a drive: INPUT, and after tabs, where there are any, TRUTH and options of delio-slam."""
+    """One line per drive: INPUT, optionally followed by tabs, TRUTH and options of delio-slam."""
     try:
         if path == "-":
             data = sys.stdin.buffer.read()
@@ -45,12 +45,12 @@ def read_list(path: str, null: bool) -> list:
         elif not record:
             continue
         if b"\0" in record:
-            raise Problem(f"the list '{path}' has NUL bytes in its lines: give -0 with it")
+            raise Problem(f"the list '{path}' contains NUL bytes; use -0")
         words = [os.fsdecode(word) for word in record.split(b"\t")]
         truth = words[1] if len(words) > 1 else ""
         drives.append(Drive(words[0], truth, [word for word in words[2:] if word]))
     if not drives:
-        raise Problem(f"the list '{path}' names no input")
+        raise Problem(f"the list '{path}' is empty")
     return drives
 
 
@@ -72,7 +72,7 @@ def _expanded(drive: Drive) -> list:
     if not names:
         raise Problem(f"no sequence of '{sequences}' has scans")
     if drive.truth:
-        raise Problem(f"'{drive.input}' is a KITTI root: its truth is found in 'poses', leave '{drive.truth}' out")
+        raise Problem(f"'{drive.input}' is a KITTI root, whose ground truth is in 'poses'; leave out '{drive.truth}'")
     return [Drive(os.path.join(sequences, name), options=drive.options) for name in names]
 
 
@@ -133,7 +133,7 @@ def _name(drives: list) -> None:
                 drive.name = f"{above}-{name}" if attempt == 0 else f"{name}-{number}"
     for drive in drives:
         if len(os.fsencode(drive.name)) > 200:
-            raise Problem(f"the name of '{drive.input}' is too long for a folder of results")
+            raise Problem(f"the name of '{drive.input}' is too long for a result folder")
 
 
 def without_repeated(options: list, others: list) -> list:
@@ -149,7 +149,7 @@ def resolve(drives: list, truths: str) -> list:
     """All of them by absolute paths, there, once, named; `truths`: a folder of NAME.txt."""
     for drive in drives:
         if drive.input == "-":
-            raise Problem("'-' is no input of a batch: tasks read files", 2)
+            raise Problem("'-' cannot be an input of a batch; tasks read files", 2)
         if "\0" in drive.input or not os.path.exists(drive.input):
             raise Problem(f"cannot read '{drive.input}': no such file or folder")
         drive.input = os.path.abspath(drive.input)
@@ -165,7 +165,7 @@ def resolve(drives: list, truths: str) -> list:
         if drive.truth:
             drive.truth = os.path.abspath(drive.truth)
             if not os.path.isfile(drive.truth):
-                raise Problem(f"cannot read the truth '{drive.truth}' of '{drive.input}': no such file")
+                raise Problem(f"cannot read the ground truth '{drive.truth}' of '{drive.input}': no such file")
         elif truths and os.path.isfile(os.path.join(truths, drive.name + ".txt")):
             drive.truth = os.path.abspath(os.path.join(truths, drive.name + ".txt"))
         else:
@@ -181,11 +181,11 @@ def sweep(profiles: list, settings: list) -> tuple:
         key, equals, text = setting.partition("=")
         values = text.split(",")
         if not equals or not key or "" in values:
-            raise Problem(f"--set {plain(setting)}: wants section.key=value, or values with commas between them", 2)
+            raise Problem(f"--set {plain(setting)} needs section.key=value or section.key=value,value", 2)
         if key in swept or any(key == other.partition("=")[0] for other in fixed):
-            raise Problem(f"--set {key}: is given twice; its values go into one, as {key}=a,b", 2)
+            raise Problem(f"--set {key} is given twice; write {key}=a,b", 2)
         if len(set(values)) < len(values):
-            raise Problem(f"--set {setting}: has a value twice", 2)
+            raise Problem(f"--set {setting} has a duplicate value", 2)
         if len(values) > 1:
             swept[key] = values
         else:
@@ -199,6 +199,6 @@ def sweep(profiles: list, settings: list) -> tuple:
             words = [f"{key}={value}" for key, value in values.items()]
             name = _clean(",".join([profile] + words)).replace("/", "_")
             if len(os.fsencode(name)) > 200:
-                raise Problem(f"the options of '{name[:60]}...' are too long for the name of a folder", 2)
+                raise Problem(f"the options of '{name[:60]}...' are too long for a folder name", 2)
             variants.append(Variant(name, profile, values, fixed + words))
     return variants, swept

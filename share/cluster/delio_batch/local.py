@@ -13,7 +13,7 @@ from .batch import Batch
 
 def check() -> None:
     if not shutil.which("parallel"):
-        raise Problem("GNU parallel, which runs tasks on this machine, is not installed; install the package parallel")
+        raise Problem("--local needs GNU parallel; install the package parallel")
 
 
 def _interrupt(*_) -> None:
@@ -39,4 +39,4 @@ def run(batch: Batch, tasks: list, jobs: int, program: str) -> None:
             process.wait()
             raise
     if process.returncode == 255:
-        raise Problem("GNU parallel could not run the tasks; what it says is above")
+        raise Problem("GNU parallel failed; see its message above")

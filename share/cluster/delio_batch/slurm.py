@@ -56,7 +56,7 @@ def _tool(words: list, **more):
 def check() -> None:
     for tool in ("sbatch", "squeue", "scontrol", "scancel"):
         if not shutil.which(tool):
-            raise Problem(f"there is no Slurm here ({tool} is not in the PATH): log in where there is, "
+            raise Problem(f"Slurm not found ({tool} is not in the PATH): log in to a machine with Slurm "
                           "or give --local N")
 
 
@@ -68,7 +68,7 @@ def _largest_array(tasks: int) -> int:
         raise Problem(f"the queue does not answer: {last_line(shown.stderr)}")
     most = int(found["MaxJobCount"])
     if tasks >= most:
-        raise Problem(f"the queue refuses the batch: it holds {most} jobs at most (MaxJobCount), these are {tasks} "
+        raise Problem(f"the queue refuses the batch: it allows {most} jobs (MaxJobCount), but these are {tasks} "
                       "tasks and a collecting job; split the list")
     return max(1, int(found["MaxArraySize"]))
 
@@ -98,7 +98,7 @@ def _submit(words: list, script: str) -> str:
     number = done.stdout.strip().split(";")[0]
     if done.returncode != 0 or not number.isdigit():
         said = re.sub(r"^sbatch: (error: )?", "", last_line(done.stderr))
-        raise Problem(f"the queue refuses the batch: {said or 'sbatch said nothing'}")
+        raise Problem(f"the queue refuses the batch: {said or 'sbatch printed nothing'}")
     return number
 
 
@@ -128,7 +128,7 @@ def submit(batch: Batch, tasks: list, limits: Limits, program: str) -> list:
                                     "--open-mode=append", "--output=logs/slurm-%A.out"], script)
             jobs.append(job)
             rows.append(f"{job}\t{offset}\n")
-            say(f"job {job}: {len(indices)} tasks, {minutes} min and {memory} MB each at most")
+            say(f"job {job}: {len(indices)} tasks, {minutes} min and {memory} MB each")
         collecting = _submit(common + ["--dependency=afterany:" + ":".join(jobs), f"--job-name={name}-collect",
                                        f"--time={COLLECT_MINUTES}",
                                        f"--mem={min(COLLECT_MB, limits.memory_mb or COLLECT_MB)}M",
@@ -139,12 +139,12 @@ def submit(batch: Batch, tasks: list, limits: Limits, program: str) -> list:
         for job in jobs[:-1]:
             released = _tool(["scontrol", "release", job])
             if released.returncode != 0:
-                raise Problem(f"the queue does not begin job {job}: {last_line(released.stderr)}")
+                raise Problem(f"the queue does not release job {job}: {last_line(released.stderr)}")
     except BaseException:
         if jobs:
             _tool(["scancel"] + jobs)
         raise
-    say(f"job {collecting} collects after them; how far it is: delio-batch --status {shlex.quote(batch.out)}")
+    say(f"job {collecting} collects the results; show the progress with: delio-batch --status {shlex.quote(batch.out)}")
     return jobs
 
 

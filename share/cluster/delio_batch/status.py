@@ -30,7 +30,7 @@ def _left(batch: Batch, found: dict) -> str:
 def show(batch: Batch) -> int:
     queue = slurm.queued(batch)
     if queue is None:
-        say("the queue does not answer: what is said here is what the folders know")
+        say("the queue does not answer; showing the state of the result folders")
     running, waiting = in_queue(batch)
     found: dict = {}
     for task in batch.tasks:
@@ -46,7 +46,7 @@ def show(batch: Batch) -> int:
     if queue and queue[2] and not running and not waiting:
         lines.append("  the collecting job is at work, or waits")
     if found.get("waiting") and not running and not waiting:
-        lines.append("  nothing is in the queue: the same command goes on")
+        lines.append("  nothing is in the queue: run the same command to continue")
     failures = found.get("failed", []) + found.get("lost", [])
     for task, known in failures[:50]:
         lines.append(plain(f"  {task.label}: failed: {known.get('line', '')} ({batch.log(task)})"))

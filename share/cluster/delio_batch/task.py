@@ -126,7 +126,7 @@ class Attempt:
         return 0
 
     def _scores(self) -> dict:
-        """Errors against the truth, or why there are none."""
+        """Errors against the ground truth, or the reason why they are missing."""
         if not self.task.truth:
             return {}
         lengths = self.batch.settings.get("lengths")
@@ -183,7 +183,7 @@ class Attempt:
                                  seconds=round(time.time() - self.began, 3), **self._about())
         except OSError as error:
             line += f" (and its state cannot be written: {reason(error)})"
-        say(f"{self.task.label}: failed: {line} (all of it: {log})")
+        say(f"{self.task.label}: failed: {line} (see {log})")
         return code
 
 

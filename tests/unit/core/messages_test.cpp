@@ -26,8 +26,8 @@ std::string messageOf(Action action) {
 TEST(PlainMessage, IsInWordsThatAUserKnows) {
     EXPECT_EQ(plainMessage(Error("'a' is cut off")), "'a' is cut off");
     EXPECT_EQ(messageOf([] { ASSERTMSG_(1 > 2, "too few"); }), "too few");
-    EXPECT_EQ(messageOf([] { ASSERT_(1 > 2); }), "it is damaged, or of an unknown kind");
-    EXPECT_EQ(messageOf([] { ASSERT_GT_(1, 2); }), "it is damaged, or of an unknown kind");
+    EXPECT_EQ(messageOf([] { ASSERT_(1 > 2); }), "the file is damaged or of an unknown kind");
+    EXPECT_EQ(messageOf([] { ASSERT_GT_(1, 2); }), "the file is damaged or of an unknown kind");
     const auto throughMrpt = [](auto exception) {
         return messageOf([&] {
             MRPT_START
@@ -36,17 +36,16 @@ TEST(PlainMessage, IsInWordsThatAUserKnows) {
         });
     };
     EXPECT_EQ(throughMrpt(std::runtime_error("the disk is full")), "the disk is full");
-    EXPECT_EQ(throughMrpt(std::bad_alloc()), "it takes more memory than there is");
-    EXPECT_EQ(messageOf([] { throw std::bad_alloc(); }), "it takes more memory than there is");
-    EXPECT_EQ(messageOf([] { std::vector<int>().reserve(std::size_t(-1)); }),
-              "it takes more memory than there is");
+    EXPECT_EQ(throughMrpt(std::bad_alloc()), "out of memory");
+    EXPECT_EQ(messageOf([] { throw std::bad_alloc(); }), "out of memory");
+    EXPECT_EQ(messageOf([] { std::vector<int>().reserve(std::size_t(-1)); }), "out of memory");
     EXPECT_EQ(messageOf([] { (void)std::filesystem::file_size("/none/at/all"); }),
               "'/none/at/all': No such file or directory");
     EXPECT_EQ(messageOf([] { YAML::Load("a: [1"); }).find("line 1, column"), 0U)
         << messageOf([] { YAML::Load("a: [1"); });
     const auto node = YAML::Load("a: x");
     EXPECT_EQ(messageOf([&] { (void)node["a"].as<double>(); }),
-              "line 1, column 4: the value is of another kind than it has to be");
+              "line 1, column 4: a value has the wrong type");
     EXPECT_EQ(messageOf([&] { (void)node["b"].as<double>(); }), "'b' is missing");
 }
 

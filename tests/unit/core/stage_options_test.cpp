@@ -176,7 +176,7 @@ TEST(StageOptions, AWordIsOneOfThoseThatAreKnown) {
     EXPECT_EQ(rangeOf("  way =   up  ").way, "up");
     for (const char* text : {"", "UP", "Down", "up down", "updown", "do", "1", "\"up\""})
         EXPECT_EQ(errorOf([&] { rangeOf("way = " + std::string(text)); }),
-                  "option range.way: '" + std::string(text) + "' is none of: up, down");
+                  "option range.way: '" + std::string(text) + "' is not one of: up, down");
 }
 
 TEST(StageOptions, AWordIsWrittenAsItIsRead) {
@@ -201,7 +201,7 @@ TEST(StageOptions, WhatDoesNotGoTogetherIsFoundWhenAsked) {
     // Loading asks nothing: the other one may still come.
     RangeOptions options = rangeOf("low = 3.5");
     EXPECT_EQ(errorOf([&] { options.check("range"); }),
-              "option range.low (3.5) has to be at most range.high (2)");
+              "option range.low (3.5) must be at most range.high (2)");
     options.loadFromConfigFile(CConfigFileMemory("[range]\nhigh = 3.5\n"), "range");
     EXPECT_EQ(errorOf([&] { options.check("range"); }), "");
 }
@@ -212,7 +212,7 @@ TEST(RequireOrder, EqualNumbersAreInOrderAndNaNIsNot) {
     };
     EXPECT_EQ(fault(-1, 1), "");
     EXPECT_EQ(fault(0.1, 0.1), "");
-    EXPECT_EQ(fault(0.1, -0.1), "option a.low (0.1) has to be at most b.high (-0.1)");
+    EXPECT_EQ(fault(0.1, -0.1), "option a.low (0.1) must be at most b.high (-0.1)");
     EXPECT_NE(fault(std::nextafter(1.0, 2.0), 1), "");
     EXPECT_NE(fault(NAN, 1), "");
     EXPECT_NE(fault(1, NAN), "");

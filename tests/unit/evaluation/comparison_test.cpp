@@ -104,8 +104,9 @@ TEST(Comparison, KeepsTheRowsOfTheScansThatWereUsed) {
     EXPECT_NEAR(compare(straight(1, 30), stamped, {}, &table).end_error_m, 0, 1e-9);
     EXPECT_EQ(compare(straight(3, 10), straight(3, 10), {}, &table).unusedReference, 0U);
     EXPECT_EQ(messageOf(straight(1, 27), straight(3, 10), &table),
-              "the true poses have 27 rows but scan 27 was used");
-    EXPECT_NE(messageOf(straight(1, 30), straight(3, 9), &table).find("9 poses, its table 10"),
+              "the ground truth has 27 rows but scan 27 was used");
+    EXPECT_NE(messageOf(straight(1, 30), straight(3, 9), &table)
+                  .find("9 poses but its scan table has 10"),
               std::string::npos);
 }
 
@@ -138,7 +139,7 @@ TEST(Comparison, TheWrongFrameIsAnErrorOfItsOwn) {
     } catch (const evaluation::WrongFrames& e) {
         EXPECT_EQ(e.mismatch(), FrameMismatch::lidarAgainstCamera);
     }
-    EXPECT_NE(messageOf(straight(1, 30), camera).find("estimate looks like it is in the camera"),
+    EXPECT_NE(messageOf(straight(1, 30), camera).find("estimate seems to be in the camera"),
               std::string::npos);
 }
 
@@ -348,7 +349,7 @@ Poses kitti00(std::size_t count) {
 
 TEST(KnownFaults, TheHeadOfKitti00IsRecognised) {
     const auto poses = kitti00(100);
-    EXPECT_NE(knownFaultOf(poses).find("15 of the 100 true poses"), std::string::npos);
+    EXPECT_NE(knownFaultOf(poses).find("15 of the 100 ground-truth poses"), std::string::npos);
     EXPECT_NE(knownFaultOf({poses.begin() + 5, poses.begin() + 15}), "");  // --start, --count
 }
 

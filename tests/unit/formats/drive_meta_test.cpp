@@ -61,7 +61,7 @@ TEST(DriveMeta, WhatIsNotSaidIsTheDefaultAndWhatIsNotUnderstoodAnError) {
         test::writeText(folder / "a.meta.yaml", text);
         try {
             io::readDriveMeta(rawlog);
-            ADD_FAILURE() << "understood: " << text;
+            ADD_FAILURE() << "parse: " << text;
         } catch (const Error& e) {
             EXPECT_NE(std::string(e.what()).find("a.meta.yaml"), std::string::npos) << e.what();
             EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();

@@ -148,7 +148,7 @@ TEST(G2o, EachFaultIsNamedWithItsLine) {
            "line 3: pose graph: the information of the edge from node 0 to node 1");
     // Of "... 100" the file may have kept "... 1".
     expect(kVertices + kEdge.substr(0, kEdge.size() - 1), "line 3: the file ends within this line");
-    expect(kVertices + "VERTEX_SE2 2 0 0 0\n", "line 3: the tag 'VERTEX_SE2' is not known");
+    expect(kVertices + "VERTEX_SE2 2 0 0 0\n", "line 3: the tag 'VERTEX_SE2' is not supported");
     expect(kVertices + "FIX 1\n", "line 3: FIX 1");
     expect(kVertices + "FIX 9\n", "line 3: there is no vertex 9");
 }

@@ -201,8 +201,8 @@ TEST_F(PcdScan, RefusesLyingHeaders) {
         return pcd;
     };
     refused(with(&Pcd::width, "4"), {"5 points", "4 by 1"});
-    refused(with(&Pcd::points, "-5"), {"POINTS", "count"});
-    refused(with(&Pcd::sizes, "4 4 4"), {"as many"});
+    refused(with(&Pcd::points, "-5"), {"POINTS", "number of points"});
+    refused(with(&Pcd::sizes, "4 4 4"), {"different lengths"});
     refused(with(&Pcd::sizes, "4 4 4 3"), {"intensity"});
     refused(with(&Pcd::types, "F F F Q"), {"intensity"});
     refused(with(&Pcd::data, "zip"), {"'zip'"});

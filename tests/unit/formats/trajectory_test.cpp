@@ -81,10 +81,12 @@ TEST(Trajectory, EachFaultIsNamedWithItsLine) {
     EXPECT_NE(messageOf(folder / "none.txt").find("no such file"), std::string::npos);
     EXPECT_NE(fault("").find("empty"), std::string::npos);
     EXPECT_NE(fault(kIdentityRow + "\n1 2 3\n").find("line 2: 3 numbers"), std::string::npos);
-    EXPECT_NE(fault(kIdentityRow + "\n1 0 0 nan 0 1 0 0 0 0 1 0\n").find("line 2: not a finite"),
-              std::string::npos);
+    EXPECT_NE(
+        fault(kIdentityRow + "\n1 0 0 nan 0 1 0 0 0 0 1 0\n").find("line 2: expected a finite"),
+        std::string::npos);
     EXPECT_NE(fault("2 0 0 0 0 1 0 0 0 0 1 0\n").find("not a rotation"), std::string::npos);
-    EXPECT_NE(fault("1 0 0 0 0 0 0 1\n0.5 0 0 0 0 0 0 1\n").find("do not rise"), std::string::npos);
+    EXPECT_NE(fault("1 0 0 0 0 0 0 1\n0.5 0 0 0 0 0 0 1\n").find("must increase"),
+              std::string::npos);
     EXPECT_NE(messageOf(folder.path()).find("cannot read"), std::string::npos);
 }
 

@@ -222,7 +222,7 @@ say('top', Math.abs(camera.position.x - controls.target.x) < 0.1);
 click(-10, 0, 0);
 say('point', /^x -(9[.]9|10[.][01]).*, y -?0[.][01].*, z 0[.]00 m$/.test(byId('result').textContent));
 click(5, 8, 6);
-const found = byId('result').textContent.match(/; ([0-9.]+) m .*level ([0-9.]+) m, height ([0-9.]+)/);
+const found = byId('result').textContent.match(/; ([0-9.]+) m .*horizontal ([0-9.]+) m, height ([0-9.]+)/);
 say('distance', found && Math.abs(found[1] - Math.hypot(15, 8, 6)) < 0.3 &&
     Math.abs(found[2] - Math.hypot(15, 8)) < 0.3 && Math.abs(found[3] - 6) < 0.11);
 mouse('pointerdown', 0, 0);
@@ -261,7 +261,7 @@ TEST_F(PageInBrowser, ObeysTheMouse) {
 
 TEST_F(PageInBrowser, SaysWhereThereIsNoWebGl) {
     const auto shot = open("", "1280,800", "--disable-3d-apis");
-    EXPECT_EQ(shot.state.rfind("error: This browser cannot draw", 0), 0U) << shot.state;
+    EXPECT_EQ(shot.state.rfind("error: This page needs WebGL", 0), 0U) << shot.state;
     EXPECT_GT(shot.count(400, 300, 900, 500, isWhite), 10000);
 }
 }  // namespace

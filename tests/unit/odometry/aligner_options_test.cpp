@@ -48,7 +48,7 @@ TEST(AlignerOptions, AKernelThatWouldWidenIsRefusedWhenAligning) {
         loaded("[my]\nfirst_kernel = 0.5\n[my.plane_registration]\nlast_kernel = 0.3\n");
     EXPECT_EQ(options.planes.last_kernel, 0.3);
     EXPECT_EQ(errorOfAligning(options),
-              "option twice Aligner.plane_registration.last_kernel (0.6) has to be at most "
+              "option twice Aligner.plane_registration.last_kernel (0.6) must be at most "
               "Aligner.first_kernel (0.5)");
     EXPECT_EQ(errorOfAligning(loaded("[my.plane_registration]\nlast_kernel = 0.5\n")), "");
 }
@@ -58,10 +58,10 @@ TEST(AlignerOptions, EveryStageIsAsked) {
     options.pattern.kernel_deg = 1;
     options.pattern.last_kernel_deg = 2;
     EXPECT_EQ(errorOf([&] { options.check("my"); }),
-              "option my.pattern_registration.last_kernel_deg (2) has to be at most "
+              "option my.pattern_registration.last_kernel_deg (2) must be at most "
               "my.pattern_registration.kernel_deg (1)");
     EXPECT_EQ(errorOfAligning(options),
-              "option Aligner.pattern_registration.last_kernel_deg (2) has to be at most "
+              "option Aligner.pattern_registration.last_kernel_deg (2) must be at most "
               "Aligner.pattern_registration.kernel_deg (1)");
 }
 }  // namespace

@@ -123,7 +123,7 @@ TEST_F(StoredMapFile, WhateverIsCutOffIsSaid) {
         const auto bytes = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
         EXPECT_NE(faultOf(whole.substr(0, bytes)), "") << share;
     }
-    EXPECT_NE(faultOf(whole.substr(0, 20)).find("no stored map"), std::string::npos);
+    EXPECT_NE(faultOf(whole.substr(0, 20)).find("not a stored map"), std::string::npos);
 }
 
 TEST_F(StoredMapFile, WhateverIsTurnedIsSaid) {
@@ -139,8 +139,7 @@ TEST_F(StoredMapFile, PosesThatAreNoneAreSaid) {
     MapContent content = drive_.content;
     content.submaps.front().level(0, 0) = NAN;
     StoredMap::save(content, path_);
-    EXPECT_NE(faultOf(test::readText(path_)).find("its index cannot be understood"),
-              std::string::npos);
+    EXPECT_NE(faultOf(test::readText(path_)).find("invalid index"), std::string::npos);
 }
 
 // Results are written into files and folders of these names.
@@ -163,8 +162,7 @@ TEST_F(StoredMapFile, NumbersThatAreNoneAreSaid) {
     MapContent content = drive_.content;
     content.drives.front().stamps_s[1] = NAN;
     StoredMap::save(content, path_);
-    EXPECT_NE(faultOf(test::readText(path_)).find("its index cannot be understood"),
-              std::string::npos);
+    EXPECT_NE(faultOf(test::readText(path_)).find("invalid index"), std::string::npos);
     content = drive_.content;
     content.submaps.front().driven.path_m = INFINITY;
     StoredMap::save(content, path_);
@@ -178,7 +176,7 @@ TEST_F(StoredMapFile, AnotherVersionIsNamed) {
 }
 
 TEST_F(StoredMapFile, OtherFilesAndNoneAreRefused) {
-    EXPECT_NE(faultOf(std::string(5000, 'x')).find("no stored map"), std::string::npos);
+    EXPECT_NE(faultOf(std::string(5000, 'x')).find("not a stored map"), std::string::npos);
     EXPECT_THROW(StoredMap(fileIn(folder_, "none.delio")), Error);
     EXPECT_THROW(StoredMap(folder_.path().string()), Error);
 }

@@ -68,7 +68,7 @@ TEST(BagContainers, EmptyBagsSaySo) {
         const test::TemporaryFolder folder;
         const auto file = folder / container.file;
         container.write(file, {});
-        expectHolds(faultOf(container.open, {file.string(), "", "", ""}), {"holds no messages"});
+        expectHolds(faultOf(container.open, {file.string(), "", "", ""}), {"contains no messages"});
     }
 }
 
@@ -87,7 +87,7 @@ TEST(BagContainers, ForeignAndMissingFilesAreErrors) {
     test::writeText(foreign, "#ROSBAG V1.2\nand what was written then");
     expectHolds(faultOf(io::openRos1Bag, {foreign.string(), "", "", ""}), {"2.0"});
     test::writeText(foreign, "\x28\xB5\x2F\xFDpacked");
-    expectHolds(faultOf(io::openRos2Database, {foreign.string(), "", "", ""}), {"unpack"});
+    expectHolds(faultOf(io::openRos2Database, {foreign.string(), "", "", ""}), {"decompress"});
 }
 
 TEST(BagContainers, DatabaseOfOtherTablesIsAnError) {
@@ -162,9 +162,9 @@ TEST(BagContainers, FoldersFaultsAreNamed) {
     std::filesystem::remove(folder / "d_1.db3");
     const Outcome outcome = readAll(io::openRos2Folder, source);
     EXPECT_EQ(outcome.scans, 3U);
-    expectHolds(outcome.fault, {"d_1.db3", "not there", "after 3 scans"});
+    expectHolds(outcome.fault, {"d_1.db3", "does not exist", "after 3 scans"});
     std::filesystem::remove(folder / "d_0.db3");
-    expectHolds(faultOf(io::openRos2Folder, source), {"d_0.db3", "not there"});
+    expectHolds(faultOf(io::openRos2Folder, source), {"d_0.db3", "does not exist"});
     for (const char* text : {"- a\n- b\n", "rosbag2_bagfile_information: {relative: [", "a: 1\n",
                              "rosbag2_bagfile_information: {version: 5}\n"}) {
         test::writeText(folder / "metadata.yaml", text);
@@ -173,6 +173,6 @@ TEST(BagContainers, FoldersFaultsAreNamed) {
     test::writeText(folder / "metadata.yaml",
                     "rosbag2_bagfile_information:\n  compression_mode: FILE\n"
                     "  relative_file_paths: [d_0.db3.zstd]\n");
-    expectHolds(faultOf(io::openRos2Folder, source), {"unpack"});
+    expectHolds(faultOf(io::openRos2Folder, source), {"convert"});
 }
 }  // namespace delio::bag_test

@@ -104,12 +104,12 @@ TEST(BagDamage, ChunksOfGigabytesAreRefusedBeforeTheyAreUnpacked) {
     std::string bytes = test::readText(bag);
     replaceNumber(bytes, bytes.find("size=", bytes.find("compression=lz4")) + 5, 0x40000001, 4);
     test::writeText(bag, bytes);
-    expectHolds(faultOf(io::openRos1Bag, {bag.string(), "", "", ""}), {"1073741825", "announced"});
+    expectHolds(faultOf(io::openRos1Bag, {bag.string(), "", "", ""}), {"1073741825", "claims"});
     writeMcap(mcap, drive(4, Kind::kCdr), "zstd");
     bytes = test::readText(mcap);
     replaceNumber(bytes, bytes.find("zstd") - 16, 0x40000001, 8);
     test::writeText(mcap, bytes);
-    expectHolds(faultOf(io::openMcap, {mcap.string(), "", "", ""}), {"1073741825", "announced"});
+    expectHolds(faultOf(io::openMcap, {mcap.string(), "", "", ""}), {"1073741825", "claims"});
 }
 
 TEST(BagDamage, LyingSizesTakeNoMemory) {
@@ -198,7 +198,7 @@ TEST(BagDamage, DatabasesThatComputeAreRefused) {
         test::changeDatabase(folder / "d.db3", sql);
         const auto fault =
             readAll(io::openRos2Database, {(folder / "d.db3").string(), "", "", ""}).fault;
-        EXPECT_NE(fault.find("no ROS 2 database"), std::string::npos) << sql << ": " << fault;
+        EXPECT_NE(fault.find("not a ROS 2 database"), std::string::npos) << sql << ": " << fault;
     }
 }
 

@@ -134,7 +134,7 @@ TEST(BagMessages, ForeignEncodingIsAnError) {
     const test::TemporaryFolder folder;
     const auto file = folder / "d.mcap";
     writeMcap(file, bag);
-    expectHolds(faultOf(io::openMcap, {file.string(), "", "", ""}), {"ros1", "cdr"});
+    expectHolds(faultOf(io::openMcap, {file.string(), "", "", ""}), {"ROS 1", "CDR"});
     EXPECT_THROW(scanOf(std::string("\1\2\3\4", 4), Kind::kCdr), Error);
 }
 

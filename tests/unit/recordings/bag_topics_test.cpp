@@ -27,7 +27,8 @@ TEST(BagTopics, OfSeveralOneHasToBeChosen) {
     expectHolds(faultWith(bag, "/front"), {"'/front'", "/points", "/rear/points"});
     expectHolds(faultWith(bag, "/chatter"), {"'/chatter'", "/points", "/rear/points"});
 
-    expectHolds(faultWith(bag, "points"), {"several topics 'points'", "/points", "/rear/points"});
+    expectHolds(faultWith(bag, "points"),
+                {"several topics that match 'points'", "/points", "/rear/points"});
     expectHolds(faultWith(bag, "ear/points"), {"no scans of the topic 'ear/points'"});
 
     const test::TemporaryFolder folder;
@@ -55,7 +56,7 @@ TEST(BagTopics, WithoutScansTheTypesAreNamed) {
     BagContents bag = drive(2);
     bag.topics[0] = {"/scan", "sensor_msgs/LaserScan"};
     expectHolds(faultWith(bag, ""),
-                {"no topic with scans", "sensor_msgs/LaserScan", "std_msgs/String"});
+                {"no topic with LiDAR scans", "sensor_msgs/LaserScan", "std_msgs/String"});
 }
 
 TEST(BagTopics, SeveralConnectionsAreOneTopic) {

@@ -185,9 +185,9 @@ TEST(PacketsPcap, OfSeveralDescriptionsTheMostAlikeIsTaken) {
     for (const char* const name : {"window1_0", "window2_0", "OS-1_v2.3", "OS-0_v2.3", "other"})
         test::writeText(folder / (std::string(name) + ".json"), toy.json().dump());
     test::writeText(folder / "window1_digest.json", "{}");
-    EXPECT_EQ(describedBy(folder / "window1.pcap"), "pcap, described by 'window1_0.json'");
-    EXPECT_EQ(describedBy(folder / "window2.pcap"), "pcap, described by 'window2_0.json'");
-    EXPECT_EQ(describedBy(folder / "OS-1_v2.3_lb_n3.pcap"), "pcap, described by 'OS-1_v2.3.json'");
+    EXPECT_EQ(describedBy(folder / "window1.pcap"), "pcap, metadata 'window1_0.json'");
+    EXPECT_EQ(describedBy(folder / "window2.pcap"), "pcap, metadata 'window2_0.json'");
+    EXPECT_EQ(describedBy(folder / "OS-1_v2.3_lb_n3.pcap"), "pcap, metadata 'OS-1_v2.3.json'");
     test::writeText(folder / "window1_1.json", toy.json().dump());
     const std::string fault = readAll(folder / "window1.pcap").fault;
     for (const char* const name : {"window1.pcap", "window1_0.json", "window1_1.json"})
@@ -211,7 +211,7 @@ TEST(PacketsPcap, ADescriptionThatDoesNotFitIsNotTaken) {
         EXPECT_NE(fault.find(part), std::string::npos) << fault;
     test::writeText(folder / "drive_b.json", longer.json().dump());
     test::writeText(folder / "sensor.json", toy.json().dump());
-    EXPECT_EQ(describedBy(folder / "drive.pcap"), "pcap, described by 'sensor.json'");
+    EXPECT_EQ(describedBy(folder / "drive.pcap"), "pcap, metadata 'sensor.json'");
     io::ScanSource source;
     source.path = (folder / "drive.pcap").string();
     source.sensorFile = (folder / "drive_a.json").string();
@@ -249,7 +249,7 @@ TEST(PacketsPcap, LessThanHalfATurnSaysSo) {
     test::writeText(folder / "short.json", OusterToy().json().dump());
     auto outcome = readAll(folder / "short.pcap");
     EXPECT_TRUE(outcome.scans.empty());
-    EXPECT_NE(outcome.fault.find("short.pcap': only 2 of the 32 packets of a turn"),
+    EXPECT_NE(outcome.fault.find("short.pcap': only 2 of the 32 packets of a revolution"),
               std::string::npos)
         << outcome.fault;
     PcapWriter writer;

@@ -162,12 +162,12 @@ TEST(PacketsVelodyne, OtherSensorsAreErrors) {
     auto packets = packetsOf(vlp16(), 1);
     EXPECT_EQ(faultOf(packets), "");
     packets[5][1205] = 0x21;
-    EXPECT_NE(faultOf(packets).find("HDL-32E among those of a VLP-16"), std::string::npos);
+    EXPECT_NE(faultOf(packets).find("HDL-32E is among packets of a VLP-16"), std::string::npos);
     packets[5][1205] = 0x77;
     EXPECT_NE(faultOf(packets).find("0x77"), std::string::npos);
     EXPECT_NE(faultOf(packets, "/none.xml").find("/none.xml"), std::string::npos);
     // Every HDL-64E has a calibration of its own.
-    EXPECT_NE(faultOf(packetsOf(hdl64(1), 1)).find("calibration of a Velodyne HDL-64E"),
+    EXPECT_NE(faultOf(packetsOf(hdl64(1), 1)).find("calibration of the Velodyne HDL-64E"),
               std::string::npos);
 }
 
@@ -177,9 +177,9 @@ TEST(PacketsVelodyne, ModelsThatAreNotDecodedAreNamed) {
         packet[1205] = factoryByte;
         return faultOf({packet});
     };
-    EXPECT_NE(faultWith(0x23).find("Velodyne VLP-32A or VLP-32B are not decoded"),
+    EXPECT_NE(faultWith(0x23).find("Velodyne VLP-32A or VLP-32B are not supported"),
               std::string::npos);
-    EXPECT_NE(faultWith(0x31).find("Velodyne Velarray are not decoded"), std::string::npos);
+    EXPECT_NE(faultWith(0x31).find("Velodyne Velarray are not supported"), std::string::npos);
     EXPECT_NE(faultWith(0xA1).find("Velodyne VLS-128"), std::string::npos);
     // Four banks of 32 lasers, whatever the last byte is.
     for (std::size_t b = 0; b < 12; ++b)
@@ -229,7 +229,7 @@ TEST(PacketsVelodyne, CalibrationsThatClaimTooMuchAreRefused) {
           std::string("num_lasers: -1\n"), std::string("lasers\n")}) {
         test::writeText(file, text);
         const test::MemoryLimit limit(500);
-        EXPECT_NE(faultOf(packetsOf(vlp16(), 1), file).find("is not a Velodyne's calibration"),
+        EXPECT_NE(faultOf(packetsOf(vlp16(), 1), file).find("is not a Velodyne calibration"),
                   std::string::npos)
             << text.substr(0, 40);
     }

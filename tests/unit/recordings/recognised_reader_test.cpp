@@ -165,10 +165,9 @@ TEST(RecognisedReader, TimesOfOtherPointsAreNotUsed) {
     auto reader = readerOf([](Source& source) { source.shuffled = true; });
     EXPECT_FALSE(reader.recording().pointTimes);
     for (int i = 0; i < 4; ++i) EXPECT_TRUE(reader.next()->times_s.empty());
-    EXPECT_EQ(
-        reader.recording().findings,
-        std::vector<std::string>{"point times do not fit the directions of the points and are "
-                                 "not used: 4 scans (first: scan 0)"});
+    EXPECT_EQ(reader.recording().findings,
+              std::vector<std::string>{
+                  "point times contradict the azimuths: not used: 4 scans (first: scan 0)"});
 }
 
 TEST(RecognisedReader, AFaultComesAfterWhatIsAhead) {

@@ -42,7 +42,7 @@ TEST(Doubts, SearchedScansAreCountedAndNoWarning) {
     EXPECT_EQ(doubts.searched.longest, 3U);
     EXPECT_EQ(doubts.searched.from, 10U);
     EXPECT_TRUE(run::warningsOf(doubts).empty());
-    EXPECT_EQ(run::textOf(doubts.searched, 5), "5, at most 3 in a row (from scan 10)");
+    EXPECT_EQ(run::textOf(doubts.searched, 5), "5, longest run 3 (from scan 10)");
     EXPECT_EQ(run::textOf(doubts.predicted, 0), "0");
 }
 
@@ -86,7 +86,7 @@ TEST(Doubts, AFewScansAreNoWarningManyAre) {
     EXPECT_TRUE(run::warningsOf(run::doubtsOf(rowsOf(good + "pp"))).empty());  // 2 of 41
     const auto many = run::warningsOf(run::doubtsOf(rowsOf(good + "ppp" + good.substr(0, 10))));
     ASSERT_EQ(many.size(), 1U);
-    EXPECT_EQ(many[0].rfind("3 of 52 scans (at most 3 in a row, from scan 45)", 0), 0U) << many[0];
+    EXPECT_EQ(many[0].rfind("3 of 52 scans (longest run 3, from scan 45)", 0), 0U) << many[0];
     EXPECT_EQ(run::warningsOf(run::doubtsOf(rowsOf("..w.p."))).size(), 2U);
 }
 

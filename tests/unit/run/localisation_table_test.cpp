@@ -19,7 +19,7 @@ std::vector<MapFix> someFixes() {
     }
     for (std::size_t i = 6; i < 12; ++i) {
         fixes[i].where = Whereabouts::kOutside;
-        fixes[i].reason = "the map has nothing here";
+        fixes[i].reason = "no map points here";
     }
     return fixes;
 }
@@ -53,7 +53,7 @@ TEST(LocalisationTable, ComesBackAsItWasWritten) {
         << text;
     // Where nothing is known no numbers are.
     EXPECT_NE(text.find("\n100,0.0000000,unknown,0,0,0.000,,,,,,,,,"), std::string::npos) << text;
-    EXPECT_NE(text.find(",the map has nothing here\n"), std::string::npos);
+    EXPECT_NE(text.find(",no map points here\n"), std::string::npos);
 }
 
 TEST(LocalisationTable, WhatIsNoneIsRefused) {
@@ -74,7 +74,7 @@ TEST(LocalisationDoubts, StretchesOutsideTheMapAreNamed) {
         << warnings[0];
     std::vector<MapFix> late(12);
     late.back() = someFixes()[3];
-    EXPECT_NE(run::warningsOf(late, someRows()).at(0).find("scans 100 to 120 were not found"),
+    EXPECT_NE(run::warningsOf(late, someRows()).at(0).find("scans 100 to 120 were not localised"),
               std::string::npos);
 }
 }  // namespace

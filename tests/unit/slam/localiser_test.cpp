@@ -70,7 +70,7 @@ TEST(Localiser, EndsWhereTheMapCannotBeRead) {
             FAIL() << i;
         } catch (const Error& error) {
             const std::string what = error.what();
-            EXPECT_NE(what.find("the localisation ended"), std::string::npos) << what;
+            EXPECT_NE(what.find("localisation stopped"), std::string::npos) << what;
             EXPECT_NE(what.find(fileIn(folder)), std::string::npos) << what;
         }
     }

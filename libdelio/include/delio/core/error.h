@@ -4,14 +4,14 @@
 #include <string>
 
 namespace delio {
-/** What went wrong with an input or an output, as one plain line: what, where and what to do.
- *  Everything in delio that refuses its input throws this. */
+/** Error with one plain line: what failed, where, and what to do. Everything in delio that rejects
+ *  its input throws it. */
 class Error : public std::runtime_error {
  public:
     using std::runtime_error::runtime_error;
 };
 
-/** What an exception says in one line: of an Error its own; of any other (of MRPT, yaml-cpp, the
- *  standard library) the same in words that a user knows, without frame and stack trace. */
+/** One-line message of an exception: an Error's own; for others (MRPT, yaml-cpp, the standard
+ *  library) a plain translation without stack trace. */
 std::string plainMessage(const std::exception& e);
 }  // namespace delio

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 
 /** Poses are Eigen::Isometry3d in all of DeLiO: they map the coordinates (metres) of the frame that
- *  they are named after to those of their reference. mrpt::poses::CPose3D is met at the border to
- *  MRPT only. Tangent vectors are [x y z wx wy wz], metres and radians. Formulas: Solà, Deray,
+ *  they are named after to those of their reference. mrpt::poses::CPose3D appears only at the
+ *  border to MRPT. Tangent vectors are [x y z wx wy wz], metres and radians. Formulas: Solà, Deray,
  *  Atchuthan, "A micro Lie theory for state estimation in robotics" (arXiv 1812.01537). */
 namespace delio {
 /** A tangent vector or a twist: [x y z wx wy wz]. */
@@ -30,8 +30,8 @@ double angleOf(const Eigen::Matrix3d& R);
  *  Jacobian. For |w| below 2 pi. */
 Eigen::Matrix3d inverseRightJacobian(const Eigen::Vector3d& w);
 
-/** SE(3): where constant velocity (m) and rate of turn (rad), both in the moving frame, lead to in
- *  a unit of time, and back. */
+/** SE(3) exponential and logarithm: the pose after moving for a unit of time with constant velocity
+ *  (m) and angular rate (rad), both in the moving frame. */
 Eigen::Isometry3d poseExp(const Vector6& twist);
 /** See poseExp(). */
 Vector6 poseLog(const Eigen::Isometry3d& pose);
@@ -43,9 +43,9 @@ Matrix6 adjointOf(const Eigen::Isometry3d& pose);
 /** The pose that maps p to R p + t. */
 Eigen::Isometry3d isometry(const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
 
-/** A rotation once more, exactly: products of rotations lose it over thousands of scans. */
+/** Re-orthonormalised rotation: long products of rotations lose orthonormality. */
 Eigen::Matrix3d normalised(const Eigen::Matrix3d& R);
-/** The same of its rotation; the translation stays. */
+/** The same for the rotation of a pose; the translation is unchanged. */
 Eigen::Isometry3d normalised(const Eigen::Isometry3d& pose);
 
 /** The border to MRPT. */

@@ -12,10 +12,10 @@ struct Increment {
     Matrix6 covariance = Matrix6::Identity();
 };
 
-/** Two increments one after the other; their errors are taken to be independent. */
+/** Concatenation of two increments with independent errors. */
 Increment chained(const Increment& first, const Increment& second);
 
-/** An increment of a sensor as one of the vehicle that carries it: S_from D S_to^-1, with the poses
+/** Converts an increment of a sensor to one of its vehicle: S_from D S_to^-1, with the poses
  *  (sensor to vehicle) that the sensor had at both ends. */
 Increment ofVehicle(const Increment& ofSensor, const Eigen::Isometry3d& sensorFrom,
                     const Eigen::Isometry3d& sensorTo);

@@ -6,9 +6,9 @@
 #include <vector>
 
 namespace delio {
-/** The number that all of `text` is, whatever the locale; nothing where it is anything else: empty,
- *  with spaces or a tail, out of the type's range. A leading '+' is no number. `Number`: double or
- *  a whole number; a double may be NaN or infinite where the text says so. */
+/** Parses all of `text` as a number, independent of the locale; nothing if it is empty, has spaces
+ *  or a tail, or is out of range. A leading '+' is not accepted. `Number`: double or an integer
+ *  type; a double may be NaN or infinite. */
 template <typename Number>
 std::optional<Number> numberIn(std::string_view text) {
     Number value{};
@@ -18,20 +18,22 @@ std::optional<Number> numberIn(std::string_view text) {
     return value;
 }
 
-/** The fewest digits that give the same number back when they are read again. */
+/** Shortest text that parses to the same number. */
 template <typename Number>
 std::string digitsOf(Number value) {
     char text[64];
     return {text, std::to_chars(text, text + sizeof(text), value).ptr};
 }
 
-/** With so many decimals, whatever the locale: as printf's "%.*f" in the locale "C". */
+/** Text with this many decimals, independent of the locale: as printf's "%.*f" in the locale "C".
+ */
 std::string fixed(double value, int decimals);
 
-/** With so many significant digits, whatever the locale: as printf's "%.*g" in the locale "C". */
+/** Text with this many significant digits, independent of the locale: as printf's "%.*g" in the
+ *  locale "C". */
 std::string rounded(double value, int digits);
 
-/** All finite numbers that `text` begins with, separated by white space, whatever the locale: up to
- *  its end, or to the first word that is anything else. */
+/** Leading finite numbers of `text`, separated by white space, independent of the locale; stops at
+ *  the first other word. */
 std::vector<double> numbersIn(std::string_view text);
 }  // namespace delio

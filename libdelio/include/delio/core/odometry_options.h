@@ -6,7 +6,7 @@
 #include "delio/core/stage_options.h"
 
 namespace delio {
-/** What is done to a scan before anything looks at it. */
+/** Preprocessing of a scan. */
 struct PreprocessOptions : public StageOptions {
     double min_range = 2.5;
     double max_range = 100;
@@ -20,7 +20,7 @@ struct PreprocessOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** What motion is predicted from. */
+/** Motion model. */
 struct PredictionOptions : public StageOptions {
     unsigned frames = 3;
 
@@ -28,7 +28,7 @@ struct PredictionOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** What PlaneOdometry itself decides by. */
+/** Decisions of PlaneOdometry. */
 struct PlaneTrackerOptions : public StageOptions {
     double scale = 0;
     double lost_share = 0.5;
@@ -37,7 +37,7 @@ struct PlaneTrackerOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** Which points are kept. */
+/** Points kept in the map. */
 struct PointMapOptions : public StageOptions {
     double voxel_size = 1.0;
     double spacing = 0.2;
@@ -47,7 +47,7 @@ struct PointMapOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** How a scan is registered to points. */
+/** Registration of a scan to the point map. */
 struct PointRegistrationOptions : public StageOptions {
     double last_kernel = 0.2;
     unsigned min_matches = 50;
@@ -65,7 +65,7 @@ struct PointRegistrationOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** Which voxels hold a plane. */
+/** Planes of the plane map. */
 struct PlaneMapOptions : public StageOptions {
     double voxel_size = 0.5;
     unsigned levels = 2;
@@ -83,7 +83,7 @@ struct PlaneMapOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** How a scan is registered to planes. */
+/** Registration of a scan to the plane map. */
 struct PlaneRegistrationOptions : public StageOptions {
     double last_kernel = 0.1;
     unsigned min_matches = 100;
@@ -100,7 +100,7 @@ struct PlaneRegistrationOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** Which segments are dynamic. */
+/** Detection of dynamic objects. */
 struct DynamicObjectsOptions : public StageOptions {
     bool enabled = true;
     double cell_deg = 0.5;
@@ -111,7 +111,7 @@ struct DynamicObjectsOptions : public StageOptions {
 
 /** Section III-A of the paper leaves the neighbourhood open. Taken from the raw scan, the nearest
  *  neighbours of a near point lie within its range noise, and those of a far one on one ring; the
- *  cloud is therefore thinned to one point a voxel first, and neighbourhoods that are a line (one
+ *  cloud is therefore thinned to one point per voxel first, and neighbourhoods that are a line (one
  *  ring) or no plane at all are dropped. */
 struct NormalsOptions : public StageOptions {
     double voxel_size = 0.4;
@@ -314,7 +314,7 @@ struct PaperOdometryOptions {
     PointRegistrationOptions points;           //!< [point_registration]
 };
 
-/** Which odometry it is. */
+/** Choice of the odometry. */
 struct MethodOptions : public StageOptions {
     std::string method = "planes";
 
@@ -322,7 +322,7 @@ struct MethodOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** The choice of an odometry, and the options of each. Those of the other one have no effect. */
+/** Choice of the odometry, and the options of both. Options of the other one have no effect. */
 struct OdometryOptions {
     MethodOptions method;         //!< [odometry]: which of the two
     PlaneOdometryOptions planes;  //!< of the profile `accurate`
@@ -333,7 +333,7 @@ struct OdometryOptions {
     const PreprocessOptions& scan() const { return isPaper() ? paper.scan : planes.scan; }
 };
 
-/** Sections and their options, to be changed. */
+/** Mutable sections and their options. */
 using StageList = std::vector<std::pair<std::string, StageOptions*>>;
 /** Sections and their options. */
 using ConstStageList = std::vector<std::pair<std::string, const StageOptions*>>;

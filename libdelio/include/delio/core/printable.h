@@ -3,14 +3,13 @@
 #include <string>
 
 namespace delio {
-/** `text` with '?' for every control character and every byte that is not UTF-8: fit for a line of
- *  a terminal, of a script and of a document. */
+/** `text` with '?' for control characters and invalid UTF-8: safe for terminals, scripts and
+ *  documents. */
 std::string printable(const std::string& text);
 
-/** printable(`text`) with the characters that HTML gives a meaning (& < > ") escaped. */
+/** printable(`text`) with HTML's special characters (& < > ") escaped. */
 std::string htmlText(const std::string& text);
 
-/** `text`, or where it has more than `most` bytes its first two thirds of them and its last third,
- *  with "..." between. */
+/** `text`, shortened to `most` bytes: the first two thirds, "...", and the last third. */
 std::string shortened(const std::string& text, std::size_t most);
 }  // namespace delio

@@ -11,7 +11,7 @@
 namespace delio {
 class StageOptions;
 
-/** One option of a stage: its key, the member that holds it, what it means, what it may be. */
+/** One option of a stage: key, member, meaning and allowed values. */
 struct OptionField {
     /** `meaning`: one line with the unit, written above the key. */
     template <class Stage, typename Number>
@@ -68,8 +68,8 @@ class StageOptions : public mrpt::config::CLoadableOptions {
     /** Multiplies every option that scales with the size of the place. */
     void scaleBy(double factor);
 
-    /** Throws Error, naming both, where two options do not go together. Not asked while loading:
-     *  of two that change, one comes first. */
+    /** Throws an Error naming both options if two options contradict each other. Not called while
+     *  loading, because options change one by one. */
     virtual void check(const std::string& /*section*/) const {}
 
  protected:

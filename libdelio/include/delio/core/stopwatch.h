@@ -3,7 +3,7 @@
 #include <type_traits>
 
 namespace delio {
-/** Milliseconds since it was made, or since lap_ms() was last called. */
+/** Stopwatch: milliseconds since construction or the last lap_ms(). */
 class Stopwatch {
  public:
     /** Milliseconds since it was made, or since the last call. */
@@ -18,7 +18,7 @@ class Stopwatch {
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/** Runs `work`, adds its milliseconds to `ms`, and gives what it returns. */
+/** Runs `work`, adds its milliseconds to `ms`, and returns its result. */
 template <typename Work>
 auto timed(double& ms, const Work& work) {
     Stopwatch watch;

@@ -10,32 +10,31 @@ namespace delio::evaluation {
  *  an odometry lie. */
 double rotationAngle_rad(const Eigen::Isometry3d& pose);
 
-/** A stretch of the drive from pose `first` to pose `last`, and what the estimate got wrong on it.
- */
+/** Segment of the drive from pose `first` to pose `last`, and the errors of the estimate on it. */
 struct Segment {
-    std::size_t first = 0;      //!< number of the pose that it begins with
-    std::size_t last = 0;       //!< number of the pose that it ends with
-    double length_m = 0;        //!< asked for; the last pose is the first one beyond it
+    std::size_t first = 0;      //!< index of its first pose
+    std::size_t last = 0;       //!< index of its last pose
+    double length_m = 0;        //!< requested length; `last` is the first pose beyond it
     double t_percent = 0;       //!< translation error per length, in percent
     double r_deg_per_100m = 0;  //!< rotation error per length, in deg per 100 m
 };
 
-/** Mean errors of a number of segments; NaN where there is none. */
+/** Mean errors over segments; NaN without segments. */
 struct SegmentErrors {
     std::size_t segments = 0;   //!< that the means are over
     double t_percent = 0;       //!< translation error per length of the segment, in percent
     double r_deg_per_100m = 0;  //!< rotation error per length of the segment, in deg per 100 m
 };
 
-/** The plain mean over segments. */
+/** Unweighted mean over segments. */
 SegmentErrors meanOf(const std::vector<Segment>& segments);
 
 /** Mean errors of the segments of one length. */
 struct LengthErrors : SegmentErrors {
-    double length_m = 0;  //!< of each of them, as asked for
+    double length_m = 0;  //!< requested length of each segment
 };
 
-/** Mean errors of all segments, and what they are made of. */
+/** Mean errors over all segments, by length, and the segments. */
 struct KittiErrors : SegmentErrors {
     std::vector<LengthErrors> perLength;  //!< one per length asked for, in that order
     std::vector<Segment> all;             //!< in order of their lengths
@@ -50,8 +49,8 @@ std::vector<double> travelled_m(const std::vector<Eigen::Isometry3d>& poses);
 /** Length of the path through the positions, metres. */
 double pathLength_m(const std::vector<Eigen::Isometry3d>& poses);
 
-/** Lengths that a drive of `path_m` metres has several segments of, for drives that are too short
- *  for KITTI's; empty where nothing moves. */
+/** Segment lengths for drives of `path_m` metres that are too short for KITTI's; empty without
+ *  motion. */
 std::vector<double> suggestedLengths_m(double path_m);
 
 /** The metric of KITTI's development kit: relative errors over all segments of the given lengths,
@@ -73,18 +72,18 @@ struct AbsoluteError {
 AbsoluteError absoluteError(const std::vector<Eigen::Isometry3d>& reference,
                             const std::vector<Eigen::Isometry3d>& estimate);
 
-/** How a list of errors is spread; NaN where the list is empty. */
+/** Distribution of a list of errors; NaN if it is empty. */
 struct Spread {
     double rmse = 0;    //!< root mean square
-    double median = 0;  //!< half of the errors are at most this
-    double p95 = 0;     //!< 95 % of the errors are at most this
+    double median = 0;  //!< 50th percentile
+    double p95 = 0;     //!< 95th percentile
     double max = 0;     //!< the largest
 };
 
 /** Of errors in any order, all finite. */
 Spread spreadOf(std::vector<double> errors);
 
-/** Errors of relative motions, and how they are spread. */
+/** Errors of relative motions, and their distribution. */
 struct RelativeError {
     std::vector<double> translations_m;  //!< entry i: of the motion from pose i to pose i + delta
     std::vector<double> rotations_deg;   //!< the same for its rotation

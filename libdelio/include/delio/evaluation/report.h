@@ -13,10 +13,10 @@ void writeMetricsTsv(const std::vector<ReportRow>& rows, std::ostream& out);
  *  the segments. */
 void writeLengthsTsv(const std::vector<ReportRow>& rows, std::ostream& out);
 
-/** The figures of writeMetricsTsv() for people to read. */
+/** The values of writeMetricsTsv() as a table for people. */
 void writeTable(const std::vector<ReportRow>& rows, std::ostream& out);
 
-/** What a report says about itself. */
+/** Header of a report. */
 struct ReportNotes {
     std::string program;    //!< name and version
     std::string lengths;    //!< of the segments, metres
@@ -24,11 +24,11 @@ struct ReportNotes {
 };
 
 /** Writes metrics.tsv, lengths.tsv, report.html and plots/ (SVG, PNG, data and gnuplot scripts)
- * into `folder`, which is made if it is not there; of one that is, all else stays. The page holds
- * its pictures itself and opens without a network. Nothing is changed before everything is written:
- *  Error where that fails, gnuplot is not installed, or another program writes there. While the old
- *  report is being replaced, or after a kill in between, there is no report.html.
- *  `rows`: those of the comparisons, and of averages ("avg"), in the order of the TSV. */
+ *  into `folder`, which is created if needed; other files in it are kept. The page embeds its
+ *  pictures and opens without a network. Nothing is replaced before everything is written: Error
+ *  where that fails, gnuplot is not installed, or another program writes there. While the old
+ *  report is being replaced, or after a kill in between, there is no report.html. `rows`: those of
+ *  the comparisons, and of averages ("avg"), in the order of the TSV. */
 void writeReportFolder(const std::vector<Comparison>& comparisons,
                        const std::vector<ReportRow>& rows, const ReportNotes& notes,
                        const std::string& folder);

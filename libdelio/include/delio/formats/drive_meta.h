@@ -3,21 +3,21 @@
 #include <string>
 
 namespace delio::io {
-/** What lies beside a drive's scans: a text, most often in one of KITTI's formats. */
+/** Text file next to a drive's scans, usually in one of KITTI's formats. */
 struct SideFile {
-    std::string name;  //!< of the file, for messages; also where there is none
-    std::string text;  //!< empty: there is none
+    std::string name;  //!< file name for messages, even if the file is missing
+    std::string text;  //!< empty: no file
 };
 
-/** The text of the file at `path`; none where there is no such file. Throws Error where it cannot
- *  be read, or where something else than a file is there. */
+/** Text of the file at `path`; empty if it does not exist. Throws Error if it cannot be read or is
+ *  not a regular file. */
 SideFile sideFile(const std::string& path);
 
-/** What OUT.meta.yaml says of the drive in OUT.rawlog. */
+/** Content of OUT.meta.yaml, the description of OUT.rawlog. */
 struct DriveMeta {
     std::string sensorModel = "unknown";  //!< e.g. HDL-64E
     std::string source = "unknown";       //!< kitti-odometry | kitti-raw | synthetic
-    bool motionCompensated = true;        //!< the recorder brought each scan to its stamp
+    bool motionCompensated = true;        //!< the recorder de-skewed each scan to its stamp
     double verticalCorrectionDeg = 0;     //!< to be added to every point's vertical angle
     double epoch_s = 0;                   //!< Unix time of second 0 of times.txt
     std::string generator;                //!< program and version that wrote the rawlog
@@ -26,10 +26,9 @@ struct DriveMeta {
 /** `DRIVE.rawlog` and `.meta.yaml` give `DRIVE.meta.yaml`. */
 std::string sidecarPath(const std::string& rawlogPath, const std::string& extension);
 
-/** The meta.yaml beside a rawlog, a `key: value` a line; nothing if there is none. Throws Error,
- *  which names the file, for an unknown key, one that is there twice, a value that is not of its
- *  key's kind or is out of range, or anything else that cannot be understood. */
+/** Reads the meta.yaml next to a rawlog (`key: value` lines); nothing if there is no file. Throws
+ *  an Error that names the file for unknown or duplicate keys, invalid values and invalid YAML. */
 std::optional<DriveMeta> readDriveMeta(const std::string& rawlogPath);
-/** The text of a meta.yaml with all of it: what readDriveMeta() gives back equals `meta`. */
+/** Text of a meta.yaml with all fields: what readDriveMeta() gives back equals `meta`. */
 std::string textOf(const DriveMeta& meta);
 }  // namespace delio::io

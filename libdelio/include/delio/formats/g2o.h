@@ -10,12 +10,11 @@ namespace delio::io {
 /** Reads a g2o file of VERTEX_SE3:QUAT, EDGE_SE3:QUAT and FIX lines, in any order; empty lines and
  *  lines that start with '#' are skipped. Vertices become nodes 0, 1, 2 ... in the order of their
  *  ids. g2o's information speaks of the quaternion's vector part, half the angle: it is brought to
- *  radians here, and back when saving.
- *  Throws Error with file and line for anything else: a missing file, an unknown tag, a line that
- *  is short, long or holds a number that is not finite, a quaternion off unit length by more than
- *  1e-3, an information matrix that is not positive definite, a vertex given twice, an edge to a
- *  vertex that is not there, a last line without its end (a file that was cut off), a FIX of any
- * other vertex than the first, no vertex at all. */
+ *  radians here, and back when saving. Throws Error with file and line for anything else: a missing
+ *  file, an unknown tag, a line that is short, long or holds a number that is not finite, a
+ *  quaternion off unit length by more than 1e-3, an information matrix that is not positive
+ *  definite, a vertex given twice, an edge to a missing vertex, a last line without its end (a file
+ *  that was cut off), a FIX of any other vertex than the first, no vertex at all. */
 graph::PoseGraph loadG2o(const std::string& path);
 
 /** Writes the same, node 0 fixed, with the digits that give the same doubles back. Vertices are

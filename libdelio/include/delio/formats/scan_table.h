@@ -6,20 +6,20 @@
 #include <vector>
 
 namespace delio::io {
-/** What an evaluation needs of the scans.csv that delio-slam writes, a row for each used scan. */
+/** Columns of delio-slam's scans.csv needed for evaluation, one row per used scan. */
 struct ScanTable {
-    std::vector<std::size_t> scans;  //!< numbers of the scans in their rawlog, rising
+    std::vector<std::size_t> scans;  //!< scan numbers in the rawlog, increasing
     std::vector<double> stamps_s;    //!< of these scans, seconds of the drive
     std::vector<bool> predicted;     //!< the scan could not be registered
 };
 
-/** Reads `scan`, `stamp_s` and `predicted` of a scans.csv, wherever these columns are.
- *  Throws Error with file and line where one is missing or malformed. */
+/** Reads the columns `scan`, `stamp_s` and `predicted` of a scans.csv. Throws Error with file and
+ *  line where one is missing or malformed. */
 ScanTable readScanTable(const std::string& path);
 
 /** A row of scans.csv. */
 struct ScanRow {
-    std::size_t scan = 0;                                     //!< its number in its rawlog
+    std::size_t scan = 0;                                     //!< scan number in the rawlog
     double stamp_s = 0;                                       //!< seconds of the drive
     std::vector<std::pair<std::string, std::string>> values;  //!< name of the column, and text
     bool predicted = false;                                   //!< it could not be registered

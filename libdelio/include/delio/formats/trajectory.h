@@ -12,12 +12,11 @@ struct Trajectory {
     std::vector<double> stamps_s;  //!< one per pose, or empty where the file has none (KITTI)
 };
 
-/** Reads a pose file: KITTI (12 numbers a line, row-major 3x4) or TUM (t x y z qx qy qz qw; lines
+/** Reads a pose file: KITTI (12 numbers per line, row-major 3x4) or TUM (t x y z qx qy qz qw; lines
  *  that start with '#' are skipped), told apart by the count of numbers. Rotations are
- *  orthonormalised. Trailing spaces, empty lines and CR are accepted.
- *  Throws Error with file and line for anything else: missing or empty file, wrong count of
- *  numbers, text, NaN, a 3x3 part that is no rotation (off by more than 1e-2), stamps that do not
- *  rise. */
+ *  orthonormalised. Trailing spaces, empty lines and CR are accepted. Throws Error with file and
+ *  line for anything else: missing or empty file, wrong count of numbers, text, NaN, a 3x3 part
+ *  that is not a rotation (off by more than 1e-2), stamps that do not increase. */
 Trajectory readTrajectory(const std::string& path);
 /** The same of a text; `name` is what errors call it. */
 Trajectory trajectoryIn(const std::string& text, const std::string& name);
@@ -32,7 +31,7 @@ void writeKitti(const Trajectory& trajectory, const std::string& path);
 /** Writes `t x y z qx qy qz qw` with qw of 0 or more; needs stamps. */
 void writeTum(const Trajectory& trajectory, const std::string& path);
 
-/** Reads times.txt: one number of seconds a line, as KITTI has it. Throws Error as above. */
+/** Reads times.txt: one time in seconds per line, as in KITTI. Throws Error as above. */
 std::vector<double> readTimes(const std::string& path);
 
 /** KITTI's calib.txt: `Tr`, which maps LiDAR coordinates to cam0 coordinates. */
@@ -46,6 +45,6 @@ Calibration readCalibration(const std::string& path);
 /** The same of a text; `name` is what errors call it. */
 Calibration calibrationIn(const std::string& text, const std::string& name);
 
-/** Tr * T * Tr^-1 for each pose: a trajectory of the LiDAR as one of cam0. */
+/** Tr * T * Tr^-1 for each pose: converts a trajectory of the LiDAR to cam0. */
 Trajectory lidarToCam0(const Trajectory& lidar, const Eigen::Isometry3d& Tr);
 }  // namespace delio::io

@@ -17,14 +17,15 @@ struct Edge {
     Increment increment;   //!< `to` to `from`, covariance in the frame of `to`
 };
 
-/** How a graph is made and optimised. */
+/** Construction and optimisation of a graph. */
 struct PoseGraphOptions : StageOptions {
     /** More edges than the chain (i,i+1): 1 adds (i,i+2), 2 adds (i,i+3) too, as long as the two
-     *  scans overlap by `min_overlap` (TranslationEstimate::overlap). For whoever makes the edges;
-     *  optimise() takes those that were added. */
+     *  scans overlap by `min_overlap` (TranslationEstimate::overlap). Used by the builder of the
+     *  graph; optimise() uses all added edges. */
     unsigned skip_edges = 0;
     double min_overlap = 0.5;
-    /** Nodes that are moved while driving, for whoever adds them; 0: none. */
+    /** Number of latest nodes optimised during the drive, used by the builder of the graph; 0:
+     *  none. */
     unsigned window = 0;
     unsigned max_iterations = 100;
     /** Width c of the Geman-McClure kernel: an edge costs s / (1 + s/c^2) with s = e' Omega e, so c
@@ -35,7 +36,7 @@ struct PoseGraphOptions : StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** What a minimisation came to. */
+/** Result of an optimisation. */
 struct OptimisationResult {
     double initial_cost = 0;  //!< F before (no factor 1/2; robust if there is a kernel)
     double final_cost = 0;    //!< F after; never more than before

@@ -33,9 +33,9 @@ struct ValueRange {
  *  never narrower than 1e-3. */
 ValueRange robustRange(std::vector<float> values);
 
-/** What the colours of a map's points say. Height: above the ground around them. Normal: its x, y
- *  and z from -1 to 1 as red, green and blue; grey where there is none. The others: as MapPoint has
- *  them. */
+/** Quantity shown by the colours of a map. Height: above the ground around them. Normal: its x, y
+ *  and z from -1 to 1 as red, green and blue; grey if unknown. The others: the fields of MapPoint.
+ */
 enum class ColourBy { Height, Intensity, Time, Normal, Residual, Observations };
 
 /** Names for the command line: "height", "intensity", "time", "normal", "residual",
@@ -47,19 +47,19 @@ ColourBy colourByNamed(const std::string& name);
 
 /** How a map is coloured. */
 struct Colouring {
-    ColourBy by = ColourBy::Height;       //!< what the colours say
+    ColourBy by = ColourBy::Height;       //!< quantity shown by the colours
     Colormap colormap = Colormap::Turbo;  //!< normals have colours of their own
 };
 
-/** A colour a point, and what a legend needs to say what they mean. */
+/** Colours of the points, and the content of the legend. */
 struct Colours {
     std::vector<mrpt::img::TColor> ofPoints;  //!< in the order of the points
-    std::string name;                         //!< of what they say: "height above ground"
+    std::string name;                         //!< legend text: "height above ground"
     std::string unit;                         //!< with the blank before it: " m"; may be empty
     std::optional<ValueRange> range;  //!< that the colour map is laid over; normals have none
 };
 
-/** Colours between robust limits of the values. Throws Error where the points do not have what they
- *  are to be coloured by: it is 0 of all of them. */
+/** Colours between robust limits of the values. Throws Error if the points lack this quantity (it
+ *  is 0 for all of them). */
 Colours coloursOf(const MapPoints& points, const Colouring& colouring = {});
 }  // namespace delio::map

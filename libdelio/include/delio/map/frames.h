@@ -14,7 +14,7 @@ namespace delio::map {
  * where there is no ground. The same points give the same frame. */
 Eigen::Isometry3d groundFrame(const MapPoints& points, const Eigen::Isometry3d& firstPose);
 
-/** Where on the earth the vehicle was first, and how it stood there. */
+/** Geographic position and heading of the vehicle at the first pose. */
 struct GeoReference {
     double latitude_deg = 0;   //!< WGS84, north positive
     double longitude_deg = 0;  //!< WGS84, east positive

@@ -20,7 +20,7 @@ class Spool;
 namespace delio::map {
 struct StoredScan;
 
-/** How dynamic objects are taken out of a map once the drive is over. */
+/** Removal of dynamic objects from the map after the drive. */
 struct RemovalOptions : StageOptions {
     bool enabled = true;
     double voxelSize_m = 0.2;
@@ -28,19 +28,18 @@ struct RemovalOptions : StageOptions {
     double spacing_m = 0.5;
 
     // Not read from .ini files:
-    double margin_m = 0.5;   //!< a beam that went on by this looked through a voxel
-    unsigned witnesses = 2;  //!< scans that have to have looked through a dynamic voxel
-    /** A voxel is dynamic where the scans that looked through it are this many times those that saw
-     *  something there. */
+    double margin_m = 0.5;   //!< a beam that continued by this saw through a voxel
+    unsigned witnesses = 2;  //!< minimum number of scans that saw through a dynamic voxel
+    /** A voxel is dynamic if this many times more scans saw through it than hit it. */
     double freePerTaken = 1.5;
-    /** An unsure voxel is dynamic where at least this part of its neighbours is. */
+    /** An uncertain voxel is dynamic if at least this fraction of its neighbours is. */
     double grownShare = 0.5;
 
  protected:
     std::vector<OptionField> fields() const override;
 };
 
-/** Which scans, and which of their points, a map keeps. */
+/** Scans and points kept in a map. */
 struct MapOptions : StageOptions {
     double keyframeDistance_m = 2.0;
     double keyframeAngle_deg = 20.0;
@@ -66,34 +65,33 @@ struct MapOptions : StageOptions {
     bool voxelSizeIsSet_ = false, minRangeIsSet_ = false;  //!< loaded from a text
 };
 
-/** A map at the final poses, in their world's frame. */
+/** Map at the final poses, in the world frame. */
 struct BuiltMap {
-    /** What stands still, of all scans: the first point of each voxel of MapOptions::voxelSize_m.
-     */
+    /** Static points of all scans: the first point of each voxel of MapOptions::voxelSize_m. */
     MapPoints points;
-    MapPoints dynamic;  //!< what does not, likewise
+    MapPoints dynamic;  //!< dynamic points, likewise
     /** The keyframes, one CObservationPointCloud each, without what is dynamic; load() fetches its
      *  points from the disk, and saveSimplemap() embeds them. The poses' covariances are 0 ("not
      *  stated"). */
     mrpt::maps::CSimpleMap simplemap;
     std::vector<Eigen::Isometry3d> keyPoses;  //!< of the keyframes
-    double removal_ms = 0;                    //!< to tell what is dynamic
+    double removal_ms = 0;                    //!< time of the removal of dynamic points
 };
 
-/** Collects scans while a drive goes on and gives the map once the final poses are known: only then
- *  is told what of it is dynamic, by all that was seen before and later. Scans are put aside on the
- *  disk, thinned; memory grows with the space that was seen, and only while build() makes the map.
- *  The same calls give the same points in the same order. All poses map the vehicle's coordinates
- *  to those of the world, in metres. */
+/** Collects scans during a drive and builds the map once the final poses are known. Only then are
+ *  dynamic points identified, from all earlier and later scans. Scans are stored on disk, thinned;
+ *  memory grows with the observed space, and only during build(). The same calls give the same
+ *  points in the same order. All poses map the vehicle's coordinates to those of the world, in
+ *  metres. */
 class MapBuilder {
  public:
     /** @param sensorLabel becomes the label of the simplemap's observations
-     *  @param folder where scans are put aside, in a file without a name; empty: the system's
-     *  folder for temporary files */
+     *  @param folder of the unnamed temporary file for scans; empty: the system's temporary folder
+     */
     explicit MapBuilder(const MapOptions& options, std::string sensorLabel = "lidar",
                         std::string folder = "");
     ~MapBuilder();
-    /** Moves; what is left of the other is of no use. */
+    /** Moves; the other builder may only be destroyed. */
     MapBuilder(MapBuilder&&) noexcept;
     /** Likewise. */
     MapBuilder& operator=(MapBuilder&&) noexcept;
@@ -105,18 +103,17 @@ class MapBuilder {
 
     /** Adds a scan; returns true if it became a keyframe: the first one, and every one that is
      *  keyframeDistance_m or keyframeAngle_deg away from the keyframe before it. Its points between
-     *  minRange_m and maxRange_m of the sensor are used, the first of each voxel of voxelSize_m
-     *  (0: all); points that are not finite are left out. A scan without any usable point that
-     *  stands still is never a keyframe. Error if the scan cannot be put aside; the map is of no
-     * use then.
-     *  @param poseIndex which of the final poses will be this scan's
-     *  @param approximatePose decides whether this is a keyframe, and in which voxels its points
-     *  are
+     *  minRange_m and maxRange_m of the sensor are used, the first of each voxel of voxelSize_m (0:
+     *  all); points that are not finite are left out. A scan without any usable point that stands
+     *  still is never a keyframe. Throws Error if the scan cannot be stored; the builder is then
+     *  unusable.
+     *  @param poseIndex index of this scan's pose among the final poses
+     *  @param approximatePose decides about the keyframe, and the voxels of the points
      *  @param sensorPoints in the sensor's frame; intensities are kept of a CPointsMapXYZI
      *  @param sensorPose pose of the sensor in the vehicle
      *  @param stamp of the observation (MRPT takes time 0 for "no time")
-     *  @param moving 1 for each of `sensorPoints` that was told to belong to a dynamic object,
-     *  otherwise 0; empty: none was */
+     *  @param moving 1 for each of `sensorPoints` labelled as dynamic, otherwise 0; empty: none is
+     */
     bool add(std::size_t poseIndex, const Eigen::Isometry3d& approximatePose,
              const mrpt::maps::CPointsMap& sensorPoints, const Eigen::Isometry3d& sensorPose,
              mrpt::Clock::time_point stamp, const std::vector<std::uint8_t>& moving = {});

@@ -8,15 +8,15 @@
 #include <vector>
 
 namespace delio::map {
-/** A point of a map, in the map's frame, and what is known of the surface about it. */
+/** A point of a map, in the map's frame, with properties of the surface around it. */
 struct MapPoint {
     Eigen::Vector3f position = Eigen::Vector3f::Zero();  //!< metres
-    /** Unit, on the side from which the point was seen; 0 where it is not known. */
+    /** Unit surface normal towards the observer; 0 if unknown. */
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-    float intensity = 0;   //!< as the sensor gives it; 0 where there is none
-    float time_s = 0;      //!< when it was seen first, since the drive's first scan
+    float intensity = 0;   //!< as measured by the sensor; 0 if unknown
+    float time_s = 0;      //!< time of the first observation, since the drive's first scan
     float residual_m = 0;  //!< root mean square distance of the points about it from their plane
-    std::uint16_t observations = 0;  //!< scans that saw something in its voxel; 0: not known
+    std::uint16_t observations = 0;  //!< number of scans that hit its voxel; 0: unknown
 };
 /** All in one frame, the map's. */
 using MapPoints = std::vector<MapPoint>;

@@ -32,7 +32,7 @@ class RawlogWriter {
      *  With `force` they are replaced. */
     RawlogWriter(const std::string& path, std::string label, bool embed, bool force);
 
-    /** Everything that a drive at `path` may consist of: what finish() replaces. */
+    /** All paths of a drive at `path`, which finish() replaces. */
     static std::vector<std::string> outputsOf(const std::string& path);
 
     /** Appends a scan. `stamp_s`: seconds since `epoch_s`; `xyzi`: four floats a point. */
@@ -47,8 +47,8 @@ class RawlogWriter {
      */
     void addLinked(double stamp_s, double epoch_s, const std::string& file);
 
-    /** Writes a value a point of the scan to be added next into `OUT_Images/NNNNNN` + extension.
-     *  Throws Error where that fails. */
+    /** Writes one value per point of the next scan into `OUT_Images/NNNNNN` + extension. Throws
+     *  Error where that fails. */
     template <typename Value>
     void addExtra(const std::string& extension, const std::vector<Value>& values) {
         makeImages();
@@ -56,8 +56,8 @@ class RawlogWriter {
     }
 
     /** Writes OUT.meta.yaml and, where the text is not empty, OUT.times.txt, OUT.calib.txt,
-     *  OUT.poses.txt, OUT.faults.tsv, OUT.origin.txt (a made-up drive's place in its world), byte
-     *  for byte as given; then puts the drive in place of the old one. Throws Error where that
+     *  OUT.poses.txt, OUT.faults.tsv, OUT.origin.txt (origin of a synthetic drive in its world),
+     *  byte for byte as given; then puts the drive in place of the old one. Throws Error where that
      *  fails; then the old one is still there. */
     void finish(const DriveMeta& meta, const std::string& timesText, const std::string& calibText,
                 const std::string& posesText, const std::string& faultsText = "",

@@ -69,9 +69,9 @@ struct AlignerOptions : public StageOptions {
  *  come to lie on planes of the first, or where two of the options contradict each other. */
 class Aligner : public mrpt::slam::CMetricMapsAlignmentAlgorithm {
  public:
-    /** Give it (or a CICP::TReturnInfo, or the base) as `outInfo`. `goodness`: share of the points
-     *  in voxels with a plane that lie on it, 0 to 1. `quality`: the smallest observability, 0
-     *  where a direction is not seen at all. */
+    /** Give it (or a CICP::TReturnInfo, or the base) as `outInfo`. `goodness`: inlier ratio of the
+     *  points in voxels with a plane, 0 to 1. `quality`: the smallest observability, 0 if a
+     *  direction is unconstrained. */
     struct TReturnInfo : public mrpt::slam::CICP::TReturnInfo {
         /** How well the second map's surfaces meet those of the first, 0 to 1, see
          *  odometry::agreement(). */
@@ -82,7 +82,7 @@ class Aligner : public mrpt::slam::CMetricMapsAlignmentAlgorithm {
         Eigen::Matrix3Xd unobservedRotation;
         /** Unit vectors, in the first map's axes, along which its translation was kept. */
         Eigen::Matrix3Xd unobservedTranslation;
-        bool searched = false;  //!< the estimate was too far off
+        bool searched = false;  //!< the initial estimate was too far off
     };
 
     AlignerOptions options;  //!< may be changed between two calls

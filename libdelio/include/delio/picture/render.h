@@ -8,15 +8,15 @@
 #include <string>
 
 namespace delio::picture {
-/** From where a scene is looked at, and how. What is not set is chosen so that the whole content
- *  (without stray points) fills the picture. */
+/** Camera and style of a picture. Unset values are chosen so that the whole content (without
+ *  outliers) fills the picture. */
 struct SnapshotOptions {
     unsigned width_px = 1920;   //!< 1 to kMaxPictureSize_px
     unsigned height_px = 1080;  //!< likewise
 
-    /** Where the camera stands, seen from the content: 0 on the side of +x, 90 of +y. Unset: such
-     *  that the longer side of the content lies across the picture (looking straight down: turned
-     *  by right angles only, +x to the right or up). */
+    /** Direction from which the camera looks: 0 from +x, 90 from +y. Unset: such that the longer
+     *  side of the content lies across the picture (looking straight down: turned by right angles
+     *  only, +x to the right or up). */
     std::optional<double> azimuth_deg;
     double elevation_deg = 55;     //!< above the horizon; 90 looks straight down
     std::optional<double> zoom_m;  //!< metres across the picture, through the content's middle
@@ -26,8 +26,8 @@ struct SnapshotOptions {
      * in larger pictures and from nearer (a map's: such that its surfaces look closed). */
     std::optional<float> pointSize_px;
     std::optional<mrpt::img::TColor> background;  //!< unset: the scene's
-    /** Of the points of a map where others in front of them are near: shows what stands out from
-     *  what. 0: none; 1: as usual. Scenes without a map are never shaded. */
+    /** Of the points of a map where others in front of them are near: edge shading. 0: off; 1:
+     *  default. Scenes without a map are never shaded. */
     double shading = 1;
 };
 

@@ -14,16 +14,16 @@
 namespace delio::picture {
 using map::ColourBy;
 
-/** How a map is drawn. */
+/** Style of a map. */
 struct SceneOptions {
     map::Colormap colormap = map::Colormap::Turbo;  //!< of everything but normals
-    ColourBy colourBy = ColourBy::Height;           //!< what colours say
+    ColourBy colourBy = ColourBy::Height;           //!< quantity shown by the colours
     float pointSize_px = 2;                         //!< in a picture of 1080 lines
     mrpt::img::TColor background{16, 18, 22};       //!< behind everything
     std::string caption = {};                       //!< a line of the legend
 };
 
-/** The ways through a map, as poses in the frame of its points; each may be empty. */
+/** Trajectories in a map, as poses in the frame of its points; each may be empty. */
 struct MapWays {
     std::vector<Eigen::Isometry3d> trajectory;   //!< in white
     std::vector<Eigen::Isometry3d> groundTruth;  //!< in red
@@ -42,12 +42,12 @@ struct MapWays {
  *  coloured by. */
 mrpt::opengl::COpenGLScene::Ptr mapScene(const map::MapPoints& points, const MapWays& ways,
                                          const SceneOptions& options = {});
-/** The same of a cloud: only what pointsOf() takes over is known of it. */
+/** The same for a cloud; only the fields set by pointsOf() are used. */
 mrpt::opengl::COpenGLScene::Ptr mapScene(const mrpt::maps::CPointsMap& points, const MapWays& ways,
                                          const SceneOptions& options = {});
 
-/** Adds to a mapScene() what was taken out of its map, in red. Views that fill the picture stay the
- *  same. */
+/** Adds removed dynamic points to a mapScene(), in red. Views that fill the picture stay the same.
+ */
 void addRemoved(mrpt::opengl::COpenGLScene& scene, const map::MapPoints& removed);
 
 /** Gives a scene's coloured clouds, each by height above its ground, and the legend of mapScene()

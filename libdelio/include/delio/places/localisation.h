@@ -5,7 +5,7 @@
 #include "delio/core/stage_options.h"
 
 namespace delio {
-/** When a place counts as found. */
+/** Acceptance of a place. */
 struct PlaceSearchOptions : public StageOptions {
     double min_overlap = 0.45;
     double rival = 0.8;
@@ -14,7 +14,7 @@ struct PlaceSearchOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** When a vehicle counts as lost, and how it is searched for. */
+/** Tracking and search in a stored map. */
 struct LocalisationOptions : public StageOptions {
     double drift = 0.01;
 
@@ -22,7 +22,7 @@ struct LocalisationOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** Where a vehicle is with respect to a map. */
+/** Localisation state with respect to a map. */
 enum class Whereabouts {
     kUnknown,  //!< not found yet
     kInMap,
@@ -35,7 +35,7 @@ struct MapFix {
     Increment vehicle;       //!< its pose in the map's frame; not set where it is unknown
     bool measured = false;   //!< by registration to the map; otherwise by the odometry
     bool searched = false;   //!< a global search was made at this scan
-    double inlierRatio = 0;  //!< fraction of the standing points that stand in the map
+    double inlierRatio = 0;  //!< fraction of the points above the ground that are in the map
     std::string reason;      //!< why it was not measured
 };
 

@@ -19,7 +19,7 @@ struct LoopOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** When two submaps count as one place. */
+/** Verification of a pair of submaps. */
 struct ClosureOptions : public StageOptions {
     double min_overlap = 0.3;
     double agreed = 0.2;
@@ -35,10 +35,10 @@ struct Closure {
     double overlap = 0;   //!< overlap coefficient of the voxels above the ground, 0 to 1
     /** Of the points in voxels with a plane, the fraction that lies on it. */
     double inlierRatio = 0;
-    std::string reason;  //!< why it was refused; empty: it was accepted
+    std::string reason;  //!< reason of the rejection; empty: accepted
 };
 
-/** A pair of submaps that may show one place, and what was found. */
+/** Candidate pair of submaps, and the result of its verification. */
 struct LoopCandidate {
     std::size_t from = 0;                                        //!< the earlier submap
     std::size_t to = 0;                                          //!< the later one

@@ -14,7 +14,7 @@ struct Descriptor;
 }  // namespace delio::places
 
 namespace delio {
-/** A drive that a map was made of: its scans are nodes of the map's graph, one after the other. */
+/** A drive in a map: its scans are consecutive nodes of the map's graph. */
 struct StoredDrive {
     std::string name;              //!< of its recording: io::nameOfDrive()
     std::size_t firstNode = 0;     //!< node of its first scan
@@ -24,7 +24,7 @@ struct StoredDrive {
 /** Content of a stored map. Poses are the vehicle's in the map's frame, which is that of
  *  the first scan of its first drive. */
 struct MapContent {
-    graph::PoseGraph graph;               //!< a node a scan, of all drives
+    graph::PoseGraph graph;               //!< one node per scan, of all drives
     std::vector<StoredDrive> drives;      //!< in the order of their nodes
     std::vector<places::Submap> submaps;  //!< without their points
     /** Descriptor of each of them. */
@@ -40,14 +40,14 @@ class StoredMap {
  public:
     static constexpr std::uint32_t kVersion = 1;  //!< of the file
 
-    /** Throws Error where the file is missing, no such map, of another version or cut off. */
+    /** Throws Error if the file is missing, not a stored map, of another version, or cut off. */
     explicit StoredMap(const std::string& path);
     ~StoredMap();
     StoredMap(const StoredMap&) = delete;
     StoredMap& operator=(const StoredMap&) = delete;
 
     const std::string& path() const { return path_; }         //!< of the file
-    const graph::PoseGraph& graph() const { return graph_; }  //!< a node a scan, of all drives
+    const graph::PoseGraph& graph() const { return graph_; }  //!< one node per scan, of all drives
     /** In the order of their nodes. */
     const std::vector<StoredDrive>& drives() const { return drives_; }
     /** Without their points. */
@@ -69,8 +69,8 @@ class StoredMap {
     /** As it would be written once more; refers to this map. */
     MapContent content() const;
 
-    /** Writes a map: under a temporary name, so that what stands under `path` is always whole.
-     *  Error where that cannot be done. */
+    /** Writes a map: under a temporary name, so that the file at `path` is always complete. Error
+     *  where that cannot be done. */
     static void save(const MapContent& content, const std::string& path);
 
  private:

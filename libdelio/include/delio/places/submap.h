@@ -9,7 +9,7 @@
 #include "delio/core/stage_options.h"
 
 namespace delio::places {
-/** How a drive is cut into submaps. */
+/** Partition of a drive into submaps. */
 struct SubmapOptions : public StageOptions {
     double path = 50;
     double straight = 25;
@@ -36,8 +36,8 @@ struct PathSegment {
 /** The segment between the ends of two that have the same start, in either order. */
 PathSegment between(const PathSegment& a, const PathSegment& b);
 
-/** One levelled cloud of what was seen along a path segment, metres. The origin of its frame is the
- *  vehicle at the key node, and z is up; `level` maps it to the vehicle's frame there. */
+/** Levelled point cloud of a path segment, metres. The origin of its frame is the vehicle at the
+ *  key node, and z is up; `level` maps it to the vehicle's frame there. */
 struct Submap {
     std::size_t first = 0;  //!< node of the pose graph that it begins with
     std::size_t key = 0;    //!< node whose pose carries it
@@ -52,8 +52,8 @@ struct Submap {
 std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,
                                            const std::vector<Eigen::Isometry3d>& poses);
 
-/** Cuts a drive into submaps: one ends after so much path, or as far from where it began as
- *  `straight`, whichever comes first, so that small loops close, too; and before a gap. */
+/** Partitions a drive into submaps. A submap ends after a path length of `path`, at a distance of
+ *  `straight` from its start (so that small loops close too), or before a time gap. */
 class SubmapBuilder {
  public:
     /** Of a drive that begins. */

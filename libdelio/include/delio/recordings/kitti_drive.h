@@ -11,13 +11,13 @@ struct KittiDrive {
     DriveMeta meta;                            //!< with the correction that KITTI's sensor needs
     std::vector<std::filesystem::path> scans;  //!< in order of their numbers
     std::vector<double> times_s;               //!< one per scan, since meta.epoch_s
-    std::vector<std::string> timeRows;  //!< one per scan, as they stand in times.txt; or none
-    std::vector<std::string> poseRows;  //!< one per scan, in the cam0 frame; or none
-    std::string calibText;              //!< of calib.txt; empty where there is no calibration
-    std::string posesName;              //!< file of the poses, also where there is none
+    std::vector<std::string> timeRows;  //!< one per scan, as written in times.txt; may be empty
+    std::vector<std::string> poseRows;  //!< one per scan, in the cam0 frame; may be empty
+    std::string calibText;              //!< of calib.txt; empty without calibration
+    std::string posesName;              //!< file name of the poses, even if it does not exist
     std::string calibName;              //!< file of the calibration, likewise
-    bool nominalTimes = false;          //!< there are none: 0.1 s apart
-    std::vector<std::string> warnings;  //!< what is missing but not needed
+    bool nominalTimes = false;          //!< no stamps: 0.1 s apart is assumed
+    std::vector<std::string> warnings;  //!< missing optional parts
 };
 
 /** The folder of the drive where `folder` is its velodyne/ (beside calib.txt, times.txt or

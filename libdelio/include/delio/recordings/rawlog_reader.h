@@ -18,9 +18,9 @@ class GzInput;
 /** Reads the LiDAR scans of a rawlog, whatever class they were recorded as (see isScan()), bare or
  *  inside CSensoryFrames, embedded or in external files. Rings and times of points are taken from
  *  `.ring` and `.time` files beside the external ones (synth2rawlog writes them), from packets and
- *  from range images; what is known of the drive from the meta.yaml beside the rawlog, if it is
- *  there, and times are counted from its `epoch_unix_s`. Readers share nothing: several may run at
- *  once (MRPT's own folder of external files, setLazyLoadPathBase(), is neither used nor set). */
+ *  from range images; the drive's metadata come from the meta.yaml next to the rawlog, if it
+ *  exists, and times count from its `epoch_unix_s`. Readers share nothing: several may run at once
+ *  (MRPT's own folder of external files, setLazyLoadPathBase(), is neither used nor set). */
 class RawlogReader : public ScanReader {
  public:
     /** `label`: the sensor to read; empty: that of the first scan in the rawlog.
@@ -32,7 +32,7 @@ class RawlogReader : public ScanReader {
     ~RawlogReader() override;
 
     /** Throws Error where the rawlog is cut off or damaged (compressed data with a wrong checksum,
-     *  objects that claim more memory than there is), holds something that is no MRPT object or
+     *  objects that claim more memory than available), holds something that is no MRPT object or
      *  cannot be decoded, or an external file is missing or cut off (its message names the folders
      *  tried); after that the reader is at its end. */
     std::optional<Scan> next() override;

@@ -10,7 +10,7 @@
 #include "delio/odometry/scan.h"
 
 namespace delio::io {
-/** What a source of scans says of itself. */
+/** Properties of a recording. */
 struct Recording {
     std::string kind;                       //!< e.g. "ROS 1 bag, topic /points"
     std::string sensor;                     //!< e.g. "Velodyne VLP-16"; empty: not known
@@ -20,13 +20,13 @@ struct Recording {
     std::optional<bool> motionCompensated;  //!< by the recorder; nothing: it does not say
     bool compensationMeasured = false;      //!< from the points: the source does not say it
     bool compensationAssumed = false;       //!< because most recordings of that kind are so
-    /** A scan whose points tell that they were de-skewed, although the first ones, of a vehicle
-     *  that stood, did not. */
+    /** First scan found to be de-skewed although the first scans, of a standing vehicle, did not
+     *  show it. */
     std::optional<std::size_t> compensatedAfterAll;
     std::optional<std::size_t> scans;   //!< where they are counted without reading them
-    std::vector<std::string> warnings;  //!< what is missing but not needed
-    /** What the reader left out, or took in another way than it was written, a line each with how
-     *  often: complete when the last scan was read. */
+    std::vector<std::string> warnings;  //!< missing optional parts
+    /** Scans and points that the reader ignored or corrected, one line per kind with the number;
+     *  complete after the last scan. */
     std::vector<std::string> findings;
 };
 
@@ -34,8 +34,8 @@ struct Recording {
  *  scans (pcap)". */
 std::string describe(const Recording& recording);
 
-/** Gives the scans of one LiDAR of a drive, one at a time and in order, whatever they are stored
- *  in. Memory does not grow with the length of the drive. */
+/** Reads the scans of one LiDAR of a drive in order, from any format. Memory does not grow with the
+ *  length of the drive. */
 class ScanReader {
  public:
     ScanReader() = default;
@@ -53,31 +53,32 @@ class ScanReader {
     virtual bool skip() = 0;
 
     /** Name of the sensor that is read (of a ROS bag: the topic); empty until its first scan was
-     *  met. */
+     *  read. */
     virtual const std::string& label() const = 0;
-    /** Other LiDARs met so far; a caller may want to say that they were not used. */
+    /** Other LiDARs found so far, which are ignored. */
     virtual const std::set<std::string>& otherLabels() const = 0;
 
     /** Part of the drive read so far, 0 to 1; nothing where that is not known. */
     virtual std::optional<double> fraction() const = 0;
 
-    /** What is known of the drive; nothing where the source does not say. */
+    /** Metadata of the drive; nothing if the source has none. */
     virtual const std::optional<DriveMeta>& meta() const = 0;
 
-    /** What was recognised so far; all of it once the first scan was read. */
+    /** Properties recognised so far; complete once the first scan was read. */
     virtual Recording recording() const = 0;
 
     /** KITTI's calib.txt: `Tr`. */
     virtual SideFile calibration() const { return {}; }
-    /** KITTI's poses.txt: a row a scan, skipped ones included, of cam0. */
+    /** KITTI's poses.txt: one row per scan, skipped ones included, in the cam0 frame. */
     virtual SideFile truth() const { return {}; }
 };
 
-/** Where scans are, and what a source may need to be told. */
+/** A recording and the settings to open it. */
 struct ScanSource {
     /** A rawlog (see RawlogReader), KITTI odometry or raw folder, folder of .pcd, .ply, .bin, .txt
      *  or .csv, ROS 1 .bag, ROS 2 .db3, .mcap or the folder of either, pcap of a Velodyne or
-     *  Ouster; what it is is told by its content. "-": a rawlog or pcap from standard input. */
+     *  Ouster; the format is detected from the content. "-": a rawlog or pcap from standard input.
+     */
     std::string path;
     /** The sensor to read: a rawlog's sensorLabel, a bag's topic. Empty: that of the first scan of
      *  a rawlog; of a bag its only one. */
@@ -90,15 +91,14 @@ struct ScanSource {
 };
 
 /** Opens `source` and reads its first three scans, so that all of recording() is known, and meta()
- *  also where the points had to be looked at for it. Throws Error if there is nothing to read, what
- *  it is is not known, or what is said about the drive cannot be understood; a fault in these scans
- *  is thrown by next(). */
+ *  also where the points had to be looked at for it. Throws Error if there is nothing to read, the
+ *  format is unknown, or the metadata are invalid; a fault in these scans is thrown by next(). */
 std::unique_ptr<ScanReader> openScans(const ScanSource& source);
-/** The same of a source that needs no more to be told: members of ScanSource. */
+/** The same with the members of ScanSource as arguments. */
 std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label = "",
                                       const std::string& imagesFolder = "");
 
-/** What a drive is called by: its file's name without the extension, or its folder's, with '?' for
- *  control characters. Throws Error where that is no name of a folder ("..", of `...rawlog`). */
+/** Name of a drive: its file's name without the extension, or its folder's, with '?' for control
+ *  characters. Throws Error if that is not a valid folder name ("..", of `...rawlog`). */
 std::string nameOfDrive(const std::string& path);
 }  // namespace delio::io

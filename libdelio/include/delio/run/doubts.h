@@ -9,12 +9,11 @@ namespace delio::run {
 /** Scans of one kind in a run. */
 struct Stretches {
     std::size_t scans = 0;    //!< of the kind
-    std::size_t longest = 0;  //!< of them in a row
-    std::size_t from = 0;     //!< number of the scan that this row begins with
+    std::size_t longest = 0;  //!< longest run of them
+    std::size_t from = 0;     //!< first scan of the longest run
 };
 
-/** What of a run is not measured, or barely. The first scan, which has nothing before it, does not
- *  count. */
+/** Scans of a run that were not or barely measured. The first scan does not count. */
 struct Doubts {
     std::size_t pairs = 0;  //!< scans that have one before them
     Stretches predicted;    //!< not registered: the motion model's
@@ -39,16 +38,16 @@ std::string whyUnreliable(const Doubts& doubts);
 /** State of a scan, as scans.csv names it: tracked, weak, predicted or lost. */
 const char* stateOf(const RunRow& row);
 
-/** "38, at most 30 in a row (from scan 12)"; `scans`: in place of those that were counted. */
+/** "38, longest run 30 (from scan 12)"; `scans` replaces the counted number. */
 std::string textOf(const Stretches& found, std::size_t scans);
 
-/** Of the weak ones: "along x in 38, about z in 2"; empty where there are none. */
+/** Of the weak ones: "along x in 38, about z in 2"; empty if there is no weak scan. */
 std::string weakAxesOf(const Doubts& doubts);
 
-/** A line each of what a user has to know of them: nothing for a few scans. */
+/** Warnings for the user; none for a few scans. */
 std::vector<std::string> warningsOf(const Doubts& doubts);
 
-/** The same of a drive in a stored map: where it was not in it. */
+/** Warnings for a drive in a stored map: scans outside it. */
 std::vector<std::string> warningsOf(const std::vector<MapFix>& fixes,
                                     const std::vector<RunRow>& rows);
 }  // namespace delio::run

@@ -17,19 +17,19 @@ class MapFollower;
 namespace delio::run {
 class RowFiles;
 
-/** What a run is told beside the options of its stages. */
+/** Settings of a run besides the options of its stages. */
 struct RunSettings {
     std::string profile = "accurate";   //!< that the options were made of, for the summary
     std::vector<std::string> command;   //!< for the summary
     std::string sensorLabel = "lidar";  //!< of the observations in map.simplemap
     std::string drive = "drive";        //!< its name in the stored map
-    /** Folder of the results. While the run lives, `folder`/incomplete has scans.csv and the
-     *  odometry's trajectory as far as they go, and temporary files. Empty: neither table is
-     *  written, and temporary files are in the system's folder. */
+    /** Folder of the results. During the run, `folder`/incomplete has scans.csv and the odometry's
+     *  trajectory so far, and temporary files. Empty: neither table is written, and temporary files
+     *  are in the system's folder. */
     std::string folder;
     bool graph = true;         //!< false: the chain of increments alone, not optimised
     bool map = true;           //!< false: memory grows by the poses alone
-    bool keepDynamic = false;  //!< map_dynamic.ply: what was taken out of the map
+    bool keepDynamic = false;  //!< write map_dynamic.ply, the removed dynamic points
     /** A stored map in which the drive is localised; its file, or the folder of the run that made
      *  it. Empty: none. */
     std::string storedMap;
@@ -37,16 +37,15 @@ struct RunSettings {
     std::string storedMapName;
     /** Of the vehicle at the first scan in that map, if it is known to some metres. */
     std::optional<Eigen::Isometry3d> initialPose;
-    bool extend = false;  //!< what the drive has seen is added to that map
+    bool extend = false;  //!< extend that map by this drive
     /** A drive that is not in the map keeps its own frame, which is no fault. */
     bool mayBeElsewhere = false;
-    bool loops = true;  //!< places that the drive comes back to are searched for; with `graph`
-    /** Told of every warning as it comes. */
+    bool loops = true;  //!< search for loop closures; needs `graph`
+    /** Called with every warning. */
     std::function<void(const std::string&)> onWarning;
 };
 
-/** One drive from its first scan to its results: odometry, pose graph and map, and what is noted on
- *  the way. RunFolder writes it. */
+/** Processes one drive: odometry, pose graph, map and records. RunFolder writes the results. */
 class Run {
  public:
     /** Error where the options contradict each other, or the stored map cannot be read. */
@@ -71,16 +70,16 @@ class Run {
     /** Processes the next scan, which took `read_ms` to read. */
     RunRow process(const Scan& scan, double read_ms = 0);
 
-    /** Notes a line for the summary, and tells RunSettings::onWarning. */
+    /** Records a warning for the summary and calls RunSettings::onWarning. */
     void warn(const std::string& text);
-    /** What ended the run, or is missing in it; of several the first is kept. */
+    /** Records the reason why the run ended early or is incomplete; only the first one is kept. */
     void fail(const std::string& fault);
 
-    /** Optimises, scores where the truth is known, and warns of what was not measured: a run in
-     *  which no scan was registered has failed. `complete`: every scan was processed. */
+    /** Optimises, evaluates against ground truth if known, and adds warnings. A run without a
+     *  registered scan has failed. `complete`: every scan was processed. */
     void finish(bool complete);
 
-    const RunRecord& record() const { return record_; }  //!< of what was done so far
+    const RunRecord& record() const { return record_; }  //!< results so far
     /** Of the odometry, so far. */
     const io::Trajectory& odometry() const { return slam_.trajectory(); }
     /** Of a run that is finished; they live as long as it does. */
@@ -115,7 +114,7 @@ class Run {
     bool truthIsCam0_ = true, truthWasAskedFor_ = false;
 };
 
-/** A run without scans: a pose graph is optimised once more. */
+/** Optimises an existing pose graph again. */
 RunRecord optimiseAgain(graph::PoseGraph graph, const Options& options,
                         const RunSettings& settings);
 }  // namespace delio::run

@@ -12,7 +12,7 @@
 namespace delio::run {
 class RunFolder;
 
-/** What a reader of loops.csv wants to know of a pair. */
+/** A row of loops.csv. */
 struct LoopRow {
     std::size_t fromNode = 0;  //!< of the pose graph, the earlier
     std::size_t toNode = 0;    //!< the later
@@ -20,15 +20,15 @@ struct LoopRow {
     std::string reason;        //!< why it was not
 };
 
-/** What a reader of localisation.csv wants to know of a scan. */
+/** A row of localisation.csv. */
 struct LocalisationRow {
     std::size_t scan = 0;                       //!< its number in its recording
     Whereabouts where = Whereabouts::kUnknown;  //!< with respect to the map
     bool measured = false;                      //!< registered to the map
 };
 
-/** The file of a stored map: `path` itself, or the one in the folder of a run. Error where there is
- *  none. */
+/** The file of a stored map: `path` itself, or the one in the folder of a run. Throws Error if
+ *  there is no such file. */
 std::string storedMapIn(const std::string& path);
 
 /** Draws what a run found into its folder: RunFolder::kScene, kMapPicture (where there are points),
@@ -37,9 +37,9 @@ std::string storedMapIn(const std::string& path);
 using Illustrate =
     std::function<void(const RunRecord& record, const map::BuiltMap& map, const RunFolder& folder)>;
 
-/** The folder that a run leaves. Every result file has its name, its writer and its reader here.
- *  All are written into an io::PartialFolder first and put in their places together, summary.yaml
- *  last: a folder that has one is whole. */
+/** Result folder of a run. Every result file has its name, its writer and its reader here. All are
+ *  written into an io::PartialFolder first and put in their places together, summary.yaml last: a
+ *  folder with this file is complete. */
 class RunFolder {
  public:
     /** Final poses, in KITTI's format. */
@@ -53,22 +53,23 @@ class RunFolder {
     static constexpr const char* kTum = "trajectory_tum.txt";  //!< final poses with times
     static constexpr const char* kGraph = "posegraph.g2o";  //!< for g2o, and to be optimised again
     static constexpr const char* kMrptGraph = "posegraph.graph";  //!< MRPT's text format
-    static constexpr const char* kScans = "scans.csv";            //!< a row a scan
+    static constexpr const char* kScans = "scans.csv";            //!< one row per scan
     static constexpr const char* kLoops = "loops.csv";            //!< where loops were searched for
     static constexpr const char* kLocalisation = "localisation.csv";  //!< in a stored map
     static constexpr const char* kJoints = "joints.csv";              //!< where one was extended
     static constexpr const char* kConfig = "config.ini";        //!< every option that had an effect
     static constexpr const char* kSimplemap = "map.simplemap";  //!< MRPT's keyframes with points
     static constexpr const char* kPly = "map.ply";              //!< points of the map
-    static constexpr const char* kDynamicPly = "map_dynamic.ply";      //!< what was taken out of it
+    static constexpr const char* kDynamicPly = "map_dynamic.ply";      //!< removed dynamic points
     static constexpr const char* kMapPage = "map.html";                //!< the map for a browser
     static constexpr const char* kStoredMap = "map.delio";             //!< for StoredMap
     static constexpr const char* kScene = "map.3Dscene";               //!< for SceneViewer3D
     static constexpr const char* kMapPicture = "map.png";              //!< the map, obliquely
     static constexpr const char* kRemovalPicture = "map_removal.png";  //!< before and after it
-    static constexpr const char* kTrajectoryPicture = "trajectory.png";  //!< the way, from above
-    static constexpr const char* kSummary = "summary.yaml";              //!< the run in numbers
-    /** Of several drives: which is in which map. A run of one drive has none. */
+    static constexpr const char* kTrajectoryPicture =
+        "trajectory.png";                                    //!< the trajectory from above
+    static constexpr const char* kSummary = "summary.yaml";  //!< the run in numbers
+    /** With several drives: the map of each drive. */
     static constexpr const char* kDrives = "drives.csv";
 
     /** Folder of a run in progress: its rows so far, see RunSettings::folder. */
@@ -80,13 +81,13 @@ class RunFolder {
     /** Of one of the names above. */
     std::string path(const char* name) const;
     bool has(const char* name) const;  //!< there is such a file
-    /** Paths of all that write() replaces or takes away. */
+    /** Paths that write() replaces or removes. */
     std::vector<std::string> files() const;
 
     /** Writes all that the record has (making the folder where it is not there); files of an
-     * earlier run that this one does not have are removed. Returns what is
-     * missing: the record's fault, or why map or pictures could not be made; empty if nothing.
-     * Where anything else cannot be written, Error, and what was there before is as it was. */
+     *  earlier run that this one does not have are removed. Returns what is missing: the record's
+     *  fault, or why map or pictures could not be made; empty if nothing. Throws Error if anything
+     *  else cannot be written; existing files are then unchanged. */
     std::string write(RunRecord record, const RunMaps& maps = {},
                       const Illustrate& illustrate = {}) const;
 

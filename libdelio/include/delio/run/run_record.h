@@ -37,7 +37,7 @@ class RowFigures {
     std::vector<double> values_;  //!< in the order of the names
 };
 
-/** What is said of one scan: a row of scans.csv. */
+/** A row of scans.csv. */
 struct RunRow {
     std::size_t scan = 0;  //!< number of the scan in its recording
     double stamp_s = 0;    //!< seconds of the drive
@@ -64,7 +64,7 @@ struct RunRow {
 /** The row of a scan that `report` is of. `before`: the last row; null for the first. */
 RunRow rowOf(const Scan& scan, const ScanReport& report, double read_ms, const RunRow* before);
 
-/** What a run was asked for and found: all that a RunFolder writes, but for the map. */
+/** Settings and results of a run, except the map; RunFolder writes them. */
 struct RunRecord {
     std::string profile;               //!< that the options were made of
     std::vector<std::string> command;  //!< words of the command line, where there was one
@@ -116,10 +116,10 @@ struct RunRecord {
 /** A vehicle's trajectory as that of its sensor. `rows`: one for each pose. */
 io::Trajectory ofSensor(const io::Trajectory& vehicle, const std::vector<RunRow>& rows);
 
-/** The maps that a run made; null: none. */
+/** Maps of a run; may be null. */
 struct RunMaps {
     const map::MapBuilder* points = nullptr;  //!< of map.ply and all that is drawn
-    const MapContent* stored = nullptr;       //!< to come back to
-    bool keepDynamic = false;  //!< what is taken out of `points` has a file of its own
+    const MapContent* stored = nullptr;       //!< for localisation
+    bool keepDynamic = false;                 //!< write the removed points to a file of their own
 };
 }  // namespace delio::run

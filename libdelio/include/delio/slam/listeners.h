@@ -7,7 +7,7 @@
 #include "delio/slam/slam.h"
 
 namespace delio {
-/** Makes the pose graph of a drive (section V): the chain of increments, edges to scans before the
+/** Builds the pose graph of a drive (section V): the chain of increments, edges to scans before the
  *  last one where the odometry can make them, and while driving its last nodes optimised. */
 class GraphBuilder : public SlamListener {
  public:
@@ -20,7 +20,7 @@ class GraphBuilder : public SlamListener {
     /** Optimises the whole graph; while driving, its last nodes were. */
     graph::OptimisationResult optimise() { return graph_.optimise(options_); }
 
-    const graph::PoseGraph& graph() const { return graph_; }  //!< a node a scan
+    const graph::PoseGraph& graph() const { return graph_; }  //!< one node per scan
 
  private:
     struct Recent {
@@ -35,9 +35,9 @@ class GraphBuilder : public SlamListener {
     std::deque<Recent> recent_;  //!< scans that edges may still be made to, latest first
 };
 
-/** Puts the points of a drive into a map, without those of dynamic objects. A scan that could not
- *  be registered is left out: where it was taken is a guess. The map's lengths follow the size of
- *  the place ("scale" among the step's details) at the first scan. */
+/** Puts the points of a drive into a map, without those of dynamic objects. Scans that could not be
+ *  registered are ignored, because their poses are only predicted. The map's lengths follow the
+ *  size of the place ("scale" among the step's details) at the first scan. */
 class MapListener : public SlamListener {
  public:
     /** `builder`: empty. */

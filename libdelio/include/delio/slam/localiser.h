@@ -14,10 +14,10 @@
 namespace delio {
 class MapFollower;
 
-/** What a Localiser says of one scan. */
+/** Result of a Localiser for one scan. */
 struct Localisation {
     Step step;   //!< of the odometry
-    MapFix fix;  //!< where that is in the map
+    MapFix fix;  //!< pose in the map
 };
 
 /** Localises a vehicle in a stored map, scan by scan. Its size does not grow with the number of
@@ -29,17 +29,17 @@ class Localiser {
                        const PlaceSearchOptions& search = {},
                        const LocalisationOptions& localisation = {});
 
-    /** Where the vehicle is at the next scan (its frame to the map's), if that is known to a few
-     *  metres: then it is looked for there only. */
+    /** Sets the approximate pose of the vehicle at the next scan (vehicle to map frame), accurate
+     *  to a few metres; only its surroundings are searched. */
     void expect(const Eigen::Isometry3d& vehicle);
 
     /** The next scan. Error where the odometry fails, as in Slam::process(), and from the first
      * scan on that could not be compared with the map. */
     Localisation process(const Scan& scan);
 
-    /** The same for who works with MRPT: a LiDAR observation (see io::decodeObservation) with its
-     *  timestamp in; the vehicle's pose in the map's frame out, or nothing while it is not found.
-     *  Throws Error for an observation that is no LiDAR scan. */
+    /** The same with MRPT's types: takes a LiDAR observation with its time stamp (see
+     *  io::decodeObservation) and returns the vehicle's pose in the map's frame, or nothing while
+     *  it is not localised. Throws Error for an observation that is not a LiDAR scan. */
     std::optional<mrpt::poses::CPose3DPDFGaussian> process(
         const mrpt::obs::CObservation& observation);
 

@@ -14,8 +14,8 @@
 #include "delio/places/submap.h"
 
 namespace delio {
-/** The options of every stage, as one .ini file has them: a section a stage. The defaults are those
- *  of the profile `accurate`; the other profiles say what differs. */
+/** Options of all stages, as in an .ini file with one section per stage. Defaults are those of the
+ *  profile `accurate`; other profiles contain differences. */
 struct Options : public OdometryOptions {
     graph::PoseGraphOptions graph;     //!< [graph]
     map::MapOptions map;               //!< [map], and [removal]
@@ -29,25 +29,26 @@ struct Options : public OdometryOptions {
     static Options ofProfile(const std::string& name);
     static std::vector<std::string> profileNames();  //!< that ofProfile() knows
 
-    /** The same, and what a drive says of its own sensor: what delio-slam uses. */
+    /** The options for a drive: a profile plus the drive's metadata, as delio-slam uses them. */
     static Options forDrive(const std::string& profile, const std::optional<io::DriveMeta>& meta);
 
-    /** What a drive says of its own sensor: the vertical correction, and whether its scans are to
-     * be de-skewed (KITTI's raw ones, which come without times, by azimuth). */
+    /** Applies a drive's metadata: the vertical correction, and whether its scans are de-skewed
+     *  (KITTI's raw ones, which come without times, by azimuth). */
     void adaptTo(const io::DriveMeta& meta);
 
     /** Takes over the keys that are in `iniText`; throws Error that names an unknown section or
-     *  key, a malformed value, or a line that is none of section, key = value and comment. */
+     *  key, a malformed value, or a line that is not a section, key = value or comment. */
     void load(const std::string& iniText);
 
     /** Takes over one `section.key=value`. Error as above. */
     void set(const std::string& assignment);
 
-    /** Throws Error that names them where options contradict each other, or where one was loaded
-     *  or set that has no effect with the odometry that is chosen. To be asked when all are set. */
+    /** Throws Error that names them where options contradict each other, or where one was loaded or
+     *  set that has no effect with the odometry that is chosen. Call it when all options are set.
+     */
     void check() const;
 
-    /** Writes all that has an effect; loading the text gives the same options. */
+    /** Writes all options in use; loading the text restores them. */
     void write(std::ostream& out) const;
 
     /** Those in use with their sections, in the order in which they are written. */

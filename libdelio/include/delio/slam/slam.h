@@ -11,15 +11,15 @@
 #include "delio/odometry/step.h"
 
 namespace delio {
-/** Which poses are kept: of all scans, or only what the next scan needs, so that memory does not
- * grow with the drive. */
+/** Poses kept: of all scans, or only of the last one, so that memory does not grow with the drive.
+ */
 enum class History { All, Last };
 
 /** One scan as Slam passes it to its listeners. References are valid during the call. */
 struct SlamScan {
     std::size_t node;  //!< number of its pose, from 0
-    const Scan& scan;  //!< as it came
-    const Step& step;  //!< what the odometry said of it
+    const Scan& scan;  //!< as read
+    const Step& step;  //!< result of the odometry
     /** Of the vehicle, since the scan before; identity for the first. */
     Increment increment;
     /** Of the vehicle, by the odometry alone: maps its coordinates to those it had at the first
@@ -30,7 +30,7 @@ struct SlamScan {
 /** Static points of a scan, in the vehicle's frame: at most 20 000, as several scans are merged. */
 Eigen::Matrix3Xf staticPoints(const SlamScan& scan);
 
-/** Gets every step of an odometry: a pose graph, a map, a window. */
+/** Consumer of an odometry's steps: a pose graph, a map, a window. */
 class SlamListener {
  public:
     virtual ~SlamListener() = default;
@@ -42,7 +42,7 @@ class SlamListener {
     virtual void add(const SlamScan& scan) = 0;
 };
 
-/** A listener that threw, and what it said. */
+/** A listener that threw, and its message. */
 struct FailedListener {
     std::shared_ptr<const SlamListener> listener;  //!< that was switched off
     std::string message;                           //!< one plain line
@@ -55,24 +55,23 @@ struct ScanReport {
     std::vector<FailedListener> failed;  //!< listeners that were switched off at this scan
 };
 
-/** An odometry and its listeners: scans in, and each listener is told of every step in turn. Poses
- *  are the vehicle's: they map its coordinates to those it had at the first scan. */
+/** An odometry and its listeners: each listener is called with every step in turn. Poses are the
+ *  vehicle's: they map its coordinates to those it had at the first scan. */
 class Slam {
  public:
     /** Without listeners yet. `history`: which poses trajectory() keeps. */
     explicit Slam(std::unique_ptr<Odometry> odometry, History history = History::All)
         : odometry_(std::move(odometry)), history_(history) {}
 
-    /** From the next scan on it is told of every scan, after those that were attached before. */
+    /** Attaches a listener, which is called from the next scan on, after the earlier ones. */
     void attach(std::shared_ptr<SlamListener> listener);
 
     /** A listener that throws is switched off: it gets no more scans, the others and the odometry
-     *  go on, and the report names it. Where the odometry throws, or gives an increment that is not
-     *  finite, which is an Error, trajectory and listeners are as they were before. */
+     *  continue, and the report names it. Where the odometry throws, or gives an increment that is
+     *  not finite, which is an Error, trajectory and listeners are as they were before. */
     ScanReport process(const Scan& scan);
 
-    /** No more scans come: what the odometry has kept to register them goes. process()
-     *  is an Error from then on. */
+    /** Ends the drive and frees the odometry. process() is an Error from then on. */
     void close() { odometry_.reset(); }
 
     /** Of the odometry alone: the poses of all scans, or the last one (see History). */
