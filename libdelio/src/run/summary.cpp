@@ -224,10 +224,9 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.longest_predicted = doubts.predicted.longest;
     summary.lost = doubts.lost.scans;
     summary.longest_lost = doubts.lost.longest;
-    summary.tracked = static_cast<std::size_t>(
-        std::count_if(record.rows.begin(), record.rows.end(), [](const RunRow& row) {
-            return std::string_view("tracked") == stateOf(row);
-        }));
+    summary.tracked = static_cast<std::size_t>(std::count_if(
+        record.rows.begin(), record.rows.end(),
+        [](const RunRow& row) { return std::string_view("tracked") == stateOf(row); }));
     summary.weakly_observed = doubts.weak.scans;
     summary.longest_weakly_observed = doubts.weak.longest;
     summary.interrupted = doubts.interrupted.scans;

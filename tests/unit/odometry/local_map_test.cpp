@@ -51,9 +51,8 @@ class AScanInAYard : public testing::Test {
 TEST_F(AScanInAYard, IsRefinedByPlanes) {
     const auto placed = map.place(view.coarse, there * poseAt(0.2, 0.2, 0), 1);
     ASSERT_TRUE(placed.valid);
-    EXPECT_LT(
-        metresBetween(map.registerPlanes(view, placed, placed.pose, true).pose(), there),
-        0.01);
+    EXPECT_LT(metresBetween(map.registerPlanes(view, placed, placed.pose, true).pose(), there),
+              0.01);
 }
 
 // Farther than planes are believed, but there more points fit than where they were placed.

@@ -107,8 +107,9 @@ TEST(PointSearch, TheDiscIsLevelWhereUprightSaysSo) {
     map.add(
         rolled *
         test::ringScan(test::yard(), Isometry3d::Identity(), kSensor, noise).points.cast<double>());
-    const auto found = odometry::searchPoints(map, rolled * pair.scan, Isometry3d::Identity(),
-                                              {kReach_m, 0}, rolled.transpose().cast<float>(), kOptions);
+    const auto found =
+        odometry::searchPoints(map, rolled * pair.scan, Isometry3d::Identity(), {kReach_m, 0},
+                               rolled.transpose().cast<float>(), kOptions);
     EXPECT_LT((rolled.transpose() * found.pose.translation() - moved.translation()).norm(),
               kFound_m);
 }
@@ -125,8 +126,8 @@ TEST(PointSearch, AStandingSensorStands) {
 TEST(PointSearch, ASensorBetweenCarsThatDriveOnStands) {
     for (const double driven : {0.8, 1.5, 3.0}) {
         const Pair pair = pairIn(traffic(0), Isometry3d::Identity(), traffic(driven));
-        const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(), {5, 0},
-                                                  Matrix3f::Identity(), kOptions);
+        const auto found = odometry::searchPoints(pair.map, pair.scan, Isometry3d::Identity(),
+                                                  {5, 0}, Matrix3f::Identity(), kOptions);
         EXPECT_TRUE(found.valid);
         EXPECT_LT(offBy(found, Isometry3d::Identity()), 0.03) << driven;
     }

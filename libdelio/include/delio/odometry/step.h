@@ -59,8 +59,8 @@ struct Step {
     /** Maps the sensor's frame at this scan to that at the scan before; identity for the first.
      *  The covariance of a predicted one is the motion model's. */
     Increment increment;
-    bool predicted = false;    //!< the scan could not be registered: `increment` is the prediction
-    std::string reason;        //!< why; empty where it was registered
+    bool predicted = false;  //!< the scan could not be registered: `increment` is the prediction
+    std::string reason;      //!< why; empty where it was registered
     /** Where the sensor went since it was tracked last is not known: the scan was not found in the
      *  map, or an axis has not been observed since the motion was known last. */
     bool lost = false;
