@@ -5,20 +5,22 @@
 
 namespace delio {
 std::vector<OptionField> PreprocessOptions::fields() const {
-    return {OptionField{"min_range", &PreprocessOptions::min_range,
-                        "m; nearer points are dropped (the vehicle itself)", 0, 1e3}
-                .scaled(),
-            {"max_range", &PreprocessOptions::max_range, "m; farther points are dropped", 1, 1e4},
-            {"vertical_correction_deg", &PreprocessOptions::vertical_correction_deg,
-             "deg added to each point's vertical angle; where absent: what DRIVE.meta.yaml says",
-             -5, 5},
-            {"deskew", &PreprocessOptions::deskew,
-             "true: points are brought to the stamp of their scan, where their times are known; "
-             "where absent: not if DRIVE.meta.yaml says that they are there already"},
-            {"sweep_s", &PreprocessOptions::sweep_s,
-             "s; time of a turn, by which points that come without times get them from their "
-             "azimuth (clockwise, stamped at the front); 0: such points stay as they are",
-             0, 10}};
+    return {
+        OptionField{"min_range", &PreprocessOptions::min_range,
+                    "m; nearer points are dropped (the vehicle itself)", 0, 1e3}
+            .scaled(),
+        {"max_range", &PreprocessOptions::max_range, "m; farther points are dropped", 1, 1e4},
+        {"vertical_correction_deg", &PreprocessOptions::vertical_correction_deg,
+         "deg added to each point's vertical angle; where absent: what DRIVE.meta.yaml says (of "
+         "method planes; of paper: 0)",
+         -5, 5},
+        {"deskew", &PreprocessOptions::deskew,
+         "true: points are brought to the stamp of their scan, where their times are known; "
+         "where absent: not if DRIVE.meta.yaml says that they are there already"},
+        {"sweep_s", &PreprocessOptions::sweep_s,
+         "s; time of a turn, by which points that come without times get them from their "
+         "azimuth (clockwise, stamped at the front); 0: such points stay as they are",
+         0, 10}};
 }
 
 void PreprocessOptions::check(const std::string& section) const {
@@ -134,13 +136,20 @@ std::vector<OptionField> BilateralFilterOptions::fields() const {
 
 std::vector<OptionField> OutlierRemovalOptions::fields() const {
     return {{"rounds", &OutlierRemovalOptions::rounds,
-             "times that outliers are looked for; 0: not at all", 0, 100},
+             "times that outliers are looked for at most; 0: not at all", 0, 100},
             {"first_neighbours", &OutlierRemovalOptions::first_neighbours,
              "neighbours on the sphere in the first round", 1, 1e4},
             {"last_neighbours", &OutlierRemovalOptions::last_neighbours,
              "neighbours on the sphere in the last round", 1, 1e4},
             {"alpha", &OutlierRemovalOptions::alpha,
-             "standard deviations above the mean that still belong", 0, 100}};
+             "standard deviations above the mean that still belong", 0, 100},
+            {"both_ends", &OutlierRemovalOptions::both_ends,
+             "true: what is as far below the mean is removed, too"},
+            {"small_share", &OutlierRemovalOptions::small_share,
+             "share of the normals that makes a small set, which ends the rounds", 0, 1},
+            {"stable_share", &OutlierRemovalOptions::stable_share,
+             "share of a set: a round that removes less shows that it is stable, and is the last",
+             0, 1}};
 }
 
 std::vector<OptionField> MeanShiftOptions::fields() const {
@@ -227,7 +236,7 @@ std::vector<OptionField> LineRegistrationOptions::fields() const {
 
 std::vector<OptionField> PointCheckOptions::fields() const {
     using Me = PointCheckOptions;
-    return {{"enabled", &Me::enabled, "false: lines and patterns are taken at their word"},
+    return {{"enabled", &Me::enabled, "true: points may overrule lines and patterns"},
             {"believed", &Me::believed,
              "m; lines that lead farther than this from where points place the scan are not "
              "believed",

@@ -107,7 +107,8 @@ bool differ(const Closure& a, const Closure& b) {
 }  // namespace
 
 std::vector<OptionField> LoopOptions::fields() const {
-    return {{"min_path", &LoopOptions::min_path, "m; what is seen again after less path is no loop",
+    return {{"enabled", &LoopOptions::enabled, "false: loops are not searched for"},
+            {"min_path", &LoopOptions::min_path, "m; what is seen again after less path is no loop",
              1, 1e6},
             {"drift", &LoopOptions::drift,
              "share of the path by which the odometry is off along each level axis (standard "
