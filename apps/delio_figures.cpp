@@ -1,6 +1,8 @@
 // delio-figures: the paper's pictures of the stages, made of scans of a recording.
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
+#include <algorithm>
+
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/files/output_folder.h"
@@ -68,7 +70,8 @@ class Figures {
     io::PartialFolder partial_;
 };
 
-std::vector<Scan> readScans(io::ScanReader& reader, const std::string& input, std::size_t first) {
+std::vector<Scan> readScans(io::ScanReader& reader, const std::string& input, std::size_t first,
+                            std::size_t every) {
     for (std::size_t i = 0; i < first; ++i)
         if (!reader.skip()) break;
     std::vector<Scan> scans;
@@ -76,6 +79,8 @@ std::vector<Scan> readScans(io::ScanReader& reader, const std::string& input, st
         auto scan = reader.next();
         if (!scan) break;
         scans.push_back(std::move(*scan));
+        for (std::size_t i = 1; i < every; ++i)
+            if (!reader.skip()) break;
     }
     if (scans.size() < 2)
         throw Error("'" + input + "' has fewer than two scans from scan " + std::to_string(first) +
@@ -102,13 +107,17 @@ void drawPatterns(const std::vector<Scan>& scans, const PaperOdometryOptions& op
                  picture::sphereView(patterns.size()));
 }
 
-/** All normals of a scan, and what each round of outlier removal leaves of them. */
+/** All normals of a scan, and what outlier removal leaves of them in steps of about as many rounds.
+ */
 void drawOutlierRemoval(const Scan& scan, const PaperOdometryOptions& options,
                         const Figures& figures) {
     const auto normals = normalsOf(scan, options);
     std::vector<Eigen::Matrix3Xf> steps;
     std::vector<std::string> captions;
-    for (unsigned round = 0; round <= options.outliers.rounds; ++round) {
+    const unsigned rounds = paper::removeOutliers(normals, options.outliers).rounds;
+    const auto shown = std::min<unsigned>(kScans - 1, rounds);
+    for (unsigned step = 0; step <= shown; ++step) {
+        const unsigned round = shown == 0 ? 0 : step * rounds / shown;
         steps.push_back(
             paper::removeOutliers(normals, options.outliers.firstRounds(round)).directions);
         captions.push_back(std::to_string(steps.back().cols()) + " normals");
@@ -149,7 +158,7 @@ PaperOdometryOptions optionsFor(const std::string& profile, const io::ScanReader
 
 cli::HelpText help() {
     cli::HelpText help;
-    help.about = "Shows four consecutive scans.";
+    help.about = "Shows four scans: consecutive ones, or each Nth with --every.";
     help.sections = cli::optionSections(stagesOf(Options::ofProfile("paper")));
     help.sections.erase(help.sections.begin());  // the odometry cannot be chosen
     help.writes = {
@@ -173,6 +182,9 @@ int main(int argc, char** argv) {
     Text output("o", "output", "Folder for the figures", true, "", "OUTDIR", cmd);
     TCLAP::ValueArg<cli::Count> scan("", "scan", "First scan to draw, counted from 0", false, {},
                                      "N", cmd);
+    TCLAP::ValueArg<cli::Count> every("", "every",
+                                      "Draw each Nth scan: in a bend the pattern turns visibly",
+                                      false, {1}, "N", cmd);
     Text profile("", "profile", "Preset for all options that you do not set yourself", false,
                  "paper", cli::profileChoice(), cmd);
     TCLAP::MultiArg<std::string> set(
@@ -183,6 +195,10 @@ int main(int argc, char** argv) {
 
     return cli::run(cmd, help(), argc, argv, verbose, [&] {
         checkFiles(input.getValue(), output.getValue(), force.getValue());
+        if (every.getValue() == 0) {
+            cli::inform("--every has to be 1 or more");
+            return cli::kExitBadCommandLine;
+        }
         const auto reader = io::openScans(input.getValue());
         PaperOdometryOptions options;
         try {
@@ -191,7 +207,7 @@ int main(int argc, char** argv) {
             cli::inform(e.what());
             return cli::kExitBadCommandLine;
         }
-        const auto scans = readScans(*reader, input.getValue(), scan.getValue());
+        const auto scans = readScans(*reader, input.getValue(), scan.getValue(), every.getValue());
         Figures figures(output.getValue());
         drawPatterns(scans, options, figures);
         drawOutlierRemoval(scans[0], options, figures);

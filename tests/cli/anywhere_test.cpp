@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Highways, AnywherePaper,
                          nameOf);
 
 TEST_P(AnywherePaper, IsRegistered) {
-    const auto run = runOf(GetParam(), "paper");
+    const auto run = runOf(GetParam(), "paper-extended");
     EXPECT_LT(run.endError_percent, 5);
     EXPECT_EQ(run.predicted, 0U);
     EXPECT_FALSE(run.lostInSilence());

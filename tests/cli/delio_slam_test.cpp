@@ -113,8 +113,13 @@ TEST_F(DelioSlam, ColumnsAndStagesAreThoseOfTheMethod) {
           {"converged", "dynamic", "dynamic_share", "inlier_ratio", "iterations", "kernel_m",
            "plane_converged", "plane_inlier_ratio", "plane_iterations", "scale"}}},
         {"paper",
+         {{"preprocess", "normals", "bilateral", "outliers", "mean_shift", "lines", "rotation",
+           "translation"},
+          {"normals", "pattern", "modes", "lines", "overlap", "rotation_iterations",
+           "rotation_converged", "translation_iterations", "translation_converged"}}},
+        {"paper-extended",
          {{"preprocess", "normals", "bilateral", "outliers", "mean_shift", "lines", "check_points",
-           "rotation", "translation", "check"},
+           "rotation", "translation", "guards"},
           {"normals", "pattern", "modes", "lines", "overlap", "rotation_iterations",
            "rotation_converged", "translation_iterations", "translation_converged", "denied"}}}};
     for (const auto& [profile, names] : own) {

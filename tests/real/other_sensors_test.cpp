@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/containers/yaml.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "command.h"
@@ -22,9 +23,11 @@ class OtherSensors : public testing::TestWithParam<Drive> {};
 INSTANTIATE_TEST_SUITE_P(Real, OtherSensors,
                          testing::Values(Drive{"vlp16_street_first80", "accurate", 0.02},
                                          Drive{"os1_kaist03_21", "accurate", 0.02},
-                                         Drive{"vlp16_street_first80", "paper", 0.05}),
+                                         Drive{"vlp16_street_first80", "paper-extended", 0.05}),
                          [](const auto& drive) {
-                             return drive.param.data + "_" + drive.param.profile;
+                             auto name = drive.param.data + "_" + drive.param.profile;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
                          });
 
 double pathOf(const io::Trajectory& drive) {

@@ -11,7 +11,8 @@ std::vector<OptionField> PreprocessOptions::fields() const {
             {"max_range", &PreprocessOptions::max_range, "m; points farther than this are ignored",
              1, 1e4},
             {"vertical_correction_deg", &PreprocessOptions::vertical_correction_deg,
-             "deg; added to each point's vertical angle; if not set: the value in DRIVE.meta.yaml",
+             "deg; added to each point's vertical angle; if not set: the value in DRIVE.meta.yaml "
+             "(method paper: 0)",
              -5, 5},
             {"deskew", &PreprocessOptions::deskew,
              "true: de-skew scans whose points have times; if not set: unless the recording is "
@@ -137,13 +138,20 @@ std::vector<OptionField> BilateralFilterOptions::fields() const {
 
 std::vector<OptionField> OutlierRemovalOptions::fields() const {
     return {{"rounds", &OutlierRemovalOptions::rounds,
-             "times that outliers are looked for; 0: not at all", 0, 100},
+             "times that outliers are looked for at most; 0: not at all", 0, 100},
             {"first_neighbours", &OutlierRemovalOptions::first_neighbours,
              "neighbours on the sphere in the first round", 1, 1e4},
             {"last_neighbours", &OutlierRemovalOptions::last_neighbours,
              "neighbours on the sphere in the last round", 1, 1e4},
             {"alpha", &OutlierRemovalOptions::alpha,
-             "standard deviations above the mean that still belong", 0, 100}};
+             "standard deviations above the mean that still belong", 0, 100},
+            {"both_ends", &OutlierRemovalOptions::both_ends,
+             "true: what is as far below the mean is removed, too"},
+            {"small_share", &OutlierRemovalOptions::small_share,
+             "share of the normals that makes a small set, which ends the rounds", 0, 1},
+            {"stable_share", &OutlierRemovalOptions::stable_share,
+             "share of a set: a round that removes less shows that it is stable, and is the last",
+             0, 1}};
 }
 
 std::vector<OptionField> MeanShiftOptions::fields() const {
@@ -230,7 +238,7 @@ std::vector<OptionField> LineRegistrationOptions::fields() const {
 
 std::vector<OptionField> PointCheckOptions::fields() const {
     using Me = PointCheckOptions;
-    return {{"enabled", &Me::enabled, "false: lines and patterns are taken at their word"},
+    return {{"enabled", &Me::enabled, "true: points may overrule lines and patterns"},
             {"believed", &Me::believed,
              "m; lines that lead farther than this from where points place the scan are not "
              "believed",

@@ -5,65 +5,15 @@
 #include <cmath>
 
 #include "core/scan_trajectory.h"
-#include "core/voxel_grid.h"
 #include "delio/core/geometry.h"
 #include "delio/core/stopwatch.h"
 #include "odometry/deskew.h"
-#include "odometry/search_points.h"
 #include "odometry/spin_axis.h"
 #include "paper/line_registration.h"
 
 namespace delio::odometry {
 
-CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
-                          const PointCheckOptions& options, const PointMapOptions& map) {
-    CheckPoints check{{}, PointMap(map), upright};
-    const Eigen::Matrix3Xf fine = voxelCentroids(points, options.map_spacing);
-    check.map.add(fine.cast<double>());
-    check.points = firstOfVoxels(fine, options.point_spacing).cast<double>();
-    return check;
-}
-
-PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
-                            const Eigen::Isometry3d& found, const Eigen::Isometry3d& predicted,
-                            double reach, const PointCheckOptions& options,
-                            const PointRegistrationOptions& registration) {
-    const auto& points = to.points;
-    Eigen::Isometry3d rest = predicted;  // a rotation that was found may be off by much
-    rest.translation().setZero();
-    const auto moved = pointsOff(from.map, points, rest, options.rest);
-    const auto shareOf = [&](const Eigen::Isometry3d& pose) {
-        return shareAt(from.map, moved, pose, registration.last_kernel);
-    };
-    PointEstimate best;
-    double most = 0;
-    const auto compare = [&](const PointEstimate& placed) {
-        const double share = placed.valid ? shareOf(placed.pose) : 0;
-        if (share <= most) return;
-        most = share;
-        best = placed;
-    };
-    const double kernel = registration.least_kernel;
-    compare(registerToPoints(from.map, points, found, kernel, registration));
-    if (most < options.min_share || !agree(best.pose, found, options)) {
-        compare(registerToPoints(from.map, points, predicted, kernel, registration));
-        compare(searchPoints(from.map, points, rest, {reach, 0}, to.upright, registration));
-    }
-    const auto least = options.min_moved * static_cast<double>(points.cols());
-    best.valid = static_cast<double>(moved.cols()) >= least && most >= options.min_share &&
-                 most > shareOf(found);
-    return best;
-}
-
-bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b,
-           const PointCheckOptions& options) {
-    return (a.translation() - b.translation()).norm() <= options.believed &&
-           angleOf(a.linear().transpose() * b.linear()) <= options.believed_deg * M_PI / 180;
-}
-
 namespace {
-constexpr double kDeg = M_PI / 180;
-
 /** Runs a stage and adds its time. */
 template <typename Work>
 auto stage(const char* name, Step& step, const Work& work) {
@@ -72,10 +22,10 @@ auto stage(const char* name, Step& step, const Work& work) {
 }
 
 /** The registration's own times and figures. */
-void note(const PaperRegistration& found, Step& step) {
+void note(const PaperRegistration& found, bool guarded, Step& step) {
     step.times_ms.emplace_back("rotation", found.rotation_ms);
     step.times_ms.emplace_back("translation", found.translation_ms);
-    step.times_ms.emplace_back("check", found.check_ms);
+    if (guarded) step.times_ms.emplace_back("guards", found.guards_ms);
     const auto put = [&](const char* name, double value) {
         step.details.emplace_back(name, value);
     };
@@ -84,80 +34,7 @@ void note(const PaperRegistration& found, Step& step) {
     put("rotation_converged", found.rotation.converged);
     put("translation_iterations", found.translation.iterations);
     put("translation_converged", found.translation.converged);
-    put("denied", found.denied);
-}
-
-/** Rotation and translation again, now that it is known which normals were found at one place. */
-void refineInPlace(const PaperFeatures& from, const PaperFeatures& to, paper::LineMatcher& matcher,
-                   const PaperOdometryOptions& options, PaperRegistration& found) {
-    for (unsigned round = 0; round < options.inPlace.rounds; ++round) {
-        if (!found.rotation.valid || !found.translation.valid) return;
-        const Eigen::Vector3d t = found.translation.translation;
-        found.rotation = timed(found.rotation_ms, [&] {
-            return paper::registerInPlace(from.pattern, to.pattern, found.rotation, t,
-                                          options.inPlace);
-        });
-        found.translation = timed(found.translation_ms, [&] {
-            return paper::registerLines(matcher, paper::rotated(to.lines, found.rotation.rotation),
-                                        t, options.lineRegistration);
-        });
-    }
-}
-
-PaperRegistration byPatternAndLines(const PaperFeatures& from, const PaperFeatures& to,
-                                    const Eigen::Isometry3d& guess, double search_m,
-                                    const PaperOdometryOptions& options) {
-    PaperRegistration result;
-    result.rotation = timed(result.rotation_ms, [&] {
-        return paper::registerPatterns(from.pattern, to.pattern, guess.linear(), options.pattern);
-    });
-    std::optional<paper::LineMatcher> matcher;
-    result.translation = timed(result.translation_ms, [&] {
-        const auto unrotated = paper::rotated(to.lines, result.rotation.rotation);
-        matcher.emplace(from.lines);
-        return paper::searchTranslation(*matcher, unrotated, guess.translation(), search_m,
-                                        options.lineRegistration);
-    });
-    refineInPlace(from, to, *matcher, options, result);
-    if (!result.rotation.valid)
-        result.predictedReason = result.rotation.tooFar ? "no rotation found" : "too few normals";
-    if (!result.translation.valid)
-        result.predictedReason += result.rotation.valid ? "too few lines" : " and too few lines";
-    return result;
-}
-
-Eigen::Isometry3d poseOf(const PaperRegistration& found) {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear() = found.rotation.rotation;
-    pose.translation() = found.translation.translation;
-    return pose;
-}
-
-void nameAxis(const Eigen::Vector3d& axis, double sigma, Eigen::Matrix3Xd& axes,
-              Eigen::Matrix3d& covariance) {
-    axes.conservativeResize(3, axes.cols() + 1);
-    axes.rightCols<1>() = axis;
-    covariance += sigma * sigma * axis * axis.transpose();
-}
-
-/** Where rotation or translation lead away from `placed` they do not know better: these axes stay
- *  as points have them. */
-void hold(const Eigen::Isometry3d& placed, const PaperOdometryOptions& options,
-          PaperRegistration& found) {
-    auto& rotation = found.rotation;
-    auto& translation = found.translation;
-    const Eigen::Vector3d turned = rotationLog(placed.linear().transpose() * rotation.rotation);
-    if (turned.norm() > options.check.believed_deg * kDeg) {
-        rotation.rotation = placed.linear();
-        nameAxis(turned.normalized(), options.pattern.prior_sigma_deg * kDeg,
-                 rotation.unobservedAxes, rotation.covariance);
-    }
-    const Eigen::Vector3d off = translation.translation - placed.translation();
-    if (off.norm() > options.check.believed) {
-        translation.translation = placed.translation();
-        nameAxis(off.normalized(), options.lineRegistration.prior_sigma, translation.unobservedAxes,
-                 translation.covariance);
-    }
+    if (guarded) put("denied", found.denied);
 }
 
 /** Both as one, whose errors grow with the distance: from another place other parts of the surfaces
@@ -170,41 +47,39 @@ Increment incrementOf(const PaperRegistration& found, const PaperOdometryOptions
 }
 }  // namespace
 
+PaperRegistration registerByPatternAndLines(const PaperFeatures& from, const PaperFeatures& to,
+                                            const Eigen::Isometry3d& guess, double search_m,
+                                            const PaperOdometryOptions& options) {
+    PaperRegistration result;
+    result.rotation = timed(result.rotation_ms, [&] {
+        return paper::registerPatterns(from.pattern, to.pattern, guess.linear(), options.pattern);
+    });
+    result.translation = timed(result.translation_ms, [&] {
+        const auto unrotated = paper::rotated(to.lines, result.rotation.rotation);
+        return paper::searchTranslation(from.lines, unrotated, guess.translation(), search_m,
+                                        options.lineRegistration);
+    });
+    if (!result.rotation.valid)
+        result.predictedReason = result.rotation.tooFar ? "no rotation found" : "too few normals";
+    if (!result.translation.valid)
+        result.predictedReason += result.rotation.valid ? "too few lines" : " and too few lines";
+    return result;
+}
+
 std::optional<Link> PaperFeatures::linkTo(const ScanFeatures& earlier,
                                           const Eigen::Isometry3d& guess) const {
     const auto& from = dynamic_cast<const PaperFeatures&>(earlier);
-    const auto found = byPatternAndLines(from, *this, guess, 0, *options);
+    auto found = registerByPatternAndLines(from, *this, guess, 0, *options);
     if (!found.predictedReason.empty()) return {};
-    if (check && from.check) {
-        // Where it stands is known already: nothing is searched. Seen from afar, surfaces differ.
-        PointCheckOptions wider = options->check;
-        wider.believed *= 2;
-        wider.believed_deg *= 2;
-        const auto placed =
-            checkByPoints(*from.check, *check, poseOf(found), guess, 0, wider, options->points);
-        if (placed.valid && !agree(placed.pose, poseOf(found), wider)) return {};
-    }
+    if (!applyGuardsToLink(from, *this, guess, *options, found)) return {};
     return Link{incrementOf(found, *options), found.translation.overlap};
 }
 
 PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeatures& to,
                                    const Eigen::Isometry3d& guess, double search_m,
                                    const PaperOdometryOptions& options) {
-    auto found = byPatternAndLines(from, to, guess, search_m, options);
-    if (found.predictedReason.empty() && from.check && to.check) {
-        const double reach = std::max(options.check.reach, 1.5 * guess.translation().norm());
-        const auto placed = timed(found.check_ms, [&] {
-            return checkByPoints(*from.check, *to.check, poseOf(found), guess, reach, options.check,
-                                 options.points);
-        });
-        if (placed.valid && !agree(placed.pose, poseOf(found), options.check)) {
-            const double check_ms = found.check_ms;
-            found = byPatternAndLines(from, to, placed.pose, 0, options);
-            hold(placed.pose, options, found);
-            found.check_ms = check_ms;
-            found.denied = true;
-        }
-    }
+    auto found = registerByPatternAndLines(from, to, guess, search_m, options);
+    applyGuards(from, to, guess, options, found);
     found.increment = incrementOf(found, options);
     return found;
 }
@@ -245,11 +120,10 @@ std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const PointCloud& cl
         const auto drawn = paper::drawLines(upright() * cloud.points, cloud.rings, lineOptions);
         return paper::rotated(drawn, upright().transpose().cast<double>());
     });
-    stage("check_points", step, [&] {
-        if (options_->check.enabled)
-            features->check =
-                checkPointsOf(cloud.points, upright(), options_->check, options_->pointMap);
-    });
+    if (options_->check.enabled)
+        features->check = stage("check_points", step, [&] {
+            return checkPointsOf(cloud.points, upright(), options_->check, options_->pointMap);
+        });
     step.details = {{"normals", static_cast<double>(normals.directions.cols())},
                     {"pattern", static_cast<double>(features->pattern.directions.cols())},
                     {"modes", static_cast<double>(modes)},
@@ -315,7 +189,7 @@ Step PaperOdometry::process(const Scan& scan) {
     if (!usable) step.reason = cloud.points.cols() == 0 ? "no points" : "no surfaces";
     if (!skipped.empty()) step.reason = skipped;
     step.predicted = !step.reason.empty();
-    note(registration, step);
+    note(registration, options_->guarded(), step);
     const bool wasLost = lost_;
     if (reference_)
         takeIncrement(registration, interval.duration_s, step);

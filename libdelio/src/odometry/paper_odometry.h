@@ -6,44 +6,16 @@
 #include "delio/odometry/odometry.h"
 #include "odometry/arrivals.h"
 #include "odometry/motion_model.h"
-#include "odometry/point_map.h"
+#include "odometry/paper_guards.h"
 #include "odometry/preprocess.h"
-#include "odometry/register_points.h"
 #include "paper/line_cloud.h"
 #include "paper/line_registration.h"
 #include "paper/mean_shift.h"
 #include "paper/normals.h"
 #include "paper/outlier_removal.h"
 #include "paper/pattern_registration.h"
-#include "paper/rotation_in_place.h"
 
 namespace delio::odometry {
-/** A scan as others are checked against it, and it against others; sensor's frame. */
-struct CheckPoints {
-    Eigen::Matrix3Xd points;  //!< metres, thinned: these are asked
-    PointMap map;             //!< what others are asked in
-    /** Turns the sensor's frame such that z is up. */
-    Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();
-};
-/** `points`: metres, sensor's frame; `upright` as in CheckPoints. */
-CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
-                          const PointCheckOptions& options, const PointMapOptions& map);
-
-/** What points say of where scan `to` stands in scan `from`, beside what was `predicted` and
- * `found` (both map frame `to` to frame `from`) with other features. A standstill explains the
- * rings on the ground, wherever the sensor went, and so would confirm itself; therefore only those
- * points are asked that a standstill does not explain. Not valid where these cannot tell: too few
- * of them, or too few that lie on points of `from` in the best place. `reach`: metres that may have
- * been driven. */
-PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
-                            const Eigen::Isometry3d& found, const Eigen::Isometry3d& predicted,
-                            double reach, const PointCheckOptions& options,
-                            const PointRegistrationOptions& registration);
-
-/** True if it is the same place within what is `believed`. */
-bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b,
-           const PointCheckOptions& options);
-
 /** Scan `to` against scan `from`. */
 struct PaperRegistration {
     Increment increment;              //!< maps the sensor's frame at `to` to that at `from`
@@ -51,28 +23,31 @@ struct PaperRegistration {
     TranslationEstimate translation;  //!< by the lines
     /** Why rotation, translation or both are the prediction; empty where both were registered. */
     std::string predictedReason;
-    bool denied = false;        //!< points stand elsewhere: registered again from there
+    bool denied = false;        //!< by the guard of points: registered again from elsewhere
     double rotation_ms = 0;     //!< time of the rotation
     double translation_ms = 0;  //!< time of the translation
-    double check_ms = 0;        //!< time of the check by points
+    double guards_ms = 0;       //!< time of the guards, where there are any
 };
 
 /** Pattern of the normals and line cloud of a scan, in the sensor's frame. */
 struct PaperFeatures : public ScanFeatures {
     paper::Pattern pattern;                               //!< of its normals
     paper::LineCloud lines;                               //!< between its rings
-    std::optional<CheckPoints> check;                     //!< where it is enabled
+    std::optional<CheckPoints> check;                     //!< for the guard, where it is enabled
     std::shared_ptr<const PaperOdometryOptions> options;  //!< that they were made with
 
     std::optional<Link> linkTo(const ScanFeatures& earlier,
                                const Eigen::Isometry3d& guess) const override;
 };
 
-/** Rotation from the patterns of the normals (III-D), then translation from the line clouds of the
- *  unrotated scan (IV-B). `guess` maps frame `to` to frame `from`. With `search_m` > 0,
- *  translations up to so many metres off the guess are tried. Where points say that the scan stands
- *  elsewhere it is registered again from there; an axis along or about which that still leads away
- *  stays where the points put it, and is named as unobserved. */
+/** Rotation from the patterns of the normals (III-D), once; then translation from the line clouds
+ * of the unrotated scan (IV-B). `guess` maps frame `to` to frame `from`. With `search_m` > 0,
+ *  translations up to so many metres off the guess are tried. */
+PaperRegistration registerByPatternAndLines(const PaperFeatures& from, const PaperFeatures& to,
+                                            const Eigen::Isometry3d& guess, double search_m,
+                                            const PaperOdometryOptions& options);
+
+/** The same, with the guards that the options enable. */
 PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeatures& to,
                                    const Eigen::Isometry3d& guess, double search_m,
                                    const PaperOdometryOptions& options);

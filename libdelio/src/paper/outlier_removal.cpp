@@ -132,11 +132,19 @@ Pattern removeOutliers(const SurfaceNormals& normals, const OutlierRemovalOption
         const Eigen::VectorXf means = nearest.meanDistances(left, neighboursOf(round));
         const float mean = means.mean();
         const float sigma = std::sqrt((means.array() - mean).square().mean());
-        const float most = mean + static_cast<float>(options.alpha) * sigma;
+        const float reach = static_cast<float>(options.alpha) * sigma;
+        const float least = options.both_ends ? mean - reach : 0;
         Numbers kept;
         for (Eigen::Index i = 0; i < means.size(); ++i)
-            if (means[i] <= most) kept.push_back(left[static_cast<std::size_t>(i)]);
+            if (means[i] >= least && means[i] <= mean + reach)
+                kept.push_back(left[static_cast<std::size_t>(i)]);
+        const auto before = static_cast<double>(left.size()),
+                   now = static_cast<double>(kept.size());
         left = std::move(kept);
+        ++pattern.rounds;
+        if (now <= options.small_share * static_cast<double>(normals.directions.cols()) ||
+            before - now < options.stable_share * before)
+            break;
     }
     keepOnly(left, pattern);
     return pattern;

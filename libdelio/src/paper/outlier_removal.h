@@ -12,6 +12,7 @@ struct Pattern {
     std::size_t normals = 0;       //!< that the directions stand for
     std::size_t removed = 0;       //!< normals that were outliers
     Eigen::Matrix3Xf points = {};  //!< m; where each was found; none where directions are modes
+    unsigned rounds = 0;           //!< of outlier removal
 };
 
 /** All of the normals, weighted by their planarity. */
@@ -23,7 +24,8 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axesOf(const Pattern& pattern);
 
 /** In each round, the mean distance on the sphere to the k nearest normals is computed for every
  *  normal; those where it exceeds the mean of all by more than alpha standard deviations are
- *  removed. k goes from first_neighbours to last_neighbours. (The paper's interval has a lower end
- *  too; with it the densest blobs, the best part of the pattern, would go first.) */
+ *  removed, and with `both_ends` those where it is as much below. (The lower end takes the densest
+ *  blobs, the best part of the pattern.) k goes from first_neighbours to last_neighbours. The
+ * rounds end where the set is small, or stable. */
 Pattern removeOutliers(const SurfaceNormals& normals, const OutlierRemovalOptions& options);
 }  // namespace delio::paper

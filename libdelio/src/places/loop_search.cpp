@@ -108,7 +108,8 @@ bool differ(const Closure& a, const Closure& b) {
 }  // namespace
 
 std::vector<OptionField> LoopOptions::fields() const {
-    return {{"min_path", &LoopOptions::min_path, "m; minimum path length of a loop", 1, 1e6},
+    return {{"enabled", &LoopOptions::enabled, "false: do not search for loops"},
+            {"min_path", &LoopOptions::min_path, "m; minimum path length of a loop", 1, 1e6},
             {"drift", &LoopOptions::drift,
              "assumed odometry drift along each horizontal axis, as a fraction of the path "
              "(standard deviation)",

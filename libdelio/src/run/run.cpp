@@ -60,7 +60,9 @@ Run::Run(const Options& options, const RunSettings& settings)
 
 Run::~Run() = default;
 
-bool Run::searchesLoops() const { return settings_.loops && settings_.graph; }
+bool Run::searchesLoops() const {
+    return settings_.loops && settings_.graph && record_.options.loops.enabled;
+}
 
 /** Where no loops are wanted, no path is long enough to lead back. */
 places::LoopOptions Run::loopOptions() const {

@@ -80,8 +80,9 @@ Options Options::forDrive(const std::string& profile, const std::optional<io::Dr
 
 void Options::adaptTo(const io::DriveMeta& meta) {
     constexpr double kKittiSweep_s = 0.1;
+    // The paper takes the points as they are.
+    planes.scan.vertical_correction_deg = meta.verticalCorrectionDeg;
     for (auto* scan : {&planes.scan, &paper.scan}) {
-        scan->vertical_correction_deg = meta.verticalCorrectionDeg;
         scan->deskew = !meta.motionCompensated;
         scan->sweep_s = meta.source == "kitti-raw" ? kKittiSweep_s : 0;
     }

@@ -158,4 +158,39 @@ TEST(OutlierRemoval, Empty) {
     EXPECT_EQ(pattern.directions.cols(), 0);
     EXPECT_EQ(pattern.weights.size(), 0);
 }
+// Blob and scattered normals, of which a round with alpha 1 always finds some.
+TEST(OutlierRemoval, ASmallSetEndsTheRounds) {
+    const auto normals = blobAndScattered();
+    OutlierRemovalOptions options;
+    options.rounds = 30;
+    options.alpha = 1;
+    const auto all = removeOutliers(normals, options);
+    options.small_share = 0.8;
+    const auto small = removeOutliers(normals, options);
+    EXPECT_LT(small.rounds, all.rounds);
+    EXPECT_LE(small.normals, 0.8 * static_cast<double>(normals.directions.cols()));
+    EXPECT_GT(small.normals, all.normals);
+}
+
+TEST(OutlierRemoval, AStableSetEndsTheRounds) {
+    const auto normals = blobAndScattered();
+    OutlierRemovalOptions options;
+    options.rounds = 30;
+    options.alpha = 100;  // nothing is so far from the mean
+    EXPECT_EQ(removeOutliers(normals, options).rounds, 30U);
+    options.stable_share = 0.01;
+    const auto stable = removeOutliers(normals, options);
+    EXPECT_EQ(stable.rounds, 1U);
+    EXPECT_EQ(stable.removed, 0U);
+}
+
+TEST(OutlierRemoval, BothEndsOfTheIntervalTakeMore) {
+    const auto normals = blobAndScattered();
+    OutlierRemovalOptions options;
+    options.rounds = 1;
+    options.alpha = 0.5;
+    const auto upper = removeOutliers(normals, options);
+    options.both_ends = true;
+    EXPECT_LT(removeOutliers(normals, options).normals, upper.normals);
+}
 }  // namespace

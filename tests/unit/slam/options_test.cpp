@@ -74,7 +74,7 @@ TEST(Profile, NamesAreThoseOfTheFiles) {
     EXPECT_TRUE(files.count("paper-literal"));
     const auto fault = faultOf([](Options&) { Options::ofProfile("papre"); });
     EXPECT_TRUE(contains(fault, "'papre'"));
-    EXPECT_TRUE(contains(fault, "paper, paper-literal"));
+    EXPECT_TRUE(contains(fault, "paper, paper-extended, paper-literal"));
 }
 
 TEST(Profile, EachLoadsChecksAndIsWrittenAsTextThatLoadsToTheSame) {
@@ -99,6 +99,15 @@ TEST(Profile, TheDefaultsAreTheProfileAccurate) {
     EXPECT_TRUE(Options::ofProfile("paper-literal").isPaper());
     EXPECT_NE(textOf(Options::ofProfile("paper")), textOf(ofMethod("paper")));
     EXPECT_NE(textOf(Options::ofProfile("paper-literal")), textOf(Options::ofProfile("paper")));
+}
+
+TEST(Profile, OnlyPaperExtendedHasGuardsAndNoPaperClosesLoops) {
+    for (const std::string name : {"paper", "paper-extended", "paper-literal"}) {
+        const Options options = Options::ofProfile(name);
+        EXPECT_EQ(options.paper.guarded(), name == "paper-extended") << name;
+        EXPECT_FALSE(options.loops.enabled) << name;
+        EXPECT_FALSE(options.map.removal.enabled) << name;
+    }
 }
 
 TEST(Profile, EachHoldsNothingButWhatDiffersFromTheDefaults) {
@@ -146,7 +155,8 @@ TEST(Profile, ADriveTellsItsCorrectionAndWhetherItIsSkewed) {
         meta.verticalCorrectionDeg = 0.205;
         Options options = ofMethod(method);
         options.adaptTo(meta);
-        EXPECT_EQ(options.scan().vertical_correction_deg, 0.205);
+        // The paper takes the points as they are.
+        EXPECT_EQ(options.scan().vertical_correction_deg, method == "paper" ? 0 : 0.205);
         EXPECT_FALSE(options.scan().deskew);
         meta.motionCompensated = false;
         options.adaptTo(meta);

@@ -141,12 +141,17 @@ struct BilateralFilterOptions : public StageOptions {
 };
 
 /** Section III-B: removal of scattered normals, "iteratively, considering various numbers of
- *  neighbours, to retain a small but stable set". The paper gives no numbers. */
+ *  neighbours, to retain a small but stable set". The paper gives no numbers. The set is small when
+ *  `small_share` of the normals is left, and stable when a round removes less than `stable_share`
+ * of it; either ends the rounds. 0: the rounds end by their number. */
 struct OutlierRemovalOptions : public StageOptions {
     unsigned rounds = 3;
     unsigned first_neighbours = 40;
     unsigned last_neighbours = 10;
     double alpha = 2.0;
+    bool both_ends = false;
+    double small_share = 0;
+    double stable_share = 0;
 
     /** Neighbours on the sphere that round `round` (from 0) looks at. */
     double neighboursOf(unsigned round) const;
@@ -206,9 +211,10 @@ struct PatternRegistrationOptions : public StageOptions {
 /** Section III-D pairs normals by their direction alone. What a scan sees of the ground moves along
  *  with the vehicle, and with few rings so do the bushes' normals: their pattern stands still while
  *  the vehicle turns. Once a translation is known too, each normal is paired with those of the
- *  other scan that were found at its place; they are of one surface. */
+ *  other scan that were found at its place; they are of one surface. A guard of the profile
+ *  `paper-extended`: in the paper the rotation is never revised. */
 struct RotationInPlaceOptions : public StageOptions {
-    unsigned rounds = 1;
+    unsigned rounds = 0;
     double kernel_deg = 3;
     double last_kernel_deg = 0.7;
     unsigned max_iterations = 30;
@@ -267,9 +273,9 @@ struct LineRegistrationOptions : public StageOptions {
     std::vector<OptionField> fields() const override;
 };
 
-/** When points overrule the lines. */
+/** When points overrule the lines; a guard of the profile `paper-extended`. */
 struct PointCheckOptions : public StageOptions {
-    bool enabled = true;
+    bool enabled = false;
     double believed = 0.1;
     double rest = 0.3;
     double reach = 4;
@@ -312,6 +318,9 @@ struct PaperOdometryOptions {
     PointCheckOptions check;                   //!< [point_check]
     PointMapOptions pointMap;                  //!< [point_map]
     PointRegistrationOptions points;           //!< [point_registration]
+
+    /** A guard that the paper does not have is enabled. */
+    bool guarded() const { return inPlace.rounds > 0 || check.enabled; }
 };
 
 /** Choice of the odometry. */

@@ -10,6 +10,7 @@
 namespace delio::places {
 /** Which pairs of submaps are compared, and which loops are accepted. */
 struct LoopOptions : public StageOptions {
+    bool enabled = true;
     double min_path = 50;
     double drift = 0.005;
     double rival = 0.8;
