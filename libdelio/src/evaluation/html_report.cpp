@@ -206,11 +206,11 @@ void writeSteps(std::vector<Line> lines, std::ostream& out) {
         lines,
         {{"transl. median [m]", 4,
           [](const Line& l) { return l.comparison->perScan.translation_m.median; }},
-         {"95 % [m]", 4, [](const Line& l) { return l.comparison->perScan.translation_m.p95; }},
+         {"p95 [m]", 4, [](const Line& l) { return l.comparison->perScan.translation_m.p95; }},
          {"max [m]", 3, [](const Line& l) { return l.comparison->perScan.translation_m.max; }},
          {"rot. median [deg]", 4,
           [](const Line& l) { return l.comparison->perScan.rotation_deg.median; }},
-         {"95 % [deg]", 4, [](const Line& l) { return l.comparison->perScan.rotation_deg.p95; }},
+         {"p95 [deg]", 4, [](const Line& l) { return l.comparison->perScan.rotation_deg.p95; }},
          {"max [deg]", 3, [](const Line& l) { return l.comparison->perScan.rotation_deg.max; }},
          {"predicted scans", 0, predicted}},
         out);
