@@ -37,9 +37,9 @@ WireWriter& WireWriter::time(double seconds) {
     return number(static_cast<std::uint32_t>(std::lround(1e9 * (seconds - whole))));
 }
 
-WireWriter& WireWriter::header(double stamp_s) {
+WireWriter& WireWriter::header(double stamp_s, const std::string& frame) {
     if (kind_ == Kind::kRos1) number(std::uint32_t{7});
-    return time(stamp_s).text("velodyne");
+    return time(stamp_s).text(frame);
 }
 
 namespace {
@@ -86,7 +86,7 @@ BagBytes cloudMessage(const CloudSpec& spec, WireWriter::Kind kind) {
                             {"ring", 16, 4},
                             {"time", 18, 7}};
     WireWriter out(kind);
-    out.header(spec.stamp_s).number(spec.rows).number(spec.columns);
+    out.header(spec.stamp_s, spec.frame).number(spec.rows).number(spec.columns);
     const std::uint32_t count = spec.xyzi ? 4 : 6;
     out.number(count);
     for (const Field& field : fields)

@@ -23,7 +23,7 @@ class WireWriter {
     WireWriter& bytes(const BagBytes& value);
     WireWriter& byteArray(const BagBytes& value);
     /** std_msgs/Header. */
-    WireWriter& header(double stamp_s);
+    WireWriter& header(double stamp_s, const std::string& frame = "velodyne");
     WireWriter& time(double seconds);
     const BagBytes& message() const { return bytes_; }
 
@@ -38,6 +38,7 @@ class WireWriter {
 struct CloudSpec {
     int scan = 0;  //!< what the points tell
     double stamp_s = 0;
+    std::string frame = "velodyne";
     std::uint32_t rows = 1, columns = 20;
     std::uint32_t padding = 0;  //!< bytes behind each row
     bool withX = true;

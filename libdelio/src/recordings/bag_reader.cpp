@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <exception>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "delio/core/error.h"
@@ -70,6 +71,13 @@ Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
     return ending.front();
 }
 
+/** "topic:frame" in its parts. Names of topics have no colon. */
+std::pair<std::string, std::string> topicAndFrame(const std::string& label) {
+    const auto colon = label.find(':');
+    if (colon == std::string::npos) return {label, ""};
+    return {label.substr(0, colon), label.substr(colon + 1)};
+}
+
 /** The json of the Ouster whose packets are in `topic`: the file `source.sensorFile`, the bag's
  *  topic .../metadata with the longest common prefix, or the .json next to the bag. Throws Error if
  *  none exists. */
@@ -92,11 +100,13 @@ class BagReader : public ScanReader {
  public:
     BagReader(std::string container, const ScanSource& source, const OpenSource& open)
         : container_(std::move(container)), bag_(open()) {
-        topic_ = chooseTopic(bag_->topics(), source.label);
+        const auto [label, frame] = topicAndFrame(source.label);
+        topic_ = chooseTopic(bag_->topics(), label);
         type_ = scanTypeOf(topic_);
+        picksFrame_ = !frame.empty();
         bag_->only(topic_.name);
         if (type_ == ScanType::kCloud) {
-            maker_ = makeCloudMaker();
+            maker_ = makeCloudMaker(topic_.name, frame);
             lookAhead(open);
         } else if (type_ == ScanType::kVelodyne) {
             maker_ = makePacketMaker(type_, velodyneDecoder(source.sensorFile));
@@ -117,9 +127,9 @@ class BagReader : public ScanReader {
 
     bool skip() override {
         return guarded([this]() -> std::optional<bool> {
-                   // Where a turn ends is known from its packets only.
-                   const bool there = type_ == ScanType::kCloud ? bag_->next().has_value()
-                                                                : nextScan().has_value();
+                   // Where a turn ends is known from its packets only, the frame from the message.
+                   const bool isAScan = type_ == ScanType::kCloud && !picksFrame_;
+                   const bool there = isAScan ? bag_->next().has_value() : nextScan().has_value();
                    if (!there) return std::nullopt;
                    ++count_;
                    return true;
@@ -228,6 +238,7 @@ class BagReader : public ScanReader {
     std::unique_ptr<MessageSource> bag_;
     Topic topic_;
     ScanType type_ = ScanType::kNone;
+    bool picksFrame_ = false;  //!< only messages of one frame_id are taken
     std::unique_ptr<ScanMaker> maker_;
     std::optional<DriveMeta> meta_;
     std::set<std::string> otherLabels_;

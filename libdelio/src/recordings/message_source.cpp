@@ -50,11 +50,12 @@ double WireReader::time() {
     return seconds + 1e-9 * number<std::uint32_t>();
 }
 
-double WireReader::header() {
+WireReader::Header WireReader::header() {
     if (ros1_) number<std::uint32_t>();  // seq
-    const double stamp_s = time();
-    text();  // frame_id
-    return stamp_s;
+    Header header;
+    header.stamp_s = time();
+    header.frame = text();
+    return header;
 }
 
 Encoding encodingOf(const std::string& name) {

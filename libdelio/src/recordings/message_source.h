@@ -118,8 +118,12 @@ class WireReader {
     std::size_t length(std::size_t least);
     /** Seconds of a time. */
     double time();
-    /** std_msgs/Header: its stamp, in seconds. */
-    double header();
+    /** std_msgs/Header. */
+    struct Header {
+        double stamp_s = 0;
+        std::string frame;
+    };
+    Header header();
 
  private:
     const std::uint8_t* data_;

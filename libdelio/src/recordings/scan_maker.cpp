@@ -14,6 +14,7 @@ namespace {
  *  next. */
 struct Cloud {
     double stamp_s = 0;
+    std::string frame;
     std::size_t rows = 0, columns = 0, rowStep = 0;
     PointLayout layout;
     Bytes data;
@@ -24,7 +25,9 @@ Cloud readCloud(const Message& message) {
     constexpr std::size_t kMostFields = 1000;
     WireReader in(message);
     Cloud cloud;
-    cloud.stamp_s = in.header();
+    const auto header = in.header();
+    cloud.stamp_s = header.stamp_s;
+    cloud.frame = header.frame;
     if (cloud.stamp_s == 0) cloud.stamp_s = message.log_s;
     cloud.rows = in.number<std::uint32_t>();
     cloud.columns = in.number<std::uint32_t>();
@@ -47,14 +50,19 @@ Cloud readCloud(const Message& message) {
 
 class CloudMaker : public ScanMaker {
  public:
+    CloudMaker(std::string topic, std::string frame)
+        : topic_(std::move(topic)), frame_(std::move(frame)), isChosen_(!frame_.empty()) {}
+
     bool look(const Message& message) override {
         Cloud cloud = readCloud(message);
+        if (isChosen_ && cloud.frame != frame_) return true;
         const std::size_t count = checkedCount(cloud);
         compact(cloud);
         return table_.look(cloud.layout, cloud.data.data, cloud.data.size, count, cloud.stamp_s);
     }
     void add(const Message& message, std::size_t scan) override {
         Cloud cloud = readCloud(message);
+        if (!takes(cloud.frame)) return;
         const std::size_t count = checkedCount(cloud);
         compact(cloud);
         scan_ = table_.scan(cloud.layout, cloud.data.data, cloud.data.size, count, cloud.rows,
@@ -72,6 +80,14 @@ class CloudMaker : public ScanMaker {
     std::vector<std::string> findings() const override { return table_.findings(); }
 
  private:
+    bool takes(const std::string& frame) {
+        if (frame_.empty()) frame_ = frame;
+        if (frame == frame_) return true;
+        if (isChosen_) return false;
+        throw Error("the topic has scans of two sensors; choose one with --sensor-label: " +
+                    topic_ + ":" + frame_ + ", " + topic_ + ":" + frame);
+    }
+
     static std::size_t checkedCount(const Cloud& cloud) {
         const std::size_t count = cloud.rows * cloud.columns;  // of 32 bits each
         const std::size_t step = cloud.layout.step;
@@ -96,13 +112,17 @@ class CloudMaker : public ScanMaker {
         cloud.data = {rows_.data(), rows_.size()};
     }
 
+    std::string topic_, frame_;  //!< of the first message, if none was chosen
+    bool isChosen_;
     PointTable table_;
     std::vector<std::uint8_t> rows_;
     std::optional<Scan> scan_;
 };
 }  // namespace
 
-std::unique_ptr<ScanMaker> makeCloudMaker() { return std::make_unique<CloudMaker>(); }
+std::unique_ptr<ScanMaker> makeCloudMaker(const std::string& topic, const std::string& frame) {
+    return std::make_unique<CloudMaker>(topic, frame);
+}
 
 namespace {
 constexpr std::size_t kVelodynePacket = 1206;

@@ -40,8 +40,10 @@ class ScanMaker {
 };
 
 /** A scan a message, stamped as its header says, or with the time at which it was recorded where
- *  that is zero. */
-std::unique_ptr<ScanMaker> makeCloudMaker();
+ *  that is zero. Messages of another frame_id than `frame` are left out. Without a frame all are
+ *  taken, and add() throws Error, which lists topic:frame, where there are two: two sensors. */
+std::unique_ptr<ScanMaker> makeCloudMaker(const std::string& topic = "",
+                                          const std::string& frame = "");
 /** For messages with packets of Velodyne or Ouster: one scan per revolution, independent of the
  *  messages. finish() throws Error if the packets gave no scan. */
 std::unique_ptr<ScanMaker> makePacketMaker(ScanType type, std::unique_ptr<PacketDecoder> decoder);

@@ -80,6 +80,28 @@ TEST(BagMessages, ZeroStampIsTheTimeOfRecording) {
     EXPECT_EQ(mrpt::Clock::toDouble(scan.time), 1234.5);
 }
 
+TEST(BagMessages, TwoFramesAreTwoSensors) {
+    CloudSpec left, right;
+    left.frame = "left";
+    right.frame = "right";
+    const auto toLeft = cloudMessage(left), toRight = cloudMessage(right);
+    const auto all = io::makeCloudMaker("/points");
+    all->add(messageOf(toLeft, Kind::kRos1), 0);
+    EXPECT_TRUE(all->take());
+    try {
+        all->add(messageOf(toRight, Kind::kRos1), 1);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_NE(std::string(e.what()).find("/points:left, /points:right"), std::string::npos)
+            << e.what();
+    }
+    const auto one = io::makeCloudMaker("/points", "right");
+    one->add(messageOf(toLeft, Kind::kRos1), 0);
+    EXPECT_FALSE(one->take());
+    one->add(messageOf(toRight, Kind::kRos1), 0);
+    EXPECT_TRUE(one->take());
+}
+
 TEST(BagMessages, CloudWithoutPointsIsAScan) {
     CloudSpec cloud;
     cloud.columns = 0;
