@@ -76,7 +76,11 @@ Step PlaneOdometry::process(const Scan& scan) {
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
     step.interrupted = !isEmpty && interval.kind == IntervalKind::kUnknown;
+    goneOn_.reset();
     if (step.interrupted) {  // the motion meanwhile is not known
+        constexpr double kLongest_s = 3;
+        if (prediction_.hasMotion() && interval.elapsed_s <= kLongest_s)
+            goneOn_ = Pause{interval.elapsed_s, prediction_.predict(interval.elapsed_s)};
         prediction_.forget();
         state_ = lostFrom(std::move(state_), missesOf(state_));
     }
@@ -89,7 +93,7 @@ Step PlaneOdometry::process(const Scan& scan) {
         skip(cloud, interval, step);
     else
         track(cloud, interval, step);
-    carryToStamp(cloud.stamp_s, !motionWasKnown && !step.predicted, step);
+    carryToStamp(cloud.stamp_s, !motionWasKnown && !step.predicted && !step.interrupted, step);
 
     step.standing = isStanding(step, interval.duration_s);
     step.lost = isLostAfter(step);
@@ -117,23 +121,16 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     const double since_s = arrivals_.sinceStart_s() - reference_.time_s;
 
     const Extrapolation extrapolation = predictMotion(interval.duration_s);
-    const Eigen::Isometry3d predicted = pose_ * extrapolation.at(interval.duration_s);
-
-    ScanView view;
-    {
-        const StageTimer timer(step, "undistort");
-        motion_ = extrapolation.motion();
-        view = undistorted(cloud, motion_);
+    Attempt attempt = attemptBy(cloud, extrapolation, interval.duration_s, since_s,
+                                interval.kind != IntervalKind::kUnknown, step);
+    if (goneOn_) {  // beside: it stood
+        const double pause_s = goneOn_->elapsed_s;
+        Attempt other = attemptBy(cloud, Extrapolation(goneOn_->increment, pause_s), pause_s,
+                                  pause_s, true, step);
+        if (other.placement.isBetterThan(attempt.placement)) attempt = std::move(other);
     }
-    VoxelNumbers voxels;
-    {
-        const StageTimer timer(step, "thinning");
-        voxels = thin(view);
-    }
-    std::optional<DynamicObjects::Sight> sight;
-    const Placement placement = registerByPoints(
-        view, expectation(predicted, since_s, interval.kind != IntervalKind::kUnknown), sight,
-        step);
+    auto& [predicted, motion, view, voxels, sight, placement] = attempt;
+    motion_ = motion;
     const PointEstimate& placed = placement.estimate;
     step.searched = placement.searched;
 
@@ -156,6 +153,28 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";
     step.details = detailsOf(estimate, placed);
     report(estimate, view, step);
+}
+
+/** The scan placed by points, de-skewed by a motion that led on from the latest one for
+ *  `duration_s`. */
+PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
+                                                const Extrapolation& extrapolation,
+                                                double duration_s, double since_s, bool timeIsKnown,
+                                                Step& step) {
+    Attempt attempt;
+    attempt.predicted = pose_ * extrapolation.at(duration_s);
+    {
+        const StageTimer timer(step, "undistort");
+        attempt.motion = extrapolation.motion();
+        attempt.view = undistorted(cloud, attempt.motion);
+    }
+    {
+        const StageTimer timer(step, "thinning");
+        attempt.voxels = thin(attempt.view);
+    }
+    attempt.placement = registerByPoints(
+        attempt.view, expectation(attempt.predicted, since_s, timeIsKnown), attempt.sight, step);
+    return attempt;
 }
 
 /** The motion after the latest scan. Its end twist, where that is known, is used once. */
@@ -213,7 +232,8 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     if (!placed.valid) return predictedEstimate(predicted);
     view.thinned = voxelCentroids(view.fine, options_.spacing.scan_spacing).cast<double>();
     auto found = map_.registerPlanes(view, placed, predicted, prediction_.hasMotion());
-    if (step.deskewed) deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
+    if (step.deskewed && !step.interrupted)
+        deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
     return found;
 }
 
