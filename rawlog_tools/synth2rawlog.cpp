@@ -61,7 +61,7 @@ bool isOneOf(const std::vector<std::string>& names, const std::string& name) {
 
 /** The command line. */
 struct Arguments {
-    TCLAP::CmdLine cmd{"generates a drive through a synthetic world, with exact ground truth", ' ',
+    TCLAP::CmdLine cmd{"generates a drive through a synthetic world with ground truth", ' ',
                        kVersion};
     TCLAP::ValueArg<std::string> output{"o",          "output", "Rawlog to write", true, "",
                                         "OUT.rawlog", cmd};
