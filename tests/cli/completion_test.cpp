@@ -70,7 +70,8 @@ TEST_F(Completion, OfOptions) {
 TEST_F(Completion, OfValues) {
     const Replies profiles{"accurate", "paper", "paper-extended", "paper-literal"};
     EXPECT_EQ(of("delio-slam", {"--profile", ""}), profiles);
-    EXPECT_EQ(of("delio-slam", {"--profile=pa"}), (Replies{"paper", "paper-extended", "paper-literal"}));
+    EXPECT_EQ(of("delio-slam", {"--profile=pa"}),
+              (Replies{"paper", "paper-extended", "paper-literal"}));
     EXPECT_EQ(of("delio-eval", {"-f", ""}), (Replies{"table", "tsv"}));
     EXPECT_EQ(of("synth2rawlog", {"--scene", "in"}), Replies{"indoor"});
     EXPECT_EQ(of("delio-slam", {"--threads", ""}), Replies{});

@@ -123,7 +123,8 @@ INSTANTIATE_TEST_SUITE_P(EveryTool, HelpOfTool, testing::ValuesIn(test::kTools),
                          });
 
 TEST(Help, TellsDefaults) {
-    EXPECT_EQ(optionOf("delio-slam", "--profile").value, "accurate|paper|paper-extended|paper-literal");
+    EXPECT_EQ(optionOf("delio-slam", "--profile").value,
+              "accurate|paper|paper-extended|paper-literal");
     EXPECT_NE(optionOf("delio-slam", "--profile").text.find("; default: accurate"),
               std::string::npos);
     EXPECT_NE(optionOf("delio-figures", "--profile").text.find("; default: paper"),
