@@ -185,7 +185,9 @@ TEST(OutlierRemoval, AStableSetEndsTheRounds) {
 }
 
 TEST(OutlierRemoval, BothEndsOfTheIntervalTakeMore) {
-    const auto normals = blobAndScattered();
+    auto normals = blobAndScattered();
+    normals.directions = normals.directions.leftCols(kBlob).eval();
+    normals.planarity = normals.planarity.head(kBlob).eval();
     OutlierRemovalOptions options;
     options.rounds = 1;
     options.alpha = 0.5;
