@@ -104,18 +104,18 @@ TEST(Arrivals, ScansOfAFewPointsAreNoCopies) {
     for (int i = 0; i < 3; ++i) {
         Scan scan = test::scanOf(Eigen::Matrix3Xf::Constant(3, 5, 4.0F));
         scan.stamp_s = 0.1 * i;
-        EXPECT_EQ(arrivals.take(scan).copies, 0U);
+        EXPECT_EQ(arrivals.take(scan, scan.stamp_s).copies, 0U);
     }
 }
 
 TEST(Arrivals, OneOtherPointInAThousandIsNoCopy) {
     Arrivals arrivals(false);
     Eigen::Matrix3Xf points = Eigen::Matrix3Xf::Random(3, 900);
-    EXPECT_EQ(arrivals.take(test::scanOf(points)).copies, 0U);
-    EXPECT_EQ(arrivals.take(test::scanOf(points)).copies, 1U);
-    EXPECT_EQ(arrivals.take(test::scanOf(points)).copies, 2U);
+    EXPECT_EQ(arrivals.take(test::scanOf(points), 0).copies, 0U);
+    EXPECT_EQ(arrivals.take(test::scanOf(points), 0).copies, 1U);
+    EXPECT_EQ(arrivals.take(test::scanOf(points), 0).copies, 2U);
     points(1, 437) += 1e-3F;
-    EXPECT_EQ(arrivals.take(test::scanOf(points)).copies, 0U);
+    EXPECT_EQ(arrivals.take(test::scanOf(points), 0).copies, 0U);
 }
 
 /** Scans with times (all at the stamp) but for those from `from` to `to`. */
