@@ -6,6 +6,8 @@
 
 #include "core/scan_trajectory.h"
 #include "core/voxel_grid.h"
+#include "odometry/above_ground.h"
+#include "odometry/tuning.h"
 
 namespace delio::odometry {
 std::vector<float> azimuthTimes(const Eigen::Matrix3Xf& points, double sweep_s) {
@@ -44,6 +46,20 @@ Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std:
         if (!marks[static_cast<std::size_t>(i)]) result.col(kept++) = points.col(i);
     result.conservativeResize(3, kept);
     return result;
+}
+
+void thinForPoints(ScanView& view, const Eigen::Matrix3f& upright, double spacing,
+                   bool isMapYoung) {
+    constexpr Eigen::Index kFewest = 200, kRings = 3000;  // a ring or two show no height
+    const SegmentTuning segments;
+    view.coarse = firstOfVoxels(view.fine, spacing).cast<double>();
+    view.level.resize(3, 0);
+    if (!isMapYoung || view.points.cols() < kRings) return;
+    const auto standing = firstOfVoxels(
+        standingPoints(view.fine, upright, segments.above_ground, segments.radius), spacing / 2);
+    if (standing.cols() < kFewest) return;
+    view.level = std::move(view.coarse);
+    view.coarse = standing.cast<double>();
 }
 
 void thin(ScanView& view, double map_spacing, double scan_spacing) {

@@ -26,6 +26,7 @@ struct ScanView {
     Eigen::Matrix3Xf fine;              //!< thinned for the map
     Eigen::Matrix3Xd thinned;           //!< thinned for registration by planes
     Eigen::Matrix3Xd coarse;            //!< thinned for registration by points
+    Eigen::Matrix3Xd level;  //!< all, thinned: where `coarse` has no ground, they level the scan
 };
 
 /** Undistorted by `trajectory` (see deskew()) where the points have times; not thinned yet,
@@ -34,6 +35,11 @@ ScanView undistorted(const PointCloud& cloud, const ScanTrajectory& trajectory);
 
 /** The columns of `points` that are not marked. */
 Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std::uint8_t>& marks);
+
+/** Thins view.fine for registration by points: all points at `spacing` metres, or for a young map
+ *  those that stand above the ground at `spacing` / 2, unless these are few. `upright` turns the
+ *  sensor's z up. */
+void thinForPoints(ScanView& view, const Eigen::Matrix3f& upright, double spacing, bool isMapYoung);
 
 /** Thins the static points: centroids of voxels of `map_spacing` for the map, and of these in turn
  *  by `scan_spacing` for registration. */

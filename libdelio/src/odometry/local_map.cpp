@@ -142,6 +142,19 @@ PointEstimate LocalMap::placeTurned(const Eigen::Matrix3Xd& coarse,
     return searchTurns(points_, coarse, predicted, enough, pointOptions_);
 }
 
+PointEstimate LocalMap::levelled(const ScanView& view, PointEstimate placed) const {
+    if (!placed.valid || view.level.cols() == 0) return placed;
+    const auto all = place(view.level, placed.pose, pointOptions_.least_kernel);
+    if (!all.valid) return placed;
+    const Eigen::Isometry3d moved = placed.pose.inverse() * all.pose;
+    const Eigen::Vector3d up = placed.pose.linear().transpose() * up_,
+                          turn = rotationLog(moved.linear());
+    placed.inlierRatio = all.inlierRatio;
+    placed.pose = placed.pose *
+                  isometry(rotationExp(turn - up.dot(turn) * up), up.dot(moved.translation()) * up);
+    return placed;
+}
+
 /** Of the rotation that points found, rad^2, right tangent. A sensor's rings mislead about all axes
  *  but the one that it spins about, across which it sees least: about that one the points err as
  *  their distances say. */
@@ -213,7 +226,8 @@ void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& p
     for (Eigen::Index i = 0; i < doubtful.cols(); ++i) {
         const Eigen::Vector3d axis = doubtful.col(i);
         const Eigen::Matrix3d along = axis * axis.transpose();
-        if (!pointsSee(points_, view.coarse, found.pose(), axis, options_.probe, pointOptions_))
+        if (!pointsSee(points_, view.level.cols() > 0 ? view.level : view.coarse, found.pose(),
+                       axis, options_.probe, pointOptions_))
             translation.translation += along * (predicted.translation() - translation.translation);
         else if (!rests || stands(axis))
             continue;
@@ -255,7 +269,8 @@ PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate
     // The points were placed wrongly where more of them fit where planes lead.
     constexpr unsigned kPatience = 2;
     for (unsigned i = 0; i < kPatience && found.valid && !believes(found, from); ++i) {
-        const auto there = place(view.coarse, found.pose(), pointOptions_.least_kernel);
+        const auto there =
+            levelled(view, place(view.coarse, found.pose(), pointOptions_.least_kernel));
         if (!there.valid || there.inlierRatio <= from.inlierRatio) break;
         from = there;
         found = byPlanes(from);

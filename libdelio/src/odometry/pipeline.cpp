@@ -21,6 +21,16 @@ std::vector<Named> noTimes() {
             {"dynamic", 0},    {"planes", 0},    {"map_update", 0}};
 }
 
+/** Pose at a time that may lie outside the scan: there the motion goes on at its mean twist, as a
+ *  bent motion cannot be extrapolated. */
+Eigen::Isometry3d atStamp(const ScanTrajectory& motion, double stamp_s) {
+    const double first_s = motion.times_s().front(), last_s = motion.times_s().back();
+    const double inside_s = std::clamp(stamp_s, first_s, last_s);
+    if (inside_s == stamp_s || first_s == last_s) return motion.at(stamp_s);
+    const auto mean = Twist::of(motion.at(first_s).inverse() * motion.at(last_s), last_s - first_s);
+    return motion.at(inside_s) * mean.after(stamp_s - inside_s);
+}
+
 /** True for a scan that was registered along and about every axis and moved slower than the noise
  *  of a registration over one turn. */
 bool isStanding(const Step& step, double duration_s) {
@@ -174,6 +184,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
     }
     attempt.placement = registerByPoints(
         attempt.view, expectation(attempt.predicted, since_s, timeIsKnown), attempt.sight, step);
+    attempt.placement.estimate = map_.levelled(attempt.view, attempt.placement.estimate);
     return attempt;
 }
 
@@ -194,8 +205,7 @@ VoxelNumbers PlaneOdometry::thin(ScanView& view) {
                          [&] {
                              voxels = numberVoxels(view.points, spacings.map_spacing);
                              view.fine = centroidsOf(view.points, voxels);
-                             view.coarse =
-                                 pointsToRegister(view.fine, upright_, spacings.point_spacing);
+                             thinForPoints(view, upright_, spacings.point_spacing, isMapYoung());
                          });
     return voxels;
 }
@@ -357,10 +367,10 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, ScanView& view, Step& 
  */
 void PlaneOdometry::carryToStamp(double stamp_s, bool hasFoundMotion, Step& step) {
     const double time_s = arrivals_.sinceStart_s();
-    const Eigen::Isometry3d moved = motion_.at(stamp_s);
+    const Eigen::Isometry3d moved = atStamp(motion_, stamp_s);
     Eigen::Isometry3d before = stamped_.pose;
     if (hasFoundMotion && stamped_.stamp_s != 0)
-        before = pose_ * motion_.at(stamped_.time_s + stamped_.stamp_s - time_s);
+        before = pose_ * atStamp(motion_, stamped_.time_s + stamped_.stamp_s - time_s);
     stamped_ = {pose_ * moved, stamp_s, time_s};
     step.increment.pose = normalised(before.inverse() * stamped_.pose);
     if (stamp_s == 0) return;

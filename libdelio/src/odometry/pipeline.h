@@ -102,6 +102,9 @@ class PlaneOdometry : public Odometry {
     Eigen::Vector3d upAt(const Eigen::Isometry3d& pose) const {
         return pose.linear() * upright_.row(2).transpose().cast<double>();
     }
+    /** The rings that a sensor draws on the ground lie on those of the scan before wherever it
+     *  stands: they become a surface when the drive's first scans are in the map. */
+    bool isMapYoung() const { return !kernel_.isKnown(); }
     double kernel_m() const {
         return kernel_.width(options_.points.least_kernel, options_.points.first_kernel);
     }

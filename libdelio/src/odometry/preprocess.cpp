@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "core/portable_math.h"
-#include "core/voxel_grid.h"
-#include "odometry/above_ground.h"
 #include "odometry/deskew.h"
 
 #include "odometry/rings.h"
@@ -121,16 +119,6 @@ std::vector<std::uint16_t> neighbouringRings(const PointCloud& cloud,
                                              const Eigen::Matrix3f& upright) {
     const Eigen::Matrix3Xf points = upright * cloud.points;
     return cloud.rings.empty() ? ringsOf(points) : ringsFromTop(points, cloud.rings);
-}
-
-Eigen::Matrix3Xd pointsToRegister(const Eigen::Matrix3Xf& fine, const Eigen::Matrix3f& upright,
-                                  double spacing) {
-    constexpr Eigen::Index kFewest = 100;
-    const SegmentTuning segments;
-    const Eigen::Matrix3Xf standing = firstOfVoxels(
-        standingPoints(fine, upright, segments.above_ground, segments.radius), spacing / 2);
-    if (standing.cols() >= kFewest) return standing.cast<double>();
-    return firstOfVoxels(fine, spacing).cast<double>();
 }
 
 double scaleOf(const Scan& scan) {

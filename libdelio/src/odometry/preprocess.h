@@ -38,12 +38,6 @@ std::string whyNoneIsLeft(const Scan& scan, const PreprocessOptions& options);
 std::vector<std::uint16_t> neighbouringRings(
     const PointCloud& cloud, const Eigen::Matrix3f& upright = Eigen::Matrix3f::Identity());
 
-/** The points of a thinned scan (metres) that are registered to points: those that stand above the
- *  ground, at a spacing of `spacing` / 2. The rings that a sensor draws on the ground lie on those
- *  of the scan before wherever it stands. Where little stands, all at `spacing`. */
-Eigen::Matrix3Xd pointsToRegister(const Eigen::Matrix3Xf& fine, const Eigen::Matrix3f& upright,
-                                  double spacing);
-
 /** The size of the place that a scan shows, 1 for streets and less for rooms: nine points in ten
  *  are within 16 m times this. Not below 0.25. */
 double scaleOf(const Scan& scan);

@@ -164,8 +164,9 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
     ScanView again = undistorted(cloud, trajectory.seenFrom(0));
     again.dynamic = view.dynamic;
     thin(again, options.spacing.map_spacing, options.spacing.scan_spacing);
-    again.coarse = pointsToRegister(again.fine, known.upright, options.spacing.point_spacing);
-    const auto placed = map.place(again.coarse, trajectory.at(0), options.points.least_kernel);
+    thinForPoints(again, known.upright, options.spacing.point_spacing, known.isMapYoung);
+    const auto placed =
+        map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));
     if (!placed.valid) return {};
     auto estimate = map.registerPlanes(again, placed, known.pose, known.motionIsKnown);
     return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.inlierRatio};

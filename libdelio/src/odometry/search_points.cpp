@@ -286,12 +286,6 @@ bool pointsSee(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen:
     constexpr double kBack = 0.3;
     const Eigen::Matrix3Xd part = sample(points, kDense);
     const Eigen::Vector3d aside = probe * axis;
-    constexpr double kClear = 0.05;  // of the inlier ratio
-    const auto ratioMoved = [&](double along_m) {
-        return shareAt(map, part, Eigen::Translation3d(along_m * axis) * pose, options.last_kernel);
-    };
-    if (std::max(ratioMoved(probe), ratioMoved(-probe)) <= (1 - kClear) * ratioMoved(0))
-        return true;
     const auto found = placesFrom(
         map, part, {Eigen::Translation3d(aside) * pose, Eigen::Translation3d(-aside) * pose}, probe,
         options);

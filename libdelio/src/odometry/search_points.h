@@ -26,9 +26,9 @@ PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
                           const Eigen::Isometry3d& guess, double enough,
                           const PointRegistrationOptions& options);
 
-/** True where the points see that direction (a unit vector of the map's frame): clearly fewer of
- *  them fit `probe` metres along it to either side, or the scan comes back to `pose` from there.
- *  (In a tunnel it stays where it was put.) */
+/** True where the points see that direction (a unit vector of the map's frame): the scan comes back
+ *  to `pose` from `probe` metres along it to either side. (In a tunnel it stays where it was put.)
+ */
 bool pointsSee(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
                const Eigen::Vector3d& axis, double probe, const PointRegistrationOptions& options);
 

@@ -248,17 +248,18 @@ TEST_F(Loops, ThatAgreeAreBelieved) {
 TEST_F(Loops, ThatStandAloneAreNot) {
     found(3, 36, poseAt(0, 0, 0));
     found(15, 24, poseAt(0, 0, 0));
-    EXPECT_EQ(reasons(), std::vector<std::string>(2, "no neighbour says the same"));
+    EXPECT_EQ(reasons(), std::vector<std::string>(2, "not confirmed by a neighbouring submap"));
 }
 
 TEST_F(Loops, ThatContradictMostAreNot) {
     for (const std::size_t i : {3, 4, 5, 6})
         found(i, 39 - i, i == 5 ? poseAt(6, 0, 0) : poseAt(0, 0, 0));
-    EXPECT_EQ(reasons(), (std::vector<std::string>{"", "", "contradicts other loops", ""}));
+    EXPECT_EQ(reasons(), (std::vector<std::string>{"", "", "inconsistent with other loops", ""}));
 }
 
 TEST_F(Loops, ThatNoDriftExplainsAreNot) {
     for (const std::size_t i : {3, 4, 5}) found(i, 39 - i, poseAt(0, 40, 0));
-    EXPECT_EQ(reasons(), std::vector<std::string>(3, "farther than the drive may have drifted"));
+    EXPECT_EQ(reasons(),
+              std::vector<std::string>(3, "farther away than the odometry can have drifted"));
 }
 }  // namespace
