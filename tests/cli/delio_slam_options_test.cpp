@@ -138,6 +138,8 @@ TEST(PrintConfig, PrintsEveryOptionOfEachProfileWithItsMeaning) {
         Options::ofProfile(profile).write(whole);
         std::string expected = whole.str();
         for (const std::string key : {"vertical_correction_deg", "deskew", "sweep_s"}) {
+            // The paper takes the points as they are.
+            if (profile != "accurate" && key == "vertical_correction_deg") continue;
             const auto at = expected.find("\n" + key + " = ");
             ASSERT_NE(at, std::string::npos) << key;
             expected.insert(at + 1, "# ");

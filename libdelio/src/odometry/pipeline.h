@@ -103,8 +103,8 @@ class PlaneOdometry : public Odometry {
         return pose.linear() * upright_.row(2).transpose().cast<double>();
     }
     /** The rings that a sensor draws on the ground lie on those of the scan before wherever it
-     *  stands: they become a surface when the drive's first scans are in the map. */
-    bool isMapYoung() const { return !kernel_.isKnown(); }
+     *  stands: the first motion has to be found by what stands above the ground. */
+    bool isMapYoung() const { return !prediction_.hasMotion(); }
     double kernel_m() const {
         return kernel_.width(options_.points.least_kernel, options_.points.first_kernel);
     }

@@ -60,15 +60,14 @@ Doubts doubtsOf(const std::vector<RunRow>& rows) {
 }
 
 std::string whyUnreliable(const Doubts& doubts) {
-    constexpr double kLost = 0.1, kUncertain = 0.5;
+    constexpr double kLost = 0.1, kWeak = 0.5;
     const auto isMore = [&](std::size_t scans, double share) {
         return static_cast<double>(scans) > share * static_cast<double>(doubts.pairs);
     };
-    const std::size_t uncertain = doubts.weak.scans + doubts.predicted.scans;
     if (isMore(doubts.lost.scans, kLost))
         return mrpt::format("lost in %zu of %zu scans", doubts.lost.scans, doubts.pairs);
-    if (isMore(uncertain, kUncertain))
-        return mrpt::format("%zu of %zu scans were observed weakly or predicted", uncertain,
+    if (isMore(doubts.weak.scans, kWeak))
+        return mrpt::format("%zu of %zu scans are weakly observed", doubts.weak.scans,
                             doubts.pairs);
     return {};
 }

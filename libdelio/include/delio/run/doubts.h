@@ -32,7 +32,7 @@ struct Doubts {
 Doubts doubtsOf(const std::vector<RunRow>& rows);
 
 /** Why the trajectory is not to be relied on: more than a tenth of the scans were lost, or more
- * than half were observed weakly or predicted. Empty where it is. */
+ * than half were observed weakly. Empty where it is. */
 std::string whyUnreliable(const Doubts& doubts);
 
 /** State of a scan, as scans.csv names it: tracked, weak, predicted or lost. */
