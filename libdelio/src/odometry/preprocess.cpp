@@ -29,7 +29,9 @@ float middleOf(std::vector<float> times_s) {
 
 void countFromMiddle(PointCloud& cloud) {
     if (cloud.times_s.empty()) return;
+    constexpr float kThere_s = 2e-3F;  // such a stamp is in the middle
     const float middle_s = middleOf(cloud.times_s);
+    if (std::abs(middle_s) < kThere_s) return;
     for (float& time_s : cloud.times_s) time_s -= middle_s;
     cloud.stamp_s = -double{middle_s};
 }
