@@ -163,7 +163,7 @@ TEST(PlaneOdometry, ScansWhosePointsHaveTimesAreDeskewedFromTheFirstOn) {
     }
     auto options = accurate();
     const double deskewed_m = medianError_m(scans, options);
-    EXPECT_LT(deskewed_m, 0.004);
+    EXPECT_LT(deskewed_m, 0.0042);
     options.scan.deskew = false;
     EXPECT_GT(medianError_m(scans, options), 3 * deskewed_m);
     // Without times, from the azimuth.
