@@ -38,7 +38,7 @@ struct KnownEnds {
     Eigen::Isometry3d pose;       //!< at the scan's time, likewise
     Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
     bool motionIsKnown = false;  //!< the motion before `reference` is known
-    bool isMapYoung = false;     //!< the map has the drive's first scans alone
+    bool isMapYoung = false;     //!< the first motion is not known yet
 };
 
 /** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to
