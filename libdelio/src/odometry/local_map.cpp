@@ -238,8 +238,8 @@ void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& p
     translation.unobservedAxes = unseen;
 }
 
-bool LocalMap::believes(const PlaneEstimate& found, const PointEstimate& placed) const {
-    const Eigen::Isometry3d off = placed.pose.inverse() * found.pose();
+bool LocalMap::isNear(const PlaneEstimate& found, const Eigen::Isometry3d& pose) const {
+    const Eigen::Isometry3d off = pose.inverse() * found.pose();
     return found.valid && off.translation().norm() <= options_.max_deviation &&
            angleOf(off.linear()) <= options_.max_deviation_deg * kDeg;
 }
@@ -268,14 +268,17 @@ PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate
     auto found = byPlanes(from);
     // The points were placed wrongly where more of them fit where planes lead.
     constexpr unsigned kPatience = 2;
-    for (unsigned i = 0; i < kPatience && found.valid && !believes(found, from); ++i) {
+    for (unsigned i = 0; i < kPatience && found.valid && !isNear(found, from.pose); ++i) {
         const auto there =
             levelled(view, place(view.coarse, found.pose(), pointOptions_.least_kernel));
         if (!there.valid || there.inlierRatio <= from.inlierRatio) break;
         from = there;
         found = byPlanes(from);
     }
-    if (!believes(found, from)) found = byPoints(from, turnCovariance(view.coarse, from));
+    // Planes that lead to the prediction are two against one.
+    const bool isAsPredicted = motionIsKnown && isNear(found, predicted);
+    if (!isNear(found, from.pose) && !isAsPredicted)
+        found = byPoints(from, turnCovariance(view.coarse, from));
     found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
     settleUnobserved(view, predicted, motionIsKnown, found);
     return found;

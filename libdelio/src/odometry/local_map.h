@@ -85,7 +85,7 @@ class LocalMap {
     }
 
  private:
-    bool believes(const PlaneEstimate& found, const PointEstimate& placed) const;
+    bool isNear(const PlaneEstimate& found, const Eigen::Isometry3d& pose) const;
     Eigen::Matrix3d turnCovariance(const Eigen::Matrix3Xd& points,
                                    const PointEstimate& placed) const;
     PlaneEstimate byPoints(const PointEstimate& placed,

@@ -205,7 +205,8 @@ VoxelNumbers PlaneOdometry::thin(ScanView& view) {
                          [&] {
                              voxels = numberVoxels(view.points, spacings.map_spacing);
                              view.fine = centroidsOf(view.points, voxels);
-                             thinForPoints(view, upright_, spacings.point_spacing, isMapYoung());
+                             thinForPoints(view, upright_, spacings.point_spacing,
+                                           isGuessing() || kernel_m() >= options_.points.first_kernel);
                          });
     return voxels;
 }
@@ -308,8 +309,7 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, doubl
                  gained_m = spacing.acceleration / 2 * since_s * since_s;
     Expectation expected{predicted, reference_, upright_};
     expected.motionIsKnown = prediction_.hasMotion();
-    expected.isGuess =
-        isLost(state_) || std::holds_alternative<Degenerate>(state_) || !expected.motionIsKnown;
+    expected.isGuess = isGuessing();
     expected.start.metres = expected.motionIsKnown ? std::min(gained_m, driven_m) : driven_m;
     expected.start.turn_rad = std::min(spacing.first_turn_radps * since_s, spacing.most_turn_rad);
     expected.reach_m =

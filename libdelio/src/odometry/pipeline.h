@@ -102,9 +102,11 @@ class PlaneOdometry : public Odometry {
     Eigen::Vector3d upAt(const Eigen::Isometry3d& pose) const {
         return pose.linear() * upright_.row(2).transpose().cast<double>();
     }
-    /** The rings that a sensor draws on the ground lie on those of the scan before wherever it
-     *  stands: the first motion has to be found by what stands above the ground. */
-    bool isMapYoung() const { return !prediction_.hasMotion(); }
+    /** Motion and place of the next scan are not known well. */
+    bool isGuessing() const {
+        return isLost(state_) || std::holds_alternative<Degenerate>(state_) ||
+               !prediction_.hasMotion();
+    }
     double kernel_m() const {
         return kernel_.width(options_.points.least_kernel, options_.points.first_kernel);
     }

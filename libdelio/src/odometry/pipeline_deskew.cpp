@@ -46,8 +46,8 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewPair(const PointCloud& firs
 void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio,
                                 ScanView& view, PlaneEstimate& estimate) {
     constexpr double kNoise = 0.02;  // of an inlier ratio
-    const KnownEnds known{reference_.pose,         since_s,     estimate.pose(), upright_,
-                          prediction_.hasMotion(), isMapYoung()};
+    const KnownEnds known{reference_.pose, since_s,      estimate.pose(),
+                          upright_,        isGuessing(), prediction_.hasMotion()};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->inlierRatio >= inlierRatio - kNoise;
     };

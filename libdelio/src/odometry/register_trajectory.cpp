@@ -164,7 +164,7 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
     ScanView again = undistorted(cloud, trajectory.seenFrom(0));
     again.dynamic = view.dynamic;
     thin(again, options.spacing.map_spacing, options.spacing.scan_spacing);
-    thinForPoints(again, known.upright, options.spacing.point_spacing, known.isMapYoung);
+    thinForPoints(again, known.upright, options.spacing.point_spacing, known.isGuess);
     const auto placed =
         map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));
     if (!placed.valid) return {};

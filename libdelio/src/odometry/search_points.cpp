@@ -230,7 +230,12 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     constexpr double kAsMuch = 0.7;
     const double width = options.last_kernel, start = options.first_kernel / 2,
                  leastOfAll = kAsMuch * best.inlierRatio;
-    if (wide.valid && wide.inlierRatio >= leastOfAll && shareOf(wide, width) > shareOf(best, width))
+    const auto isWithin = [&](const PointEstimate& found) {
+        return found.valid && (guess.translation() - found.pose.translation()).norm() <=
+                                  reach.metres + options.first_kernel;
+    };
+    if (isWithin(wide) && wide.inlierRatio >= leastOfAll &&
+        shareOf(wide, width) > shareOf(best, width))
         best = wide;
     // Another start has to explain clearly more; which of them does is told within half the width:
     // in the whole, the ground of a road fits metres beside, too.
@@ -244,7 +249,7 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     const auto starts = bestOf(startsAbout(guess, reach, upright, start, map, part), kBest, map,
                                part, start / 2, least);
     for (const auto& found : placesFrom(map, part, starts, start, options)) {
-        if (!found.valid || found.inlierRatio <= least || isAmong(judged, found.pose, width))
+        if (!isWithin(found) || found.inlierRatio <= least || isAmong(judged, found.pose, width))
             continue;
         judged.push_back(found.pose);
         const auto all = registerToPoints(map, points, found.pose, options.least_kernel, options);
