@@ -5,7 +5,10 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <thread>
+#include <tuple>
+#include <utility>
 
 #include "cli.h"
 #include "delio/version.h"
@@ -22,6 +25,17 @@ std::optional<SensorModel> findSensor(const std::string& option) {
     for (auto& model : sensorModels())
         if (model.option == option) return model;
     return std::nullopt;
+}
+
+/** First scan and number of scans, both 1 or more, from "FIRST,COUNT". */
+std::optional<std::pair<std::size_t, std::size_t>> gapIn(const std::string& text) {
+    std::istringstream stream(text);
+    int first = 0, count = 0;
+    char comma = 0;
+    if (!(stream >> first >> comma >> count) || comma != ',' || first < 1 || count < 1)
+        return std::nullopt;
+    if (!stream.eof()) return std::nullopt;
+    return std::pair{static_cast<std::size_t>(first), static_cast<std::size_t>(count)};
 }
 
 std::string listed(const std::vector<std::string>& names, const std::string& separator = ", ") {
@@ -143,6 +157,10 @@ struct Arguments {
                             "Write OUT_Images/*.label: uint8 per point, 1 for dynamic points", cmd};
     TCLAP::ValueArg<double> drop{"",  "drop-rate", "Fraction of scans that are lost", false, 0,
                                  "R", cmd};
+    TCLAP::ValueArg<std::string> gap{
+        "",    "gap", "Lose COUNT scans in a row, from scan FIRST on (1 or more)",
+        false, "",    "FIRST,COUNT",
+        cmd};
     TCLAP::ValueArg<double> repeat{"",
                                    "repeat-rate",
                                    "Fraction of scans that repeat the points of the scan before",
@@ -209,6 +227,8 @@ std::string faultInDrive(Arguments& args) {
     for (auto* rate : {&args.drop, &args.repeat, &args.empty})
         if (!isRate(rate->getValue()))
             return "--" + rate->getName() + " must be at least 0 and less than 1";
+    if (args.gap.isSet() && !gapIn(args.gap.getValue()))
+        return "--gap needs FIRST,COUNT, both 1 or more, not '" + args.gap.getValue() + "'";
     if (args.threads.getValue() < 0) return "--threads must be 0 or more";
     if (args.threads.getValue() > static_cast<int>(cli::kMostThreads))
         return "--threads must be " + std::to_string(cli::kMostThreads) + " or less (0: all)";
@@ -230,6 +250,8 @@ DriveRequest requestOf(Arguments& args) {
     request.mount = *mountIn(args.mount.getValue());
     request.movers = static_cast<std::size_t>(args.movers.getValue());
     request.faults = {args.drop.getValue(), args.repeat.getValue(), args.empty.getValue()};
+    if (args.gap.isSet())
+        std::tie(request.faults.gapFirst, request.faults.gapScans) = *gapIn(args.gap.getValue());
     request.distort = args.distort.getValue();
     request.labels = args.labels.getValue();
     request.embed = args.embed.getValue();

@@ -27,7 +27,8 @@ Fault faultOf(const FaultRates& rates, std::size_t scan, std::uint64_t seed) {
     Random random{seed, kFaultKey, scan};
     const bool drop = random.chance(rates.drop), repeat = random.chance(rates.repeat),
                empty = random.chance(rates.empty);
-    if (drop) return Fault::kDropped;
+    const bool isInGap = scan >= rates.gapFirst && scan - rates.gapFirst < rates.gapScans;
+    if (drop || isInGap) return Fault::kDropped;
     if (repeat) return Fault::kRepeated;
     return empty ? Fault::kEmpty : Fault::kNone;
 }

@@ -12,9 +12,10 @@ enum class Fault {
 };
 const char* nameOf(Fault fault);
 
-/** Probabilities, each in [0, 1). */
+/** Probabilities, each in [0, 1), and scans in a row that are dropped. */
 struct FaultRates {
     double drop = 0, repeat = 0, empty = 0;
+    std::size_t gapFirst = 0, gapScans = 0;
 };
 
 /** Depends on seed and scan alone. A scan that is dropped is neither repeated nor empty, one that

@@ -226,6 +226,8 @@ TEST(Synth2rawlog, ABadCommandLineIsOneLineAndExit2) {
     expectRefused({"--scene", "urban", "--scans", "3", "--ring-bias", "-0.1"}, "--ring-bias");
     expectRefused({"--scene", "urban", "--scans", "3", "--movers", "-1"}, "--movers");
     expectRefused({"--scene", "urban", "--scans", "3", "--drop-rate", "1"}, "--drop-rate");
+    for (const char* gap : {"3", "0,1", "1,0", "1,2,3", "1;2", "a,b"})
+        expectRefused({"--scene", "urban", "--scans", "3", "--gap", gap}, "--gap");
     expectRefused({"--scene", "urban", "--scans", "3", "--repeat-rate", "-0.1"}, "--repeat-rate");
     expectRefused({"--scene", "urban", "--scans", "3", "--empty-rate", "nan"}, "empty-rate");
     expectRefused({"--scene", "urban", "--scans", "3", "--threads", "-1"}, "--threads");

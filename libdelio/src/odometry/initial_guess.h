@@ -58,11 +58,6 @@ struct Expectation {
 struct Placement {
     PointEstimate estimate;  //!< sensor to map
     bool searched = false;   //!< from more starts than the prediction
-
-    bool isBetterThan(const Placement& other) const {
-        return estimate.valid &&
-               (!other.estimate.valid || estimate.inlierRatio > other.estimate.inlierRatio);
-    }
 };
 
 /** By points, from the prediction; where that is not known, or fits worse than usual, from other

@@ -31,6 +31,14 @@ Eigen::Isometry3d atStamp(const ScanTrajectory& motion, double stamp_s) {
     return motion.at(inside_s) * mean.after(stamp_s - inside_s);
 }
 
+/** Over a long time a vehicle goes on turning, but not tilting. */
+Eigen::Isometry3d withoutTilt(const Eigen::Isometry3d& increment, const Eigen::Matrix3f& upright) {
+    const Eigen::Vector3d up = upright.row(2).transpose().cast<double>();
+    Vector6 moved = poseLog(increment);
+    moved.tail<3>() = up.dot(moved.tail<3>()) * up;
+    return poseExp(moved);
+}
+
 /** True for a scan that was registered along and about every axis and moved slower than the noise
  *  of a registration over one turn. */
 bool isStanding(const Step& step, double duration_s) {
@@ -86,12 +94,9 @@ Step PlaneOdometry::process(const Scan& scan) {
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
     step.interrupted = !isEmpty && interval.kind == IntervalKind::kUnknown;
-    goneOn_.reset();
-    if (step.interrupted) {  // the motion meanwhile is not known
-        constexpr double kLongest_s = 3;
-        if (prediction_.hasMotion() && interval.elapsed_s <= kLongest_s)
-            goneOn_ = Pause{interval.elapsed_s, prediction_.predict(interval.elapsed_s)};
-        prediction_.forget();
+    if (step.interrupted) {
+        constexpr double kLongest_s = 3.5;  // longer, motion does not go on as before
+        if (interval.elapsed_s > kLongest_s) prediction_.forget();
         state_ = lostFrom(std::move(state_), missesOf(state_));
     }
     if (!isEmpty) step.reason = reasonToSkip(arrival, prediction_);
@@ -130,15 +135,9 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     // After scans that were not registered, the motion since the last registered one counts.
     const double since_s = arrivals_.sinceStart_s() - reference_.time_s;
 
-    const Extrapolation extrapolation = predictMotion(interval.duration_s);
-    Attempt attempt = attemptBy(cloud, extrapolation, interval.duration_s, since_s,
-                                interval.kind != IntervalKind::kUnknown, step);
-    if (goneOn_) {  // beside: it stood
-        const double pause_s = goneOn_->elapsed_s;
-        Attempt other = attemptBy(cloud, Extrapolation(goneOn_->increment, pause_s), pause_s,
-                                  pause_s, true, step);
-        if (other.placement.isBetterThan(attempt.placement)) attempt = std::move(other);
-    }
+    Attempt attempt = step.interrupted && prediction_.hasMotion()
+                          ? attemptAfterPause(cloud, interval, since_s, step)
+                          : attemptBy(cloud, interval.duration_s, since_s, !step.interrupted, step);
     auto& [predicted, motion, view, voxels, sight, placement] = attempt;
     motion_ = motion;
     const PointEstimate& placed = placement.estimate;
@@ -165,12 +164,26 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     report(estimate, view, step);
 }
 
-/** The scan placed by points, de-skewed by a motion that led on from the latest one for
- *  `duration_s`. */
-PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
-                                                const Extrapolation& extrapolation,
-                                                double duration_s, double since_s, bool timeIsKnown,
-                                                Step& step) {
+/** The scan placed by points, after a pause in which the motion went on as before, or in which the
+ *  sensor stood: where more points fit. */
+PlaneOdometry::Attempt PlaneOdometry::attemptAfterPause(const PointCloud& cloud,
+                                                        const Interval& interval, double since_s,
+                                                        Step& step) {
+    Attempt wentOn = attemptBy(cloud, interval.elapsed_s, interval.elapsed_s, true, step);
+    const LinearPrediction before = prediction_;
+    prediction_.forget();
+    Attempt stood = attemptBy(cloud, interval.duration_s, since_s, false, step);
+    if (stood.placement.estimate.valid &&
+        stood.placement.estimate.inlierRatio > wentOn.placement.estimate.inlierRatio)
+        return stood;
+    prediction_ = before;
+    return wentOn;
+}
+
+/** The scan placed by points, de-skewed by the motion that is predicted for `duration_s`. */
+PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud, double duration_s,
+                                                double since_s, bool timeIsKnown, Step& step) {
+    const Extrapolation extrapolation = predictMotion(duration_s);
     Attempt attempt;
     attempt.predicted = pose_ * extrapolation.at(duration_s);
     {
@@ -190,7 +203,10 @@ PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
 
 /** The motion after the latest scan. Its end twist, where that is known, is used once. */
 Extrapolation PlaneOdometry::predictMotion(double duration_s) {
-    Extrapolation extrapolation(prediction_.predict(duration_s), duration_s);
+    constexpr double kLong_s = 0.5;
+    Eigen::Isometry3d increment = prediction_.predict(duration_s);
+    if (duration_s > kLong_s) increment = withoutTilt(increment, upright_);
+    Extrapolation extrapolation(increment, duration_s);
     const bool isKnown = !isLost(state_) && !std::holds_alternative<Degenerate>(state_);
     if (extrapolation_ && isKnown) extrapolation = *extrapolation_;
     extrapolation_.reset();
@@ -205,8 +221,9 @@ VoxelNumbers PlaneOdometry::thin(ScanView& view) {
                          [&] {
                              voxels = numberVoxels(view.points, spacings.map_spacing);
                              view.fine = centroidsOf(view.points, voxels);
-                             thinForPoints(view, upright_, spacings.point_spacing,
-                                           isGuessing() || kernel_m() >= options_.points.first_kernel);
+                             thinForPoints(
+                                 view, upright_, spacings.point_spacing,
+                                 isGuessing() || kernel_m() >= options_.points.first_kernel);
                          });
     return voxels;
 }
@@ -306,7 +323,9 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, doubl
     // A longer way has to be found by surfaces.
     constexpr double kLongest_s = 0.5;
     const double driven_m = spacing.first_speed * std::min(since_s, kLongest_s),
-                 gained_m = spacing.acceleration / 2 * since_s * since_s;
+                 gained_m = unregistered_s_ <= kLongest_s
+                                ? spacing.acceleration / 2 * std::pow(unregistered_s_, 2)
+                                : spacing.pause_acceleration / 2 * std::pow(unregistered_s_, 2);
     Expectation expected{predicted, reference_, upright_};
     expected.motionIsKnown = prediction_.hasMotion();
     expected.isGuess = isGuessing();

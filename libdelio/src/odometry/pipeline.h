@@ -18,12 +18,6 @@ struct PlacedPoints {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
 };
 
-/** Time without scans, and the motion meanwhile if it went on as before. */
-struct Pause {
-    double elapsed_s = 0;
-    Eigen::Isometry3d increment;
-};
-
 /** A scan at its stamp. */
 struct Stamped {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
@@ -58,8 +52,10 @@ class PlaneOdometry : public Odometry {
         std::optional<DynamicObjects::Sight> sight;
         Placement placement;
     };
-    Attempt attemptBy(const PointCloud& cloud, const Extrapolation& extrapolation,
-                      double duration_s, double since_s, bool timeIsKnown, Step& step);
+    Attempt attemptBy(const PointCloud& cloud, double duration_s, double since_s, bool timeIsKnown,
+                      Step& step);
+    Attempt attemptAfterPause(const PointCloud& cloud, const Interval& interval, double since_s,
+                              Step& step);
 
     // The stages of track(), in their order.
     Extrapolation predictMotion(double duration_s);
@@ -130,7 +126,6 @@ class PlaneOdometry : public Odometry {
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
     ScanTrajectory motion_{Twist{}};  //!< during the latest scan, seen from pose_
     Stamped stamped_;                 //!< the latest scan at its stamp
-    std::optional<Pause> goneOn_;     //!< before the scan that is processed
     double unregistered_s_ = 0;       //!< since the latest scan that was registered
     /** The latest scan, until it enters the map: the next scan is thinned meanwhile. */
     std::optional<PlacedPoints> waiting_;

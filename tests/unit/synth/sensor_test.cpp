@@ -108,5 +108,11 @@ TEST(SynthFaults, ComeAsOftenAsAskedAndNeverFirst) {
     EXPECT_NEAR(empty / double{kScans}, 0.05 * 0.9 * 0.8, 0.01);
     for (std::uint64_t seed = 0; seed < 50; ++seed)
         EXPECT_EQ(faultOf({0.99, 0.99, 0.99}, 0, seed), Fault::kNone);
+    const FaultRates gap{0, 0, 0, 3, 2};
+    for (const auto& [scan, fault] : {std::pair<std::size_t, Fault>{2, Fault::kNone},
+                                      {3, Fault::kDropped},
+                                      {4, Fault::kDropped},
+                                      {5, Fault::kNone}})
+        EXPECT_EQ(faultOf(gap, scan, 1), fault) << scan;
 }
 }  // namespace
