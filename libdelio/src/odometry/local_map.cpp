@@ -200,18 +200,17 @@ paper::SurfaceNormals surfacesOf(const ScanView& view, double probe) {
     return paper::estimateNormals(view.fine, options);
 }
 
-/** For each axis that the planes do not constrain, or hardly where an earlier scan was
- *  and the motion is not known: where the
- * points do not either, the prediction is taken and the axis is reported as unobserved. Where
+/** For each axis that the planes do not constrain, or hardly where an earlier scan was: where the
+ *  points do not either, the prediction is taken and the axis is reported as unobserved. Where
  * points say that the scan is where an earlier one was, their answer stays; it is reported as
  * unobserved unless surfaces that face the axis confirm the standstill. */
 void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
-                                bool motionIsKnown, PlaneEstimate& found) const {
+                                PlaneEstimate& found) const {
     auto& translation = found.translation;
     const bool rests = isWhereAScanWas(translation.translation);
     Eigen::Matrix3Xd doubtful = translation.unobservedAxes;
     constexpr double kThin = 0.006;  // of the planes' weight; smooth tunnels show up to 0.005
-    if (doubtful.cols() == 0 && rests && !motionIsKnown && translation.observability[0] < kThin)
+    if (doubtful.cols() == 0 && rests && translation.observability[0] < kThin)
         doubtful = found.weakestAxis;
     if (doubtful.cols() == 0) return;
     paper::SurfaceNormals surfaces;
@@ -280,7 +279,7 @@ PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate
     if (!isNear(found, from.pose) && !isAsPredicted)
         found = byPoints(from, turnCovariance(view.coarse, from));
     found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
-    settleUnobserved(view, predicted, motionIsKnown, found);
+    settleUnobserved(view, predicted, found);
     return found;
 }
 

@@ -73,8 +73,7 @@ class LocalMap {
      *  points stays where these put it, if they see it, else where the prediction does. Where
      *  points alone say that the scan is where an earlier scan of the drive was, the axis is
      *  unobserved, too, unless surfaces that face it confirm that: a sensor's own rings lie on each
-     *  other anywhere. Where the motion is not known, this holds for axes that the planes hardly
-     *  constrain, too. */
+     *  other anywhere. This holds for axes that the planes hardly constrain, too. */
     PlaneEstimate registerPlanes(const ScanView& view, const PointEstimate& placed,
                                  const Eigen::Isometry3d& predicted, bool motionIsKnown) const;
 
@@ -91,7 +90,7 @@ class LocalMap {
     PlaneEstimate byPoints(const PointEstimate& placed,
                            const Eigen::Matrix3d& turnCovariance) const;
     void settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
-                          bool motionIsKnown, PlaneEstimate& found) const;
+                          PlaneEstimate& found) const;
     bool isWhereAScanWas(const Eigen::Vector3d& place) const;
 
     LocalMapTuning options_;

@@ -82,8 +82,11 @@ class PlaneOdometry : public Odometry {
     // De-skewing by the motion that was found (pipeline_deskew.cpp).
     void deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio, ScanView& view,
                      PlaneEstimate& estimate);
-    ScanTrajectory trajectoryOf(const KnownEnds& known, const PointCloud& cloud,
-                                const ScanView& view) const;
+    ScanTrajectory refined(const ScanTrajectory& start, const KnownEnds& known,
+                           const PointCloud& cloud, const ScanView& view) const;
+    std::optional<ScanOnTrajectory> deskewByMotion(const KnownEnds& known, double inlierRatio,
+                                                   const PointCloud& cloud,
+                                                   const ScanView& view) const;
     std::optional<ScanOnTrajectory> deskewPair(const PointCloud& first, KnownEnds known,
                                                const PointCloud& cloud, const ScanView& view);
     void deskewFirst(const PointCloud& first, const ScanTrajectory& trajectory);

@@ -3,9 +3,14 @@
 #include "odometry/pipeline.h"
 
 namespace delio::odometry {
-ScanTrajectory PlaneOdometry::trajectoryOf(const KnownEnds& known, const PointCloud& cloud,
-                                           const ScanView& view) const {
-    return refinedTrajectory(map_.planes(), known, cloud, view, unevenness_, kernel_m(), options_);
+namespace {
+constexpr double kNoise = 0.02;  //!< of an inlier ratio
+}
+
+ScanTrajectory PlaneOdometry::refined(const ScanTrajectory& start, const KnownEnds& known,
+                                      const PointCloud& cloud, const ScanView& view) const {
+    return refinedTrajectory(map_.planes(), start, known.since_s, cloud, view, unevenness_,
+                             kernel_m(), options_);
 }
 
 /** The scan that the map began with, which is all there is in it, as seen on this trajectory. */
@@ -27,7 +32,8 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewPair(const PointCloud& firs
     std::optional<ScanOnTrajectory> best;
     for (unsigned round = 0, worse = 0; round < kMostRounds && worse < kPatience; ++round) {
         const ScanTrajectory trajectory =
-            round == 0 ? constantTwist(known, cloud) : trajectoryOf(known, cloud, view);
+            round == 0 ? constantTwist(known, cloud)
+                       : refined(constantTwist(known, cloud), known, cloud, view);
         deskewFirst(first, trajectory.seenFrom(-known.since_s));
         auto next = registerAlong(trajectory, known, map_, cloud, view, options_);
         if (!next) break;
@@ -40,12 +46,31 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewPair(const PointCloud& firs
     return best;
 }
 
+/** By a motion of varying speed, again and again as long as clearly more points fit; or by one of
+ *  constant speed where clearly fewer than before fit then. */
+std::optional<ScanOnTrajectory> PlaneOdometry::deskewByMotion(const KnownEnds& known,
+                                                              double inlierRatio,
+                                                              const PointCloud& cloud,
+                                                              const ScanView& view) const {
+    constexpr unsigned kMostRounds = 6;
+    const auto along = [&](const ScanTrajectory& trajectory) {
+        return registerAlong(trajectory, known, map_, cloud, view, options_);
+    };
+    const ScanTrajectory constant = constantTwist(known, cloud);
+    auto best = along(refined(constant, known, cloud, view));
+    for (unsigned round = 1; round < kMostRounds && best; ++round) {
+        auto next = along(refined(best->trajectory, known, cloud, view));
+        if (!next || next->inlierRatio < best->inlierRatio + kNoise) break;
+        best = std::move(next);
+    }
+    return best && best->inlierRatio >= inlierRatio - kNoise ? best : along(constant);
+}
+
 /** De-skews the scan by the motion that was found and registers it again: by a motion of varying
  *  speed, or by one of constant speed where clearly fewer points fit then. Where that does not fit
  *  either, the scan stays de-skewed by the prediction. `inlierRatio`: that of the scan as it is. */
 void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio,
                                 ScanView& view, PlaneEstimate& estimate) {
-    constexpr double kNoise = 0.02;  // of an inlier ratio
     const KnownEnds known{reference_.pose, since_s,      estimate.pose(),
                           upright_,        isGuessing(), prediction_.hasMotion()};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
@@ -57,12 +82,7 @@ void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double 
     if (isPair)
         found = deskewPair(*first->skewed, known, cloud, view);
     else
-        for (const bool isConstant : {false, true}) {
-            found = registerAlong(
-                isConstant ? constantTwist(known, cloud) : trajectoryOf(known, cloud, view), known,
-                map_, cloud, view, options_);
-            if (fits(found)) break;
-        }
+        found = deskewByMotion(known, inlierRatio, cloud, view);
     if (!found || (!isPair && !fits(found))) return;
     estimate = found->estimate;
     view = std::move(found->view);

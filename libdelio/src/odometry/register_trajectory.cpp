@@ -147,14 +147,13 @@ ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud) {
                                 Twist::of(known.reference.inverse() * known.pose, known.since_s));
 }
 
-ScanTrajectory refinedTrajectory(const PlaneMap& map, const KnownEnds& known,
+ScanTrajectory refinedTrajectory(const PlaneMap& map, const ScanTrajectory& start, double since_s,
                                  const PointCloud& cloud, const ScanView& view,
                                  const Unevenness& unevenness, double kernel,
                                  const ScaledOptions& options) {
-    const double most_m = options.spacing.acceleration * known.since_s * known.since_s;
-    return registerTrajectory(map, pickedOf(cloud, view, options.spacing.scan_spacing),
-                              constantTwist(known, cloud), known.since_s, unevenness.prior(most_m),
-                              kernel, options.registration);
+    const double most_m = options.spacing.acceleration * since_s * since_s;
+    return registerTrajectory(map, pickedOf(cloud, view, options.spacing.scan_spacing), start,
+                              since_s, unevenness.prior(most_m), kernel, options.registration);
 }
 
 std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,

@@ -45,9 +45,9 @@ struct KnownEnds {
  *  map, times from the scan's. */
 ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud);
 
-/** The same, bent as far as it is known to be uneven, such that static points, which `view` is told
- *  of, lie on the planes of `map`. `kernel` (metres): how far they may be off. */
-ScanTrajectory refinedTrajectory(const PlaneMap& map, const KnownEnds& known,
+/** `start`, bent as far as it is known to be uneven, such that the static points of `view` lie on
+ *  the planes of `map`. `kernel` (metres): how far they may be off. */
+ScanTrajectory refinedTrajectory(const PlaneMap& map, const ScanTrajectory& start, double since_s,
                                  const PointCloud& cloud, const ScanView& view,
                                  const Unevenness& unevenness, double kernel,
                                  const ScaledOptions& options);
