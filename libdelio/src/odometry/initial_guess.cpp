@@ -109,33 +109,38 @@ class Best {
 
     PointEstimate estimate;
 };
-}  // namespace
 
-Placement placeScan(const LocalMap& map, const ScanView& view, const Expectation& expected,
-                    const ScaledOptions& options) {
+/** Where the pose is a guess. */
+Placement searchScan(const LocalMap& map, const ScanView& view, const Expectation& expected,
+                     const ScaledOptions& options) {
     const auto& points = view.coarse;
-    constexpr double kUsual = 0.75, kUsualAtFirst = 0.25;
-    const double usual = expected.usualInlierRatio,
-                 likely = usual > 0 ? kUsual * usual : kUsualAtFirst;
-    // A prediction that is off by more than any kernel (a hand's swings) is no start.
-    const bool isTurned = expected.isShaken && !expected.isGuess;
-    Best best{expected.isGuess
-                  ? map.placeAnywhere(points, expected.pose, expected.start, expected.upright)
-              : isTurned ? map.placeTurned(points, expected.pose, likely)
-                         : map.place(points, expected.pose, expected.kernel_m)};
-    const bool isTurnedIfShaken = isTurned || !expected.isShaken;
-    if (points.cols() == 0 || (best.has(likely) && isTurnedIfShaken))
-        return {best.estimate, expected.isGuess || isTurned};
-    if (!isTurned) best.consider(map.placeTurned(points, expected.pose, likely));
-    if (!expected.isGuess && !best.has(likely))  // of a guess that was a start already
-        best.consider(map.place(points, expected.pose, options.points.first_kernel));
+    const double usual = expected.usualInlierRatio, likely = expected.likelyInlierRatio();
+    Best best{map.placeAnywhere(points, expected.pose, expected.start, expected.upright)};
+    if (points.cols() == 0 || (best.has(likely) && !expected.isShaken))
+        return {best.estimate, true};
+    best.consider(map.placeTurned(points, expected.pose, likely));
+    if (expected.motionIsKnown && !best.has(likely)) {
+        const Eigen::Isometry3d& latest = expected.reference.pose;
+        best.consider(map.placeOnward(points, latest, latest.inverse() * expected.pose));
+    }
     // After an interruption it may be anywhere: another place, which shares the ground with the
     // map's, must not be taken for it.
     constexpr double kSomewhere = 0.35;
-    const double enough = (expected.motionIsKnown ? options.tracker.lost_share : kUsual) * usual;
+    const double enough =
+        (expected.motionIsKnown ? options.tracker.lost_share : Expectation::kLikely) * usual;
     if (best.has(enough)) return {best.estimate, true};
     best.consider(relocalised(map, view, expected, options));
     best.estimate.valid = best.has(expected.motionIsKnown ? kSomewhere * usual : enough);
     return {best.estimate, true};
+}
+}  // namespace
+
+Placement placeScan(const LocalMap& map, const ScanView& view, const Expectation& expected,
+                    const ScaledOptions& options) {
+    if (expected.isGuess) return searchScan(map, view, expected, options);
+    // A prediction that is off by more than any kernel (a hand's swings) is no start.
+    if (expected.isShaken)
+        return {map.placeTurned(view.coarse, expected.pose, expected.likelyInlierRatio()), true};
+    return {map.place(view.coarse, expected.pose, expected.kernel_m), false};
 }
 }  // namespace delio::odometry

@@ -52,16 +52,23 @@ struct Expectation {
     double reach_m = 0;              //!< within which surfaces look for what points do not find
     double kernel_m = 0;             //!< how far predictions are off
     double usualInlierRatio = 0;     //!< of points on those of the map; 0: not known
+
+    static constexpr double kLikely = 0.75, kLikelyAtFirst = 0.25;
+    /** A pose is likely where so many points fit. */
+    double likelyInlierRatio() const {
+        return usualInlierRatio > 0 ? kLikely * usualInlierRatio : kLikelyAtFirst;
+    }
 };
 
 /** What is known of a scan's place before planes refine it. */
 struct Placement {
     PointEstimate estimate;  //!< sensor to map
     bool searched = false;   //!< from more starts than the prediction
+    bool isLikely = false;   //!< about as many points fit as usual
 };
 
-/** By points, from the prediction; where that is not known, or fits worse than usual, from other
- *  starts too, and the one is taken where most points fit. */
+/** By points, from the prediction; where that is a guess, from other starts too, and the one is
+ *  taken where most points fit. */
 Placement placeScan(const LocalMap& map, const ScanView& view, const Expectation& expected,
                     const ScaledOptions& options);
 }  // namespace delio::odometry

@@ -57,6 +57,13 @@ class LocalMap {
     PointEstimate placeTurned(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
                               double enough) const;
 
+    /** By points, where scans may be missing after the one at `latest` (sensor to map), while the
+     *  sensor moved on by `increment` a scan. */
+    PointEstimate placeOnward(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& latest,
+                              const Eigen::Isometry3d& increment) const {
+        return searchOnward(points_, coarse, latest, increment, pointOptions_);
+    }
+
     /** By planes alone, from where the points were placed. `covariance`: of the rotation that they
      *  found, rad^2, right tangent; `kernel` (metres): the first one. */
     PlaneEstimate refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed,

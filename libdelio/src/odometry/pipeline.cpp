@@ -135,13 +135,15 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     // After scans that were not registered, the motion since the last registered one counts.
     const double since_s = arrivals_.sinceStart_s() - reference_.time_s;
 
-    Attempt attempt = step.interrupted && prediction_.hasMotion()
-                          ? attemptAfterPause(cloud, interval, since_s, step)
-                          : attemptBy(cloud, interval.duration_s, since_s, !step.interrupted, step);
+    Attempt attempt =
+        step.interrupted && prediction_.hasMotion()
+            ? attemptAfterPause(cloud, interval, since_s, step)
+            : attemptAsPredicted(cloud, interval.duration_s, since_s, !step.interrupted, step);
     auto& [predicted, motion, view, voxels, sight, placement] = attempt;
     motion_ = motion;
     const PointEstimate& placed = placement.estimate;
     step.searched = placement.searched;
+    step.interrupted = step.interrupted || isBeyondReach(placed, predicted, since_s);
 
     const bool hasSight = sight && placed.valid;
     if (hasSight) {
@@ -169,35 +171,59 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
 PlaneOdometry::Attempt PlaneOdometry::attemptAfterPause(const PointCloud& cloud,
                                                         const Interval& interval, double since_s,
                                                         Step& step) {
-    Attempt wentOn = attemptBy(cloud, interval.elapsed_s, interval.elapsed_s, true, step);
+    Attempt wentOn = attemptAsPredicted(cloud, interval.elapsed_s, interval.elapsed_s, true, step);
     const LinearPrediction before = prediction_;
     prediction_.forget();
-    Attempt stood = attemptBy(cloud, interval.duration_s, since_s, false, step);
-    if (stood.placement.estimate.valid &&
-        stood.placement.estimate.inlierRatio > wentOn.placement.estimate.inlierRatio)
-        return stood;
+    Attempt stood = attemptAsPredicted(cloud, interval.duration_s, since_s, false, step);
+    if (stood.isBetterThan(wentOn)) return stood;
     prediction_ = before;
     return wentOn;
 }
 
-/** The scan placed by points, de-skewed by the motion that is predicted for `duration_s`. */
-PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud, double duration_s,
-                                                double since_s, bool timeIsKnown, Step& step) {
+/** The scan placed by points, `duration_s` after the one before. */
+PlaneOdometry::Attempt PlaneOdometry::attemptAsPredicted(const PointCloud& cloud, double duration_s,
+                                                         double since_s, bool timeIsKnown,
+                                                         Step& step) {
     const Extrapolation extrapolation = predictMotion(duration_s);
+    const auto attempt = [&](const Eigen::Isometry3d& predicted, const ScanTrajectory& motion,
+                             bool isGuess) {
+        return attemptBy(cloud, predicted, motion, isGuess, since_s, timeIsKnown, step);
+    };
+    const Eigen::Isometry3d predicted = pose_ * extrapolation.at(duration_s);
+    Attempt best = attempt(predicted, extrapolation.motion(), isGuessing());
+    const bool isShaking = isShaken();
+    if (best.placement.isLikely && !isShaking) return best;
+    if (!best.placement.isLikely && !isGuessing())
+        best = attempt(predicted, extrapolation.motion(), true);
+    if (cloud.times_s.empty()) return best;
+    const ScanTrajectory uneven =
+        registerInParts(map_.planes(), pose_, extrapolation, duration_s, cloud, options_);
+    Attempt other = attempt(uneven.at(0), uneven.seenFrom(0), isGuessing());
+    return other.isBetterThan(best) ? other : best;
+}
+
+/** The scan placed by points near where it is predicted (sensor to map), de-skewed by a motion. */
+PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
+                                                const Eigen::Isometry3d& predicted,
+                                                const ScanTrajectory& motion, bool isGuess,
+                                                double since_s, bool timeIsKnown, Step& step) {
+    const Expectation expected = expectation(predicted, isGuess, since_s, timeIsKnown);
     Attempt attempt;
-    attempt.predicted = pose_ * extrapolation.at(duration_s);
+    attempt.predicted = predicted;
+    attempt.motion = motion;
     {
         const StageTimer timer(step, "undistort");
-        attempt.motion = extrapolation.motion();
         attempt.view = undistorted(cloud, attempt.motion);
     }
     {
         const StageTimer timer(step, "thinning");
-        attempt.voxels = thin(attempt.view);
+        attempt.voxels = thin(attempt.view, isGuess);
     }
-    attempt.placement = registerByPoints(
-        attempt.view, expectation(attempt.predicted, since_s, timeIsKnown), attempt.sight, step);
-    attempt.placement.estimate = map_.levelled(attempt.view, attempt.placement.estimate);
+    attempt.placement = registerByPoints(attempt.view, expected, attempt.sight, step);
+    auto& estimate = attempt.placement.estimate;
+    estimate = map_.levelled(attempt.view, estimate);
+    attempt.placement.isLikely =
+        estimate.valid && estimate.inlierRatio >= expected.likelyInlierRatio();
     return attempt;
 }
 
@@ -209,21 +235,25 @@ Extrapolation PlaneOdometry::predictMotion(double duration_s) {
     Extrapolation extrapolation(increment, duration_s);
     const bool isKnown = !isLost(state_) && !std::holds_alternative<Degenerate>(state_);
     if (extrapolation_ && isKnown) extrapolation = *extrapolation_;
+    // Only a hand turns so fast, and back again.
+    const bool isSwing = extrapolation.motion().turning.norm() > options_.spacing.first_turn_radps;
+    if (isSwing && missesOf(state_) > 0)
+        extrapolation = Extrapolation(
+            isometry(Eigen::Matrix3d::Identity(), increment.translation()), duration_s);
     extrapolation_.reset();
     return extrapolation;
 }
 
 /** Thins the scan, while the one before it enters the map; says which points became which. */
-VoxelNumbers PlaneOdometry::thin(ScanView& view) {
+VoxelNumbers PlaneOdometry::thin(ScanView& view, bool isGuess) {
     const auto& spacings = options_.spacing;
     VoxelNumbers voxels;
     tbb::parallel_invoke([&] { insertWaiting(); },
                          [&] {
                              voxels = numberVoxels(view.points, spacings.map_spacing);
                              view.fine = centroidsOf(view.points, voxels);
-                             thinForPoints(
-                                 view, upright_, spacings.point_spacing,
-                                 isGuessing() || kernel_m() >= options_.points.first_kernel);
+                             thinForPoints(view, upright_, spacings.point_spacing,
+                                           isGuess || kernel_m() >= options_.points.first_kernel);
                          });
     return voxels;
 }
@@ -263,6 +293,15 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     if (step.deskewed && !step.interrupted)
         deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
     return found;
+}
+
+/** No vehicle moves so: scans are missing before this one, whatever their stamps say. */
+bool PlaneOdometry::isBeyondReach(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
+                                  double since_s) const {
+    const double most_m =
+        options_.points.first_kernel + options_.spacing.acceleration / 2 * since_s * since_s;
+    return placed.valid && prediction_.hasMotion() &&
+           (placed.pose.translation() - predicted.translation()).norm() > most_m;
 }
 
 /** After a scan that was registered, at pose_. */
@@ -316,8 +355,8 @@ void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& 
 }
 
 /** What is known of the next scan's pose, `since_s` after the latest registered scan. */
-Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, double since_s,
-                                       bool timeIsKnown) const {
+Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, bool isGuess,
+                                       double since_s, bool timeIsKnown) const {
     const auto& spacing = options_.spacing;
     const auto& registration = options_.registration;
     // A longer way has to be found by surfaces.
@@ -328,14 +367,14 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, doubl
                                 : spacing.pause_acceleration / 2 * std::pow(unregistered_s_, 2);
     Expectation expected{predicted, reference_, upright_};
     expected.motionIsKnown = prediction_.hasMotion();
-    expected.isGuess = isGuessing();
+    expected.isGuess = isGuess;
     expected.start.metres = expected.motionIsKnown ? std::min(gained_m, driven_m) : driven_m;
     expected.start.turn_rad = std::min(spacing.first_turn_radps * since_s, spacing.most_turn_rad);
     expected.reach_m =
         timeIsKnown ? std::min(plane_tuning::kSearchSpeed_mps * since_s, registration.search_radius)
                     : registration.search_radius;
     expected.kernel_m = kernel_m();
-    expected.isShaken = kernel_.isKnown() && expected.kernel_m >= options_.points.first_kernel;
+    expected.isShaken = isShaken();
     expected.usualInlierRatio = usualInlierRatio_;
     return expected;
 }

@@ -46,20 +46,28 @@ class PlaneOdometry : public Odometry {
     /** A scan placed by points, from one guess of the motion. */
     struct Attempt {
         Eigen::Isometry3d predicted = Eigen::Isometry3d::Identity();  //!< sensor to map
-        Twist motion;                                                 //!< that it was de-skewed by
+        ScanTrajectory motion{Twist{}};                               //!< that it was de-skewed by
         ScanView view;
         VoxelNumbers voxels;
         std::optional<DynamicObjects::Sight> sight;
         Placement placement;
+
+        bool isBetterThan(const Attempt& other) const {
+            return placement.estimate.valid &&
+                   placement.estimate.inlierRatio > other.placement.estimate.inlierRatio;
+        }
     };
-    Attempt attemptBy(const PointCloud& cloud, double duration_s, double since_s, bool timeIsKnown,
+    Attempt attemptBy(const PointCloud& cloud, const Eigen::Isometry3d& predicted,
+                      const ScanTrajectory& motion, bool isGuess, double since_s, bool timeIsKnown,
                       Step& step);
+    Attempt attemptAsPredicted(const PointCloud& cloud, double duration_s, double since_s,
+                               bool timeIsKnown, Step& step);
     Attempt attemptAfterPause(const PointCloud& cloud, const Interval& interval, double since_s,
                               Step& step);
 
     // The stages of track(), in their order.
     Extrapolation predictMotion(double duration_s);
-    VoxelNumbers thin(ScanView& view);
+    VoxelNumbers thin(ScanView& view, bool isGuess);
     Placement registerByPoints(const ScanView& view, const Expectation& expected,
                                std::optional<DynamicObjects::Sight>& sight, Step& step) const;
     void removeDynamicObjects(const VoxelNumbers& voxels, DynamicObjects::Sight sight,
@@ -70,12 +78,14 @@ class PlaneOdometry : public Odometry {
     void update(const PlaneEstimate& estimate, const PointEstimate& placed,
                 const Eigen::Isometry3d& predicted, double since_s, bool hasSight, ScanView& view,
                 const Step& step);
+    bool isBeyondReach(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
+                       double since_s) const;
     void miss(const PointCloud& cloud);
     bool isLostAfter(const Step& step) const;
     void report(const PlaneEstimate& estimate, ScanView& view, Step& step) const;
     void carryToStamp(double stamp_s, bool hasFoundMotion, Step& step);
 
-    Expectation expectation(const Eigen::Isometry3d& predicted, double since_s,
+    Expectation expectation(const Eigen::Isometry3d& predicted, bool isGuess, double since_s,
                             bool timeIsKnown) const;
     void learn(const PointEstimate& placed, const Eigen::Isometry3d& predicted, double since_s);
 
@@ -105,6 +115,10 @@ class PlaneOdometry : public Odometry {
     bool isGuessing() const {
         return isLost(state_) || std::holds_alternative<Degenerate>(state_) ||
                !prediction_.hasMotion();
+    }
+    /** Predictions are off by more than any kernel. */
+    bool isShaken() const {
+        return kernel_.isKnown() && kernel_m() >= options_.points.first_kernel;
     }
     double kernel_m() const {
         return kernel_.width(options_.points.least_kernel, options_.points.first_kernel);

@@ -262,6 +262,25 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     return best;
 }
 
+PointEstimate searchOnward(const PointMap& map, const Eigen::Matrix3Xd& points,
+                           const Eigen::Isometry3d& latest, const Eigen::Isometry3d& increment,
+                           const PointRegistrationOptions& options) {
+    constexpr int kMostScans = 30;
+    constexpr std::size_t kLikely = 3;
+    const double start = options.first_kernel / 2;
+    const Eigen::Matrix3Xd part = sample(points, kEnough);
+    const Vector6 step = poseLog(increment);
+    Starts onward;
+    for (int scans = 2; scans <= kMostScans; ++scans)
+        onward.push_back(latest * poseExp(scans * step));
+    PointEstimate best;
+    for (const auto& found :
+         placesFrom(map, part, bestOf(onward, kLikely, map, part, start / 2, 0), start, options))
+        if (found.valid && (!best.valid || found.inlierRatio > best.inlierRatio)) best = found;
+    if (!best.valid) return best;
+    return registerToPoints(map, points, best.pose, options.least_kernel, options);
+}
+
 PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
                           const Eigen::Isometry3d& guess, double enough,
                           const PointRegistrationOptions& options) {

@@ -20,6 +20,12 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& guess, const SearchReach& reach,
                            const Eigen::Matrix3f& upright, const PointRegistrationOptions& options);
 
+/** Registration where a motion by `increment` a scan may have gone on from `latest` (sensor to map)
+ *  for up to 30 scans, which are missing. */
+PointEstimate searchOnward(const PointMap& map, const Eigen::Matrix3Xd& points,
+                           const Eigen::Isometry3d& latest, const Eigen::Isometry3d& increment,
+                           const PointRegistrationOptions& options);
+
 /** Registration where the rotation of `guess` may be off by up to 30 deg about any axis: by the
  * hand that carries the sensor, or a bump. Where a share of `enough` fits, no more is tried. */
 PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
