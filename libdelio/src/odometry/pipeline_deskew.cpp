@@ -46,19 +46,19 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewPair(const PointCloud& firs
     return best;
 }
 
-/** By a motion of varying speed, again and again as long as clearly more points fit; or by one of
- *  constant speed where clearly fewer than before fit then. */
+/** By a motion of varying speed, in a swinging hand again and again as long as clearly more points
+ *  fit; or by one of constant speed where clearly fewer than before fit then. */
 std::optional<ScanOnTrajectory> PlaneOdometry::deskewByMotion(const KnownEnds& known,
                                                               double inlierRatio,
                                                               const PointCloud& cloud,
                                                               const ScanView& view) const {
-    constexpr unsigned kMostRounds = 6;
+    const unsigned mostRounds = isShaken() ? 6 : 1;
     const auto along = [&](const ScanTrajectory& trajectory) {
         return registerAlong(trajectory, known, map_, cloud, view, options_);
     };
     const ScanTrajectory constant = constantTwist(known, cloud);
     auto best = along(refined(constant, known, cloud, view));
-    for (unsigned round = 1; round < kMostRounds && best; ++round) {
+    for (unsigned round = 1; round < mostRounds && best; ++round) {
         auto next = along(refined(best->trajectory, known, cloud, view));
         if (!next || next->inlierRatio < best->inlierRatio + kNoise) break;
         best = std::move(next);
