@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
@@ -16,6 +17,7 @@
 #include "files/names.h"
 #include "recognised_reader.h"
 #include "sources.h"
+#include "turn_assembler.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -50,8 +52,8 @@ std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
     if (source.path != "-" && !fs::is_directory(source.path) && !fs::is_regular_file(source.path))
         throw Error("'" + source.path +
                     "' is neither a file nor a folder; read a pipe from standard input with -i -");
-    return std::make_unique<RecognisedReader>(fs::is_directory(source.path) ? openFolder(source)
-                                                                            : openFile(source));
+    auto scans = fs::is_directory(source.path) ? openFolder(source) : openFile(source);
+    return std::make_unique<RecognisedReader>(std::make_unique<TurnAssembler>(std::move(scans)));
 }
 
 std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label,
