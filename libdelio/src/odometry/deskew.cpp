@@ -48,12 +48,13 @@ Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std:
     return result;
 }
 
-void thinForPoints(ScanView& view, const Eigen::Matrix3f& upright, double spacing, bool isGuess) {
+void thinForPoints(ScanView& view, const Eigen::Matrix3f& upright, double spacing,
+                   bool byStanding) {
     constexpr Eigen::Index kFewest = 200, kRings = 3000;  // a ring or two show no height
     const SegmentTuning segments;
     view.coarse = firstOfVoxels(view.fine, spacing).cast<double>();
     view.level.resize(3, 0);
-    if (!isGuess || view.points.cols() < kRings) return;
+    if (!byStanding || view.points.cols() < kRings) return;
     const auto standing = firstOfVoxels(
         standingPoints(view.fine, upright, segments.above_ground, segments.radius), spacing / 2);
     if (standing.cols() < kFewest) return;

@@ -205,12 +205,13 @@ paper::SurfaceNormals surfacesOf(const ScanView& view, double probe) {
  * points say that the scan is where an earlier one was, their answer stays; it is reported as
  * unobserved unless surfaces that face the axis confirm the standstill. */
 void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
-                                PlaneEstimate& found) const {
+                                Motion motion, PlaneEstimate& found) const {
     auto& translation = found.translation;
     const bool rests = isWhereAScanWas(translation.translation);
     Eigen::Matrix3Xd doubtful = translation.unobservedAxes;
     constexpr double kThin = 0.006;  // of the planes' weight; smooth tunnels show up to 0.005
-    if (doubtful.cols() == 0 && rests && translation.observability[0] < kThin)
+    const bool mayStand = rests && motion != Motion::kFast;
+    if (doubtful.cols() == 0 && mayStand && translation.observability[0] < kThin)
         doubtful = found.weakestAxis;
     if (doubtful.cols() == 0) return;
     paper::SurfaceNormals surfaces;
@@ -257,8 +258,7 @@ PlaneEstimate LocalMap::refine(const Eigen::Matrix3Xd& thinned, const PointEstim
 }
 
 PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate& placed,
-                                       const Eigen::Isometry3d& predicted,
-                                       bool motionIsKnown) const {
+                                       const Eigen::Isometry3d& predicted, Motion motion) const {
     const auto byPlanes = [&](const PointEstimate& from) {
         return refine(view.thinned, from, turnCovariance(view.coarse, from),
                       planeOptions_.last_kernel);
@@ -275,11 +275,11 @@ PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate
         found = byPlanes(from);
     }
     // Planes that lead to the prediction are two against one.
-    const bool isAsPredicted = motionIsKnown && isNear(found, predicted);
+    const bool isAsPredicted = motion != Motion::kUnknown && isNear(found, predicted);
     if (!isNear(found, from.pose) && !isAsPredicted)
         found = byPoints(from, turnCovariance(view.coarse, from));
     found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
-    settleUnobserved(view, predicted, found);
+    settleUnobserved(view, predicted, motion, found);
     return found;
 }
 

@@ -14,6 +14,13 @@
 #include "paper/normals.h"
 
 namespace delio::odometry {
+/** What is known of the sensor's motion before a scan is registered. */
+enum class Motion {
+    kUnknown,
+    kSlow,  //!< predicted to be so slow that it may stand
+    kFast
+};
+
 /** A scan in a map that is kept twice: as planes, which are precise, and as points, which cannot be
  *  fooled by what looks like a plane. Points place the scan first; both are fused by their
  *  information, where planes do not lead too far away. Poses map the sensor's frame to the map's.
@@ -80,9 +87,10 @@ class LocalMap {
      *  points stays where these put it, if they see it, else where the prediction does. Where
      *  points alone say that the scan is where an earlier scan of the drive was, the axis is
      *  unobserved, too, unless surfaces that face it confirm that: a sensor's own rings lie on each
-     *  other anywhere. This holds for axes that the planes hardly constrain, too. */
+     *  other anywhere. Unless the motion is fast, this holds for axes that the planes hardly
+     *  constrain, too. */
     PlaneEstimate registerPlanes(const ScanView& view, const PointEstimate& placed,
-                                 const Eigen::Isometry3d& predicted, bool motionIsKnown) const;
+                                 const Eigen::Isometry3d& predicted, Motion motion) const;
 
     /** Share of the points that lie within `distance` (metres) of one of the map's, 0 to 1. */
     double shareAt(const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
@@ -96,7 +104,7 @@ class LocalMap {
                                    const PointEstimate& placed) const;
     PlaneEstimate byPoints(const PointEstimate& placed,
                            const Eigen::Matrix3d& turnCovariance) const;
-    void settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
+    void settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted, Motion motion,
                           PlaneEstimate& found) const;
     bool isWhereAScanWas(const Eigen::Vector3d& place) const;
 

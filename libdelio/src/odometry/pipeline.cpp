@@ -217,7 +217,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
     }
     {
         const StageTimer timer(step, "thinning");
-        attempt.voxels = thin(attempt.view, isGuess);
+        attempt.voxels = thin(attempt.view, isPlacedByStanding(isGuess));
     }
     attempt.placement = registerByPoints(attempt.view, expected, attempt.sight, step);
     auto& estimate = attempt.placement.estimate;
@@ -225,6 +225,13 @@ PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
     attempt.placement.isLikely =
         estimate.valid && estimate.inlierRatio >= expected.likelyInlierRatio();
     return attempt;
+}
+
+Motion PlaneOdometry::motion() const {
+    constexpr double kSlow_mps = 0.5;
+    if (!prediction_.hasMotion()) return Motion::kUnknown;
+    const bool isSlow = prediction_.predict(1).translation().norm() < kSlow_mps;
+    return isSlow ? Motion::kSlow : Motion::kFast;
 }
 
 /** The motion after the latest scan. Its end twist, where that is known, is used once. */
@@ -245,15 +252,14 @@ Extrapolation PlaneOdometry::predictMotion(double duration_s) {
 }
 
 /** Thins the scan, while the one before it enters the map; says which points became which. */
-VoxelNumbers PlaneOdometry::thin(ScanView& view, bool isGuess) {
+VoxelNumbers PlaneOdometry::thin(ScanView& view, bool byStanding) {
     const auto& spacings = options_.spacing;
     VoxelNumbers voxels;
     tbb::parallel_invoke([&] { insertWaiting(); },
                          [&] {
                              voxels = numberVoxels(view.points, spacings.map_spacing);
                              view.fine = centroidsOf(view.points, voxels);
-                             thinForPoints(view, upright_, spacings.point_spacing,
-                                           isGuess || kernel_m() >= options_.points.first_kernel);
+                             thinForPoints(view, upright_, spacings.point_spacing, byStanding);
                          });
     return voxels;
 }
@@ -289,7 +295,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     const StageTimer timer(step, "planes");
     if (!placed.valid) return predictedEstimate(predicted);
     view.thinned = voxelCentroids(view.fine, options_.spacing.scan_spacing).cast<double>();
-    auto found = map_.registerPlanes(view, placed, predicted, prediction_.hasMotion());
+    auto found = map_.registerPlanes(view, placed, predicted, motion());
     if (step.deskewed && !step.interrupted)
         deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
     return found;
@@ -361,10 +367,11 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, bool 
     const auto& registration = options_.registration;
     // A longer way has to be found by surfaces.
     constexpr double kLongest_s = 0.5;
+    const double unknown_s = std::max(since_s, unregistered_s_);
+    const double acceleration =
+        unknown_s <= kLongest_s ? spacing.acceleration : spacing.pause_acceleration;
     const double driven_m = spacing.first_speed * std::min(since_s, kLongest_s),
-                 gained_m = unregistered_s_ <= kLongest_s
-                                ? spacing.acceleration / 2 * std::pow(unregistered_s_, 2)
-                                : spacing.pause_acceleration / 2 * std::pow(unregistered_s_, 2);
+                 gained_m = acceleration / 2 * unknown_s * unknown_s;
     Expectation expected{predicted, reference_, upright_};
     expected.motionIsKnown = prediction_.hasMotion();
     expected.isGuess = isGuess;

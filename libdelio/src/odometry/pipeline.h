@@ -67,7 +67,7 @@ class PlaneOdometry : public Odometry {
 
     // The stages of track(), in their order.
     Extrapolation predictMotion(double duration_s);
-    VoxelNumbers thin(ScanView& view, bool isGuess);
+    VoxelNumbers thin(ScanView& view, bool byStanding);
     Placement registerByPoints(const ScanView& view, const Expectation& expected,
                                std::optional<DynamicObjects::Sight>& sight, Step& step) const;
     void removeDynamicObjects(const VoxelNumbers& voxels, DynamicObjects::Sight sight,
@@ -116,10 +116,19 @@ class PlaneOdometry : public Odometry {
         return isLost(state_) || std::holds_alternative<Degenerate>(state_) ||
                !prediction_.hasMotion();
     }
+    /** Until the motion is known, and after a loss, the points that stand above the ground place a
+     *  scan. A hand tilts the sensor so much that they are not told from the ground. */
+    bool isPlacedByStanding(bool isGuess) const {
+        if (!prediction_.hasMotion()) return true;
+        if (isLost(state_)) return !isShaken();
+        const bool isSteady = kernel_m() < options_.points.first_kernel;
+        return isGuess && isSteady && !std::holds_alternative<Degenerate>(state_);
+    }
     /** Predictions are off by more than any kernel. */
     bool isShaken() const {
         return kernel_.isKnown() && kernel_m() >= options_.points.first_kernel;
     }
+    Motion motion() const;
     double kernel_m() const {
         return kernel_.width(options_.points.least_kernel, options_.points.first_kernel);
     }

@@ -71,8 +71,9 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewByMotion(const KnownEnds& k
  *  either, the scan stays de-skewed by the prediction. `inlierRatio`: that of the scan as it is. */
 void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio,
                                 ScanView& view, PlaneEstimate& estimate) {
-    const KnownEnds known{reference_.pose, since_s,      estimate.pose(),
-                          upright_,        isGuessing(), prediction_.hasMotion()};
+    const KnownEnds known{
+        reference_.pose, since_s, estimate.pose(), upright_, isPlacedByStanding(isGuessing()),
+        motion()};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->inlierRatio >= inlierRatio - kNoise;
     };

@@ -163,11 +163,11 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
     ScanView again = undistorted(cloud, trajectory.seenFrom(0));
     again.dynamic = view.dynamic;
     thin(again, options.spacing.map_spacing, options.spacing.scan_spacing);
-    thinForPoints(again, known.upright, options.spacing.point_spacing, known.isGuess);
+    thinForPoints(again, known.upright, options.spacing.point_spacing, known.byStanding);
     const auto placed =
         map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));
     if (!placed.valid) return {};
-    auto estimate = map.registerPlanes(again, placed, known.pose, known.motionIsKnown);
+    auto estimate = map.registerPlanes(again, placed, known.pose, known.motion);
     return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.inlierRatio};
 }
 

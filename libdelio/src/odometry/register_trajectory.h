@@ -37,8 +37,8 @@ struct KnownEnds {
     double since_s = 0;           //!< more than 0
     Eigen::Isometry3d pose;       //!< at the scan's time, likewise
     Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
-    bool isGuess = false;        //!< the pose was searched for: see Expectation
-    bool motionIsKnown = false;  //!< the motion before `reference` is known
+    bool byStanding = false;           //!< points above the ground place the scan
+    Motion motion = Motion::kUnknown;  //!< before `reference`
 };
 
 /** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to

@@ -124,7 +124,7 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
                                   std::clamp(3 * sigma_m(predicted), kLeast_m, kMost_m));
     fix.reason = "not registered to the map";
     if (!placed.valid) return {};
-    auto found = map.registerPlanes(view, placed, predicted.pose, true);
+    auto found = map.registerPlanes(view, placed, predicted.pose, odometry::Motion::kFast);
     // Ground matches anywhere: only points above it count.
     const auto standing = places::aboveGround((level * view.thinned).cast<float>());
     if (standing.cols() > 0)

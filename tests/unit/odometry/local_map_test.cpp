@@ -38,7 +38,7 @@ class AScanInAYard : public testing::Test {
         placed.matches = 500;
         placed.residual_m = 0.1;
         placed.valid = true;
-        return map.registerPlanes(view, placed, placedAt, true).pose();
+        return map.registerPlanes(view, placed, placedAt, Motion::kFast).pose();
     }
 
     ScaledOptions options;
@@ -51,8 +51,9 @@ class AScanInAYard : public testing::Test {
 TEST_F(AScanInAYard, IsRefinedByPlanes) {
     const auto placed = map.place(view.coarse, there * poseAt(0.2, 0.2, 0), 1);
     ASSERT_TRUE(placed.valid);
-    EXPECT_LT(metresBetween(map.registerPlanes(view, placed, placed.pose, true).pose(), there),
-              0.01);
+    EXPECT_LT(
+        metresBetween(map.registerPlanes(view, placed, placed.pose, Motion::kFast).pose(), there),
+        0.01);
 }
 
 // Farther than planes are believed, but there more points fit than where they were placed.
