@@ -36,10 +36,10 @@ ScanView undistorted(const PointCloud& cloud, const ScanTrajectory& trajectory);
 /** The columns of `points` that are not marked. */
 Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std::uint8_t>& marks);
 
-/** Thins view.fine for registration by points: all points at `spacing` metres, or only
- *  those that stand above the ground at `spacing` / 2, unless these are few: the
- *  rings that a sensor draws on the ground lie on those of the scan before wherever it stands.
- *  `upright` turns the sensor's z up. */
+/** Thins view.fine for registration by points: all points at `spacing` metres, or only those
+ *  that stand above the ground at `spacing` / 2, unless these are few: the rings that a sensor
+ * draws on the ground lie on those of the scan before wherever it stands. `upright` turns the
+ * sensor's z up. */
 void thinForPoints(ScanView& view, const Eigen::Matrix3f& upright, double spacing, bool byStanding);
 
 /** Thins the static points: centroids of voxels of `map_spacing` for the map, and of these in turn

@@ -191,8 +191,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAsPredicted(const PointCloud& cloud
     };
     const Eigen::Isometry3d predicted = pose_ * extrapolation.at(duration_s);
     Attempt best = attempt(predicted, extrapolation.motion(), isGuessing());
-    const bool isShaking = isShaken();
-    if (best.placement.isLikely && !isShaking) return best;
+    if (best.placement.isLikely && !isShaken()) return best;
     if (!best.placement.isLikely && !isGuessing())
         best = attempt(predicted, extrapolation.motion(), true);
     if (cloud.times_s.empty()) return best;

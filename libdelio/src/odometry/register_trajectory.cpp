@@ -184,6 +184,8 @@ ScanTrajectory registerInParts(const PlaneMap& map, const Eigen::Isometry3d& pos
     const auto [least, most] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
     const double first_s = double{*least}, part_s = (double{*most} - first_s) / kParts;
     Twist motion = extrapolation.motion();
+    if (!(part_s > 0))
+        return ScanTrajectory::even({0, 1}, pose * extrapolation.at(duration_s), motion);
     double time_s = first_s;
     std::vector<double> times_s{time_s};
     std::vector<Eigen::Isometry3d> poses{pose * extrapolation.at(duration_s + time_s)};
