@@ -42,16 +42,17 @@ struct ReferenceScan {
 
 /** What is known of a scan's place before it is registered. */
 struct Expectation {
-    const Eigen::Isometry3d& pose;   //!< predicted, sensor to map
-    const ReferenceScan& reference;  //!< to search from where the prediction fails
-    const Eigen::Matrix3f& upright;  //!< turns the sensor's z up
-    bool motionIsKnown = false;      //!< else it may be anywhere within `start`
-    bool isGuess = false;            //!< motion and place are not known well
-    bool isShaken = false;           //!< predictions are off by more than the widest kernel
-    SearchReach start = {};          //!< how far a guess may be off
-    double reach_m = 0;              //!< within which surfaces look for what points do not find
-    double kernel_m = 0;             //!< how far predictions are off
-    double usualInlierRatio = 0;     //!< of points on those of the map; 0: not known
+    const Eigen::Isometry3d& pose;    //!< predicted, sensor to map
+    const ReferenceScan& reference;   //!< to search from where the prediction fails
+    const Eigen::Matrix3f& upright;   //!< turns the sensor's z up
+    bool motionIsKnown = false;       //!< else it may be anywhere within `start`
+    bool isGuess = false;             //!< motion and place are not known well
+    bool isShaken = false;            //!< predictions are off by more than the widest kernel
+    bool isPlacedByStanding = false;  //!< points that stand above the ground place the scan
+    SearchReach start = {};           //!< how far a guess may be off
+    double reach_m = 0;               //!< within which surfaces look for what points do not find
+    double kernel_m = 0;              //!< how far predictions are off
+    double usualInlierRatio = 0;      //!< of points on those of the map; 0: not known
 
     static constexpr double kLikely = 0.75, kLikelyAtFirst = 0.25;
     /** A pose is likely where so many points fit. */

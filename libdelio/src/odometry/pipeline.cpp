@@ -109,6 +109,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     else
         track(cloud, interval, step);
     carryToStamp(cloud.stamp_s, !motionWasKnown && !step.predicted && !step.interrupted, step);
+    settleWindow(step);
 
     step.standing = isStanding(step, interval.duration_s);
     step.lost = isLostAfter(step);
@@ -119,6 +120,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     }
     step.details.emplace_back("scale", scale_);
     step.used.indices = std::move(cloud.indices);
+    keep(std::move(cloud), step);
     return step;
 }
 
@@ -139,7 +141,7 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
         step.interrupted && prediction_.hasMotion()
             ? attemptAfterPause(cloud, interval, since_s, step)
             : attemptAsPredicted(cloud, interval.duration_s, since_s, !step.interrupted, step);
-    auto& [predicted, motion, view, voxels, sight, placement] = attempt;
+    auto& [predicted, extrapolated, motion, view, voxels, sight, placement] = attempt;
     motion_ = motion;
     const PointEstimate& placed = placement.estimate;
     step.searched = placement.searched;
@@ -156,7 +158,7 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     {
         const StageTimer timer(step, "map_update");
         if (estimate.valid)
-            update(estimate, placed, predicted, since_s, hasSight, view, step);
+            update(estimate, placed, extrapolated, since_s, hasSight, view, step);
         else
             miss(cloud);
     }
@@ -185,30 +187,36 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAsPredicted(const PointCloud& cloud
                                                          double since_s, bool timeIsKnown,
                                                          Step& step) {
     const Extrapolation extrapolation = predictMotion(duration_s);
-    const auto attempt = [&](const Eigen::Isometry3d& predicted, const ScanTrajectory& motion,
-                             bool isGuess) {
-        return attemptBy(cloud, predicted, motion, isGuess, since_s, timeIsKnown, step);
+    const Eigen::Isometry3d extrapolated = pose_ * extrapolation.at(duration_s);
+    const auto attempt = [&](bool isGuess) {
+        return attemptBy(cloud, expectation(extrapolated, isGuess, since_s, timeIsKnown),
+                         extrapolation.motion(), step);
     };
-    const Eigen::Isometry3d predicted = pose_ * extrapolation.at(duration_s);
-    Attempt best = attempt(predicted, extrapolation.motion(), isGuessing());
-    if (best.placement.isLikely && !isShaken()) return best;
-    if (!best.placement.isLikely && !isGuessing())
-        best = attempt(predicted, extrapolation.motion(), true);
-    if (cloud.times_s.empty()) return best;
-    const ScanTrajectory uneven =
-        registerInParts(map_.planes(), pose_, extrapolation, duration_s, cloud, options_);
-    Attempt other = attempt(uneven.at(0), uneven.seenFrom(0), isGuessing());
-    return other.isBetterThan(best) ? other : best;
+    const bool isTogether = timeIsKnown && !cloud.times_s.empty();
+    if (!isTogether) endWindow();
+    const bool wasTogether = !window_.isEmpty();
+    Attempt best;
+    if (!wasTogether) {
+        best = attempt(isGuessing());
+        if (best.placement.isLikely && !isShaken() && !isSecondScan()) return best;
+        if (!best.placement.isLikely && !isGuessing()) best = attempt(true);
+    }
+    if (isTogether && extendWindow(cloud, since_s, best.placement)) {
+        Attempt together = attemptInWindow(cloud, since_s, step);
+        together.extrapolated = pose_ * extrapolation.at(duration_s);
+        if (wasTogether && !together.placement.isLikely) best = attempt(true);
+        if (!best.isBetterThan(together)) return together;
+        endWindow();
+    }
+    return best;
 }
 
-/** The scan placed by points near where it is predicted (sensor to map), de-skewed by a motion. */
+/** The scan placed by points near where it is expected, de-skewed by a motion. */
 PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
-                                                const Eigen::Isometry3d& predicted,
-                                                const ScanTrajectory& motion, bool isGuess,
-                                                double since_s, bool timeIsKnown, Step& step) {
-    const Expectation expected = expectation(predicted, isGuess, since_s, timeIsKnown);
+                                                const Expectation& expected,
+                                                const ScanTrajectory& motion, Step& step) {
     Attempt attempt;
-    attempt.predicted = predicted;
+    attempt.predicted = attempt.extrapolated = expected.pose;
     attempt.motion = motion;
     {
         const StageTimer timer(step, "undistort");
@@ -216,7 +224,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
     }
     {
         const StageTimer timer(step, "thinning");
-        attempt.voxels = thin(attempt.view, isPlacedByStanding(isGuess));
+        attempt.voxels = thin(attempt.view, expected.isPlacedByStanding);
     }
     attempt.placement = registerByPoints(attempt.view, expected, attempt.sight, step);
     auto& estimate = attempt.placement.estimate;
@@ -295,7 +303,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     if (!placed.valid) return predictedEstimate(predicted);
     view.thinned = voxelCentroids(view.fine, options_.spacing.scan_spacing).cast<double>();
     auto found = map_.registerPlanes(view, placed, predicted, motion());
-    if (step.deskewed && !step.interrupted)
+    if (step.deskewed && !step.interrupted && window_.isEmpty())
         deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
     return found;
 }
@@ -381,6 +389,7 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, bool 
                     : registration.search_radius;
     expected.kernel_m = kernel_m();
     expected.isShaken = isShaken();
+    expected.isPlacedByStanding = isPlacedByStanding(isGuess);
     expected.usualInlierRatio = usualInlierRatio_;
     return expected;
 }
@@ -433,7 +442,7 @@ void PlaneOdometry::carryToStamp(double stamp_s, bool hasFoundMotion, Step& step
     const double time_s = arrivals_.sinceStart_s();
     const Eigen::Isometry3d moved = atStamp(motion_, stamp_s);
     Eigen::Isometry3d before = stamped_.pose;
-    if (hasFoundMotion && stamped_.stamp_s != 0)
+    if (hasFoundMotion && !start_ && stamped_.stamp_s != 0)
         before = pose_ * atStamp(motion_, stamped_.time_s + stamped_.stamp_s - time_s);
     stamped_ = {pose_ * moved, stamp_s, time_s};
     step.increment.pose = normalised(before.inverse() * stamped_.pose);
@@ -446,10 +455,12 @@ void PlaneOdometry::carryToStamp(double stamp_s, bool hasFoundMotion, Step& step
 ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     // The second scan has this one alone to be registered against: it enters as dense as it came.
     constexpr double kDense = 0.2;
-    ScanView view = undistorted(cloud, Twist{});
+    const bool isSkewed = window_.isEmpty() && !cloud.times_s.empty();
+    ScanView view = undistorted(cloud, isSkewed ? ScanTrajectory(Twist{}) : motion_);
     odometry::thin(view, kDense * options_.spacing.map_spacing, options_.spacing.scan_spacing);
     map_.clear(upAt(pose_));
     waiting_.reset();
+    start_.reset();
     dynamics_.clear();
     usualInlierRatio_ = 0;
     map_.addScan(view.fine, pose_);
@@ -459,7 +470,7 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
         return view;
     }
     FirstScan first;
-    if (!cloud.times_s.empty()) first.skewed = cloud;
+    if (isSkewed) first.skewed = cloud;
     first.motionIsKnown = motionIsKnown;
     state_ = std::move(first);
     return view;

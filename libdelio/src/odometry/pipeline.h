@@ -8,6 +8,7 @@
 #include "odometry/dynamic_objects.h"
 #include "odometry/initial_guess.h"
 #include "odometry/motion_model.h"
+#include "odometry/register_together.h"
 #include "odometry/register_trajectory.h"
 #include "odometry/tracking_state.h"
 
@@ -46,7 +47,9 @@ class PlaneOdometry : public Odometry {
     /** A scan placed by points, from one guess of the motion. */
     struct Attempt {
         Eigen::Isometry3d predicted = Eigen::Isometry3d::Identity();  //!< sensor to map
-        ScanTrajectory motion{Twist{}};                               //!< that it was de-skewed by
+        /** Where the motion of the scans before leads to. */
+        Eigen::Isometry3d extrapolated = Eigen::Isometry3d::Identity();
+        ScanTrajectory motion{Twist{}};  //!< that it was de-skewed by
         ScanView view;
         VoxelNumbers voxels;
         std::optional<DynamicObjects::Sight> sight;
@@ -57,13 +60,24 @@ class PlaneOdometry : public Odometry {
                    placement.estimate.inlierRatio > other.placement.estimate.inlierRatio;
         }
     };
-    Attempt attemptBy(const PointCloud& cloud, const Eigen::Isometry3d& predicted,
-                      const ScanTrajectory& motion, bool isGuess, double since_s, bool timeIsKnown,
-                      Step& step);
+    Attempt attemptBy(const PointCloud& cloud, const Expectation& expected,
+                      const ScanTrajectory& motion, Step& step);
     Attempt attemptAsPredicted(const PointCloud& cloud, double duration_s, double since_s,
                                bool timeIsKnown, Step& step);
     Attempt attemptAfterPause(const PointCloud& cloud, const Interval& interval, double since_s,
                               Step& step);
+
+    // Scans that are registered together (pipeline_window.cpp).
+    bool extendWindow(const PointCloud& cloud, double since_s, const Placement& found);
+    Attempt attemptInWindow(const PointCloud& cloud, double since_s, Step& step);
+    void beginMapAgain();
+    void settleWindow(const Step& step);
+    void endWindow();
+    void keep(PointCloud cloud, const Step& step);
+    bool isSecondScan() const {
+        const auto* first = std::get_if<FirstScan>(&state_);
+        return first && first->skewed;
+    }
 
     // The stages of track(), in their order.
     Extrapolation predictMotion(double duration_s);
@@ -153,6 +167,23 @@ class PlaneOdometry : public Odometry {
     ScanTrajectory motion_{Twist{}};  //!< during the latest scan, seen from pose_
     Stamped stamped_;                 //!< the latest scan at its stamp
     double unregistered_s_ = 0;       //!< since the latest scan that was registered
+    /** The latest scan as it came, where its points have times, and its trajectory (sensor to map,
+     *  times from the scan's). */
+    struct Latest {
+        PointCloud cloud;
+        double time_s = 0;
+        ScanTrajectory trajectory{Twist{}};
+    };
+    std::optional<Latest> latest_;
+    /** The latest scans, where the motion changes faster than it can be predicted. */
+    ScanWindow window_;
+    /** The window holds all scans of the map: each scan more corrects the earlier ones. */
+    struct Start {
+        double stamp_s = 0;  //!< of the first scan, since the start of the drive
+        /** Sensor at the latest stamp to that at the first one, as the steps said. */
+        Eigen::Isometry3d reported = Eigen::Isometry3d::Identity();
+    };
+    std::optional<Start> start_;
     /** The latest scan, until it enters the map: the next scan is thinned meanwhile. */
     std::optional<PlacedPoints> waiting_;
 

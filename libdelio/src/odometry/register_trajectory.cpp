@@ -114,8 +114,6 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
     }
 }
 
-namespace {
-/** Static points, the first one in each voxel of `spacing`. */
 TimedPoints pickedOf(const PointCloud& cloud, const ScanView& view, double spacing) {
     const auto voxels = numberVoxels(view.points, spacing);
     TimedPoints picked{Eigen::Matrix3Xd(3, voxels.voxels), {}};
@@ -131,7 +129,6 @@ TimedPoints pickedOf(const PointCloud& cloud, const ScanView& view, double spaci
     picked.points.conservativeResize(3, static_cast<Eigen::Index>(picked.times_s.size()));
     return picked;
 }
-}  // namespace
 
 ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud) {
     constexpr unsigned kParts = 8;
@@ -169,50 +166,6 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
     if (!placed.valid) return {};
     auto estimate = map.registerPlanes(again, placed, known.pose, known.motion);
     return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.inlierRatio};
-}
-
-ScanTrajectory registerInParts(const PlaneMap& map, const Eigen::Isometry3d& pose,
-                               const Extrapolation& extrapolation, double duration_s,
-                               const PointCloud& cloud, const ScaledOptions& options) {
-    constexpr std::size_t kParts = 5;
-    constexpr double kTurn_rad = 5 * M_PI / 180, kMove_m = 0.03;
-    const Eigen::Matrix3d turnCovariance = kTurn_rad * kTurn_rad * Eigen::Matrix3d::Identity();
-    ScanView all;
-    all.points = cloud.points;
-    all.dynamic.resize(static_cast<std::size_t>(cloud.points.cols()));
-    const TimedPoints picked = pickedOf(cloud, all, options.spacing.scan_spacing / 2);
-    const auto [least, most] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
-    const double first_s = double{*least}, part_s = (double{*most} - first_s) / kParts;
-    Twist motion = extrapolation.motion();
-    if (!(part_s > 0))
-        return ScanTrajectory::even({0, 1}, pose * extrapolation.at(duration_s), motion);
-    double time_s = first_s;
-    std::vector<double> times_s{time_s};
-    std::vector<Eigen::Isometry3d> poses{pose * extrapolation.at(duration_s + time_s)};
-    for (std::size_t part = 0; part < kParts; ++part) {
-        const double middle_s = first_s + (static_cast<double>(part) + 0.5) * part_s;
-        Eigen::Matrix3Xd points(3, picked.points.cols());
-        Eigen::Index count = 0;
-        for (std::size_t i = 0; i < picked.times_s.size(); ++i) {
-            const double off_s = picked.times_s[i] - middle_s;
-            if (std::abs(off_s) <= part_s / 2)
-                points.col(count++) =
-                    motion.after(off_s) * picked.points.col(static_cast<Eigen::Index>(i));
-        }
-        points.conservativeResize(3, count);
-        const Eigen::Isometry3d predicted = poses.back() * motion.after(middle_s - time_s);
-        const auto found =
-            registerToPlanes(map, points, Prior::of(predicted, kMove_m, turnCovariance),
-                             options.points.first_kernel / 2, options.registration);
-        const Eigen::Isometry3d placed = found.valid ? found.pose() : predicted;
-        motion.turning = Twist::of(poses.back().inverse() * placed, middle_s - time_s).turning;
-        time_s = middle_s;
-        times_s.push_back(time_s);
-        poses.push_back(placed);
-    }
-    times_s.push_back(time_s + part_s / 2);
-    poses.push_back(poses.back() * motion.after(part_s / 2));
-    return {times_s, poses};
 }
 
 Extrapolation::Extrapolation(const ScanTrajectory& trajectory, double over_s)

@@ -41,6 +41,9 @@ struct KnownEnds {
     Motion motion = Motion::kUnknown;  //!< before `reference`
 };
 
+/** Static points, the first one in each voxel of `spacing` metres. */
+TimedPoints pickedOf(const PointCloud& cloud, const ScanView& view, double spacing);
+
 /** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to
  *  map, times from the scan's. */
 ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud);
@@ -66,16 +69,6 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
                                               const KnownEnds& known, const LocalMap& map,
                                               const PointCloud& cloud, const ScanView& view,
                                               const ScaledOptions& options);
-
-class Extrapolation;
-
-/** The motion (sensor to map) during a scan whose rate of turn changes faster than it can be
- *  predicted, as in a swinging hand: a fifth of the scan after the other is registered to the
- *  planes, each from where the motion of the one before it leads. `pose` (sensor to map) and
- *  `extrapolation`: of the scan before, `duration_s` earlier. Times from the scan's. */
-ScanTrajectory registerInParts(const PlaneMap& map, const Eigen::Isometry3d& pose,
-                               const Extrapolation& extrapolation, double duration_s,
-                               const PointCloud& cloud, const ScaledOptions& options);
 
 /** How the sensor moved when a scan ended, and moves on. */
 class Extrapolation {

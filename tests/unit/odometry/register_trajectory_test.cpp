@@ -135,28 +135,4 @@ TEST(CourseRegistration, WithTooFewPointsTheCourseStays) {
 }
 
 // The rate of turn changes so fast that the end of the scan is degrees off its prediction.
-TEST(RegisterInParts, FollowsASwing) {
-    const auto scan = seen(test::yard(), 0.01);
-    PointCloud cloud;
-    cloud.points = scan.points.cast<float>();
-    cloud.times_s.assign(scan.times_s.begin(), scan.times_s.end());
-    const Isometry3d before = swung(-kSince_s);
-    const Extrapolation predicted(before.inverse() * swung(-0.05), 0.05);
-    const auto options = atScale(PlaneOdometryOptions(), 1);
-    const auto found =
-        registerInParts(mapOf(test::yard()), before, predicted, kSince_s, cloud, options);
-    EXPECT_GT(degreesBetween(before * predicted.at(0.15), swung(0.05)), 3);
-    EXPECT_LT(worstOf(found).degrees, 1);
-    EXPECT_LT(worstOf(found).metres, 0.1);
-}
-
-TEST(RegisterInParts, AScanOfOneTimeIsAsPredicted) {
-    PointCloud cloud;
-    cloud.points = Eigen::Matrix3Xf::Ones(3, 5);
-    cloud.times_s.assign(5, 0);
-    const Extrapolation predicted(poseAt(0.5, 0, 0), 0.1);
-    const auto found = registerInParts(mapOf(test::yard()), poseAt(1, 0, 0), predicted, 0.1, cloud,
-                                       atScale(PlaneOdometryOptions(), 1));
-    EXPECT_NEAR(found.at(0).translation().x(), 1.5, 1e-9);
-}
 }  // namespace

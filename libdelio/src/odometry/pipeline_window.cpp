@@ -1,0 +1,85 @@
+#include <utility>
+
+#include "odometry/pipeline.h"
+#include "odometry/preprocess.h"
+
+namespace delio::odometry {
+/** Registers the scan together with those before it. `found`: where the map alone places it, in
+ *  case that the window is empty. False where no motion was found, or the second scan shows none
+ *  that changes. */
+bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const Placement& found) {
+    const double time_s = arrivals_.sinceStart_s();
+    if (!window_.isEmpty()) {
+        if (window_.isFull()) start_.reset();
+        window_.add(cloud, time_s);
+        return true;
+    }
+    if (const auto* first = std::get_if<FirstScan>(&state_); first && first->skewed) {
+        const auto& at = reference_.pose;
+        window_.begin(*first->skewed, reference_.time_s, ScanTrajectory({0, 1}, {at, at}));
+        Twist guess;
+        if (found.estimate.valid) guess = Twist::of(at.inverse() * found.estimate.pose, since_s);
+        if (window_.addSecond(cloud, time_s, guess, found.isLikely))
+            start_ = Start{stamped_.time_s + stamped_.stamp_s};
+        else
+            window_.clear();
+    } else if (latest_) {
+        window_.begin(latest_->cloud, latest_->time_s, latest_->trajectory);
+        window_.add(cloud, time_s);
+    }
+    return !window_.isEmpty();
+}
+
+/** The scan placed by points near where the window has it. */
+PlaneOdometry::Attempt PlaneOdometry::attemptInWindow(const PointCloud& cloud, double since_s,
+                                                      Step& step) {
+    if (start_) beginMapAgain();
+    const double time_s = arrivals_.sinceStart_s();
+    const Eigen::Isometry3d pose = window_.trajectory().at(time_s);
+    Expectation expected = expectation(pose, false, since_s, true);
+    expected.isShaken = expected.isPlacedByStanding = false;
+    expected.kernel_m = options_.points.first_kernel / 2;
+    return attemptBy(cloud, expected, window_.trajectory().seenFrom(time_s), step);
+}
+
+/** The map of the window's scans but the latest, each where it is now. */
+void PlaneOdometry::beginMapAgain() {
+    const auto& trajectory = window_.trajectory();
+    const auto& scans = window_.scans();
+    map_.clear(upAt(trajectory.at(scans.front().time_s)));
+    waiting_.reset();
+    for (std::size_t i = 0; i + 1 < scans.size(); ++i) {
+        pose_ = trajectory.at(scans[i].time_s);
+        ScanView view = undistorted(scans[i].cloud, trajectory.seenFrom(scans[i].time_s));
+        odometry::thin(view, options_.spacing.map_spacing, options_.spacing.scan_spacing);
+        map_.addScan(view.fine, pose_);
+        reference_ = {view.points, pose_, scans[i].time_s};
+    }
+    if (auto* first = std::get_if<FirstScan>(&state_)) first->skewed.reset();
+    // The next step leads from where the latest one ended to where the sensor is now.
+    stamped_.pose = trajectory.at(start_->stamp_s) * start_->reported;
+}
+
+/** After a scan, at pose_. */
+void PlaneOdometry::settleWindow(const Step& step) {
+    if (window_.isEmpty()) return;
+    if (start_) start_->reported = start_->reported * step.increment.pose;
+    if (!step.predicted) window_.moveTo(pose_);
+    if (kernel_.isKnown() && !isShaken()) endWindow();
+}
+
+void PlaneOdometry::endWindow() {
+    window_.clear();
+    start_.reset();
+}
+
+/** The scan as it came, for a window that may begin with it. */
+void PlaneOdometry::keep(PointCloud cloud, const Step& step) {
+    latest_.reset();
+    if (cloud.times_s.empty() || step.predicted || step.interrupted || !window_.isEmpty()) return;
+    std::vector<Eigen::Isometry3d> poses;
+    for (const auto& pose : motion_.poses()) poses.push_back(pose_ * pose);
+    latest_ = Latest{std::move(cloud), arrivals_.sinceStart_s(),
+                     ScanTrajectory(motion_.times_s(), poses)};
+}
+}  // namespace delio::odometry

@@ -1,0 +1,429 @@
+#include "odometry/register_together.h"
+
+#include <tbb/parallel_for.h>
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/kd_tree.h"
+#include "core/voxel_grid.h"
+#include "delio/core/geometry.h"
+#include "paper/normals.h"
+
+namespace delio::odometry {
+namespace {
+using Eigen::Index;
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kInterval_s = 0.02;  //!< between poses of the trajectory
+
+std::size_t numberOf(Index i) { return static_cast<std::size_t>(i); }
+
+/** At most `most` of the points, evenly over their order. */
+TimedPoints sampled(const TimedPoints& all, Index most) {
+    TimedPoints few{sample(all.points, most), {}};
+    const Index stride = std::max<Index>(1, (all.points.cols() + most - 1) / most);
+    for (Index i = 0; i < few.points.cols(); ++i)
+        few.times_s.push_back(all.times_s[numberOf(i * stride)]);
+    return few;
+}
+
+/** A pose of the trajectory between two of its knots. */
+struct Between {
+    Index knot = 0;    //!< the earlier one
+    double share = 0;  //!< 0 there to 1 at the next one
+};
+
+/** Poses at equal intervals of time. */
+class Knots {
+ public:
+    explicit Knots(const ScanTrajectory& trajectory)
+        : first_s_(trajectory.times_s().front()),
+          interval_s_(trajectory.times_s()[1] - first_s_),
+          trajectory_(trajectory) {}
+
+    Index size() const { return static_cast<Index>(trajectory_.poses().size()); }
+    const ScanTrajectory& trajectory() const { return trajectory_; }
+    const Isometry3d& operator[](Index k) const { return trajectory_.poses()[numberOf(k)]; }
+    Between between(double time_s) const {
+        const double at = (time_s - first_s_) / interval_s_;
+        const Index knot = std::clamp<Index>(static_cast<Index>(std::floor(at)), 0, size() - 2);
+        return {knot, at - static_cast<double>(knot)};
+    }
+    double interval_s() const { return interval_s_; }
+    /** Six numbers a knot: a rotation vector in the sensor's frame, and a translation. */
+    void move(const Eigen::VectorXd& step) {
+        auto poses = trajectory_.poses();
+        for (std::size_t k = 0; k < poses.size(); ++k) {
+            const auto at = static_cast<Index>(6 * k);
+            const Matrix3d R = poses[k].linear() * rotationExp(step.segment<3>(at));
+            poses[k] = isometry(normalised(R), poses[k].translation() + step.segment<3>(at + 3));
+        }
+        trajectory_ = ScanTrajectory(trajectory_.times_s(), poses);
+    }
+
+ private:
+    double first_s_, interval_s_;
+    ScanTrajectory trajectory_;
+};
+
+/** A point of one scan, and the surface of another one next to it. */
+struct Pair {
+    Index point = 0, surface = 0;
+};
+
+/** Two of the scans: points of the one on surfaces of the other. */
+struct ScanPair {
+    const TimedScan* from = nullptr;
+    const TimedScan* to = nullptr;
+    std::size_t toNumber = 0;
+    std::vector<Pair> pairs;
+};
+
+/** Sums of the normal equations. */
+struct Sums {
+    Eigen::MatrixXd information;
+    Eigen::VectorXd gradient;
+    double weight = 0, cost = 0;
+
+    explicit Sums(Index unknowns)
+        : information(Eigen::MatrixXd::Zero(unknowns, unknowns)),
+          gradient(Eigen::VectorXd::Zero(unknowns)) {}
+};
+
+Eigen::Matrix3Xf placed(const TimedPoints& points, const PoseTable& poses) {
+    Eigen::Matrix3Xf result(3, points.points.cols());
+    for (Index i = 0; i < result.cols(); ++i)
+        result.col(i) =
+            (poses.at(points.times_s[numberOf(i)]) * points.points.col(i)).cast<float>();
+    return result;
+}
+
+/** Registration of some scans along one trajectory. */
+class Registration {
+ public:
+    Registration(const std::deque<TimedScan>& scans, const ScanTrajectory& start)
+        : scans_(scans), knots_(start) {
+        for (std::size_t to = 0; to < scans.size(); ++to)
+            for (std::size_t from = 0; from < scans.size(); ++from)
+                if (from != to) pairs_.push_back({&scans[from], &scans[to], to, {}});
+    }
+
+    const ScanTrajectory& trajectory() const { return knots_.trajectory(); }
+
+    /** Finds the nearest surfaces. */
+    void match(double reach) {
+        const PoseTable poses = table();
+        std::vector<Eigen::Matrix3Xf> surfaces(scans_.size());
+        std::vector<std::unique_ptr<KdTree>> trees(scans_.size());
+        tbb::parallel_for(std::size_t{0}, scans_.size(), [&](std::size_t i) {
+            surfaces[i] = placed(scans_[i].surfaces, poses);
+            trees[i] = std::make_unique<KdTree>(surfaces[i]);
+        });
+        tbb::parallel_for(std::size_t{0}, pairs_.size(), [&](std::size_t k) {
+            auto& pair = pairs_[k];
+            pair.pairs.clear();
+            const Eigen::Matrix3Xf points = placed(pair.from->points, poses);
+            for (Index i = 0; i < points.cols(); ++i) {
+                std::uint32_t nearest = 0;
+                float squared = 0;
+                if (trees[pair.toNumber]->nearest(points.col(i), 1, &nearest, &squared) == 1 &&
+                    squared < reach * reach)
+                    pair.pairs.push_back({i, static_cast<Index>(nearest)});
+            }
+        });
+    }
+
+    /** One Gauss-Newton step; its largest part, metres or rad. */
+    double improve(double kernel) {
+        const PoseTable poses = table();
+        std::vector<Sums> parts(pairs_.size(), Sums(unknowns()));
+        tbb::parallel_for(std::size_t{0}, pairs_.size(),
+                          [&](std::size_t k) { add(pairs_[k], poses, kernel, parts[k]); });
+        Sums sums(unknowns());
+        for (const auto& part : parts) {
+            sums.information += part.information;
+            sums.gradient += part.gradient;
+            sums.weight += part.weight;
+            sums.cost += part.cost;
+        }
+        if (sums.weight == 0) return 0;
+        constexpr double kLeast_m2 = 1e-4, kIndependentRatio = 0.16;  // neighbours err together
+        const double factor = kIndependentRatio / std::max(sums.cost / sums.weight, kLeast_m2);
+        sums.information *= factor;
+        sums.gradient *= factor;
+        addSmoothness(sums);
+        // Along an axis that nothing constrains, the trajectory stays as it is.
+        sums.information.diagonal().array() += 1;
+        constexpr double kKept = 1e8;
+        sums.information.topLeftCorner<6, 6>().diagonal().array() += kKept;
+        const Eigen::VectorXd step = -sums.information.ldlt().solve(sums.gradient);
+        knots_.move(step);
+        return step.lpNorm<Eigen::Infinity>();
+    }
+
+    /** Of all points on the surfaces of all other scans. */
+    double inlierRatio() {
+        constexpr double kFits_m = 0.1, kReach_m = 0.6;
+        match(kReach_m);
+        const PoseTable poses = table();
+        std::size_t fitting = 0, all = 0;
+        for (const auto& pair : pairs_) {
+            all += pair.from->points.times_s.size();
+            for (const auto& one : pair.pairs)
+                fitting += std::abs(residualOf(pair, one, poses).distance) < kFits_m ? 1 : 0;
+        }
+        return all > 0 ? static_cast<double>(fitting) / static_cast<double>(all) : 0;
+    }
+
+ private:
+    /** Of a point from a surface. */
+    struct Residual {
+        double distance = 0;
+        Vector3d normal, offset;  //!< of the surface; of the point from its centre; map's frame
+        Matrix3d fromPoint, fromSurface;  //!< rotations: the map's frame to the sensor's
+    };
+
+    PoseTable table() const {
+        return {knots_.trajectory(), knots_.trajectory().times_s().front(),
+                knots_.trajectory().times_s().back()};
+    }
+    Index unknowns() const { return 6 * knots_.size(); }
+
+    static Residual residualOf(const ScanPair& pair, const Pair& one, const PoseTable& poses) {
+        const Isometry3d point = poses.at(pair.from->points.times_s[numberOf(one.point)]),
+                         surface = poses.at(pair.to->surfaces.times_s[numberOf(one.surface)]);
+        Residual residual;
+        residual.normal = surface.linear() * pair.to->normals.col(one.surface);
+        residual.offset = point * pair.from->points.points.col(one.point) -
+                          surface * pair.to->surfaces.points.col(one.surface);
+        residual.distance = residual.normal.dot(residual.offset);
+        residual.fromPoint = point.linear().transpose();
+        residual.fromSurface = surface.linear().transpose();
+        return residual;
+    }
+
+    /** Geman-McClure's weights. Point and surface move in opposite directions. */
+    void add(const ScanPair& pair, const PoseTable& poses, double kernel, Sums& sums) const {
+        constexpr double kLeastWeight = 0.01;
+        for (const auto& one : pair.pairs) {
+            const Residual residual = residualOf(pair, one, poses);
+            const double ratio = residual.distance / kernel,
+                         weight = 1 / ((1 + ratio * ratio) * (1 + ratio * ratio));
+            if (weight < kLeastWeight) continue;
+            const Vector3d p = pair.from->points.points.col(one.point),
+                           q = pair.to->surfaces.points.col(one.surface),
+                           n = pair.to->normals.col(one.surface);
+            Vector6 ofPoint, ofSurface;
+            ofPoint << p.cross(residual.fromPoint * residual.normal), residual.normal;
+            ofSurface << n.cross(residual.fromSurface * residual.offset) - q.cross(n),
+                -residual.normal;
+            const Between at = knots_.between(pair.from->points.times_s[numberOf(one.point)]),
+                          on = knots_.between(pair.to->surfaces.times_s[numberOf(one.surface)]);
+            const std::array<std::pair<Index, Vector6>, 4> rows{
+                {{6 * at.knot, (1 - at.share) * ofPoint},
+                 {6 * at.knot + 6, at.share * ofPoint},
+                 {6 * on.knot, (1 - on.share) * ofSurface},
+                 {6 * on.knot + 6, on.share * ofSurface}}};
+            for (const auto& [i, row] : rows) {
+                sums.gradient.segment<6>(i) += weight * residual.distance * row;
+                for (const auto& [j, other] : rows)
+                    sums.information.block<6, 6>(i, j).noalias() +=
+                        weight * row * other.transpose();
+            }
+            sums.weight += weight;
+            sums.cost += weight * residual.distance * residual.distance;
+        }
+    }
+
+    /** The jerk is small: of a rotation about, and of a translation along each axis. */
+    void addSmoothness(Sums& sums) const {
+        constexpr double kJerk_radps3 = 500, kJerk_mps3 = 250;  // of a hand that swings
+        constexpr std::array<double, 4> kThird{-1, 3, -3, 1};   // difference of poses
+        const double cube = std::pow(knots_.interval_s(), 3);
+        Vector6 information;
+        information << Vector3d::Constant(1 / std::pow(kJerk_radps3 * cube, 2)),
+            Vector3d::Constant(1 / std::pow(kJerk_mps3 * cube, 2));
+        const auto turn = [&](Index k) {
+            return rotationLog(knots_[k].linear().transpose() * knots_[k + 1].linear());
+        };
+        for (Index k = 0; k + 3 < knots_.size(); ++k) {
+            Vector6 jerk;
+            jerk << turn(k + 2) - 2 * turn(k + 1) + turn(k),
+                knots_[k + 3].translation() - 3 * knots_[k + 2].translation() +
+                    3 * knots_[k + 1].translation() - knots_[k].translation();
+            for (Index a = 0; a < 4; ++a) {
+                const double share = kThird[numberOf(a)];
+                sums.gradient.segment<6>(6 * (k + a)) += share * information.cwiseProduct(jerk);
+                for (Index b = 0; b < 4; ++b)
+                    sums.information.block<6, 6>(6 * (k + a), 6 * (k + b)).diagonal() +=
+                        share * kThird[numberOf(b)] * information;
+            }
+        }
+    }
+
+    const std::deque<TimedScan>& scans_;
+    std::vector<ScanPair> pairs_;
+    Knots knots_;
+};
+
+/** At equal intervals from the first to the last point of the scans. */
+std::vector<double> knotTimes(double first_s, double last_s) {
+    std::vector<double> times_s;
+    for (std::size_t k = 0; k < 2 || times_s.back() < last_s; ++k)
+        times_s.push_back(first_s + static_cast<double>(k) * kInterval_s);
+    return times_s;
+}
+
+ScanTrajectory resampled(const ScanTrajectory& trajectory, double first_s, double last_s) {
+    const auto times_s = knotTimes(first_s, last_s);
+    std::vector<Isometry3d> poses;
+    poses.reserve(times_s.size());
+    for (const double time_s : times_s) poses.push_back(trajectory.at(time_s));
+    return {times_s, poses};
+}
+
+/** How far the motion is off one of constant twist, rad. */
+double unevennessOf(const ScanTrajectory& trajectory) {
+    const double first_s = trajectory.times_s().front(), last_s = trajectory.times_s().back();
+    const Isometry3d& first = trajectory.poses().front();
+    const Twist mean = Twist::of(first.inverse() * trajectory.poses().back(), last_s - first_s);
+    double most = 0;
+    for (std::size_t k = 0; k < trajectory.poses().size(); ++k) {
+        const Isometry3d even = first * mean.after(trajectory.times_s()[k] - first_s);
+        most = std::max(most, angleOf(even.linear().transpose() * trajectory.poses()[k].linear()));
+    }
+    return most;
+}
+}  // namespace
+
+TimedScan timedScanOf(const PointCloud& cloud, double time_s) {
+    constexpr double kSpacing_m = 0.5, kSurfaceSpacing_m = 0.25;
+    constexpr Index kMostPoints = 1500, kMostSurfaces = 6000;
+    TimedScan scan;
+    scan.time_s = time_s;
+    const auto [least, most] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
+    scan.first_s = time_s + double{*least};
+    scan.last_s = time_s + double{*most};
+    ScanView all;
+    all.points = cloud.points;
+    all.dynamic.resize(cloud.times_s.size());
+    scan.points = sampled(pickedOf(cloud, all, kSpacing_m), kMostPoints);
+    for (auto& point_s : scan.points.times_s) point_s += time_s;
+
+    NormalsOptions options;
+    options.voxel_size = kSurfaceSpacing_m;
+    const auto normals = paper::estimateNormals(cloud.points, options);
+    const Eigen::Matrix3Xf surfaces = sample(normals.points, kMostSurfaces);
+    scan.surfaces.points = surfaces.cast<double>();
+    scan.normals = sample(normals.directions, kMostSurfaces).cast<double>();
+    const KdTree tree(cloud.points);
+    scan.surfaces.times_s.resize(numberOf(surfaces.cols()));
+    tbb::parallel_for(Index{0}, surfaces.cols(), [&](Index i) {
+        std::uint32_t nearest = 0;
+        float squared = 0;
+        tree.nearest(surfaces.col(i), 1, &nearest, &squared);
+        scan.surfaces.times_s[numberOf(i)] = time_s + double{cloud.times_s[nearest]};
+    });
+    scan.cloud = cloud;
+    return scan;
+}
+
+Together registerTogether(const std::deque<TimedScan>& scans, const ScanTrajectory& start,
+                          double kernel) {
+    constexpr double kLastKernel_m = 0.15, kNarrower = 1.6, kLeastReach_m = 0.6, kMostReach_m = 2.5;
+    constexpr unsigned kMatchings = 3, kSteps = 3;
+    constexpr double kConverged = 0.01;  // of the kernel
+    Registration registration(scans, start);
+    for (double width = kernel;; width = std::max(width / kNarrower, kLastKernel_m)) {
+        for (unsigned matching = 0; matching < kMatchings; ++matching) {
+            registration.match(std::clamp(3 * width, kLeastReach_m, kMostReach_m));
+            double moved = 0;
+            for (unsigned i = 0; i < kSteps; ++i) {
+                const double step = registration.improve(width);
+                moved = std::max(moved, step);
+                if (step < kConverged * width) break;
+            }
+            if (moved < kConverged * width) break;
+        }
+        if (width <= kLastKernel_m) break;
+    }
+    return {registration.trajectory(), registration.inlierRatio()};
+}
+
+void ScanWindow::begin(const PointCloud& cloud, double time_s, const ScanTrajectory& trajectory) {
+    scans_.clear();
+    scans_.push_back(timedScanOf(cloud, time_s));
+    std::vector<double> times_s = trajectory.times_s();
+    for (auto& time : times_s) time += time_s;
+    trajectory_ =
+        resampled({times_s, trajectory.poses()}, scans_.back().first_s, scans_.back().last_s);
+}
+
+void ScanWindow::add(const PointCloud& cloud, double time_s) {
+    constexpr double kKernel_m = 1;
+    scans_.push_back(timedScanOf(cloud, time_s));
+    if (scans_.size() > kMostScans) scans_.pop_front();
+    auto times_s = trajectory_.times_s();
+    auto poses = trajectory_.poses();
+    while (times_s.size() > 3 && times_s[1] < scans_.front().first_s) {
+        times_s.erase(times_s.begin());
+        poses.erase(poses.begin());
+    }
+    // The acceleration goes on.
+    while (times_s.back() < scans_.back().last_s) {
+        const std::size_t n = poses.size();
+        const auto turn = [&](std::size_t k) {
+            return rotationLog(poses[k].linear().transpose() * poses[k + 1].linear());
+        };
+        const Vector3d turned = n > 2 ? 2 * turn(n - 2) - turn(n - 3) : turn(n - 2);
+        poses.push_back(isometry(poses[n - 1].linear() * rotationExp(turned),
+                                 2 * poses[n - 1].translation() - poses[n - 2].translation()));
+        times_s.push_back(times_s.back() + kInterval_s);
+    }
+    trajectory_ = registerTogether(scans_, {times_s, poses}, kKernel_m).trajectory;
+}
+
+bool ScanWindow::addSecond(const PointCloud& cloud, double time_s, const Twist& guess,
+                           bool likely) {
+    constexpr double kNear_m = 1, kFar_m = 2, kUneven_rad = 1.5 * M_PI / 180, kBetter = 1.1;
+    constexpr double kRate_radps = 1.5;
+    scans_.push_back(timedScanOf(cloud, time_s));
+    const auto times_s = knotTimes(scans_.front().first_s, scans_.back().last_s);
+    const Isometry3d first = trajectory_.poses().front();
+    const auto from = [&](const Twist& twist) {
+        return ScanTrajectory::even(times_s, first, twist);
+    };
+    Together best = registerTogether(scans_, from(guess), kNear_m);
+    if (likely && unevennessOf(best.trajectory) < kUneven_rad) return false;
+    constexpr std::size_t kAll = 27;  // three about each axis
+    std::vector<Together> found(kAll);
+    tbb::parallel_for(std::size_t{0}, kAll, [&](std::size_t i) {
+        Twist twist;
+        twist.turning =
+            kRate_radps * (Vector3d(static_cast<double>(i % 3), static_cast<double>(i / 3 % 3),
+                                    static_cast<double>(i / 9)) -
+                           Vector3d::Ones());
+        found[i] = registerTogether(scans_, from(twist), kFar_m);
+    });
+    for (auto& one : found)
+        if (one.inlierRatio > best.inlierRatio) best = std::move(one);
+    trajectory_ = best.trajectory;
+    const double even = Registration(scans_, from(guess)).inlierRatio();
+    return unevennessOf(trajectory_) > kUneven_rad && best.inlierRatio > kBetter * even;
+}
+
+void ScanWindow::moveTo(const Isometry3d& pose) {
+    const Isometry3d moved = pose * trajectory_.at(scans_.back().time_s).inverse();
+    auto poses = trajectory_.poses();
+    for (auto& one : poses)
+        one = isometry(normalised(moved.linear() * one.linear()), moved * one.translation());
+    trajectory_ = {trajectory_.times_s(), poses};
+}
+}  // namespace delio::odometry
