@@ -201,13 +201,13 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAsPredicted(const PointCloud& cloud
         if (best.placement.isLikely && !isShaken() && !isSecondScan()) return best;
         if (!best.placement.isLikely && !isGuessing()) best = attempt(true);
     }
-    if (isTogether && extendWindow(cloud, since_s, best.placement)) {
-        Attempt together = attemptInWindow(cloud, since_s, step);
-        together.extrapolated = pose_ * extrapolation.at(duration_s);
-        if (wasTogether && !together.placement.isLikely) best = attempt(true);
-        if (!best.isBetterThan(together)) return together;
-        endWindow();
-    }
+    const bool isExtended = isTogether && extendWindow(cloud, since_s, best.placement);
+    if (!isExtended) return wasTogether ? attempt(true) : best;
+    Attempt together = attemptInWindow(cloud, since_s, step);
+    together.extrapolated = pose_ * extrapolation.at(duration_s);
+    if (wasTogether && !together.placement.isLikely) best = attempt(true);
+    if (!best.isBetterThan(together)) return together;
+    endWindow();
     return best;
 }
 

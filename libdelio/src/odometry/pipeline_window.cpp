@@ -11,8 +11,8 @@ bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const 
     const double time_s = arrivals_.sinceStart_s();
     if (!window_.isEmpty()) {
         if (window_.isFull()) start_.reset();
-        window_.add(cloud, time_s);
-        return true;
+        if (!window_.add(cloud, time_s)) endWindow();
+        return !window_.isEmpty();
     }
     if (const auto* first = std::get_if<FirstScan>(&state_); first && first->skewed) {
         const auto& at = reference_.pose;
@@ -25,7 +25,7 @@ bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const 
             window_.clear();
     } else if (latest_) {
         window_.begin(latest_->cloud, latest_->time_s, latest_->trajectory);
-        window_.add(cloud, time_s);
+        if (!window_.add(cloud, time_s)) endWindow();
     }
     return !window_.isEmpty();
 }

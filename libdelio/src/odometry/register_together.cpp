@@ -168,13 +168,14 @@ class Registration {
         return step.lpNorm<Eigen::Infinity>();
     }
 
-    /** Of all points on the surfaces of all other scans. */
+    /** Of the latest scan's points on the surfaces of the other scans, and of theirs on its. */
     double inlierRatio() {
         constexpr double kFits_m = 0.1, kReach_m = 0.6;
         match(kReach_m);
         const PoseTable poses = table();
         std::size_t fitting = 0, all = 0;
         for (const auto& pair : pairs_) {
+            if (pair.from != &scans_.back() && pair.to != &scans_.back()) continue;
             all += pair.from->points.times_s.size();
             for (const auto& one : pair.pairs)
                 fitting += std::abs(residualOf(pair, one, poses).distance) < kFits_m ? 1 : 0;
@@ -359,6 +360,7 @@ Together registerTogether(const std::deque<TimedScan>& scans, const ScanTrajecto
 
 void ScanWindow::begin(const PointCloud& cloud, double time_s, const ScanTrajectory& trajectory) {
     scans_.clear();
+    inlierRatio_ = 0;
     scans_.push_back(timedScanOf(cloud, time_s));
     std::vector<double> times_s = trajectory.times_s();
     for (auto& time : times_s) time += time_s;
@@ -366,34 +368,68 @@ void ScanWindow::begin(const PointCloud& cloud, double time_s, const ScanTraject
         resampled({times_s, trajectory.poses()}, scans_.back().first_s, scans_.back().last_s);
 }
 
-void ScanWindow::add(const PointCloud& cloud, double time_s) {
-    constexpr double kKernel_m = 1;
-    scans_.push_back(timedScanOf(cloud, time_s));
-    if (scans_.size() > kMostScans) scans_.pop_front();
-    auto times_s = trajectory_.times_s();
-    auto poses = trajectory_.poses();
-    while (times_s.size() > 3 && times_s[1] < scans_.front().first_s) {
-        times_s.erase(times_s.begin());
-        poses.erase(poses.begin());
-    }
-    // The acceleration goes on.
-    while (times_s.back() < scans_.back().last_s) {
+namespace {
+/** The better of `best` and register(rate) from many rates of turn (rad/s). */
+template <class Register>
+Together bestOf(Together best, const Register& registerFrom) {
+    constexpr std::size_t kAll = 27;  // three about each axis
+    constexpr double kRate_radps = 1.5;
+    std::vector<Together> found(kAll);
+    tbb::parallel_for(std::size_t{0}, kAll, [&](std::size_t i) {
+        const Vector3d steps(static_cast<double>(i % 3), static_cast<double>(i / 3 % 3),
+                             static_cast<double>(i / 9));
+        found[i] = registerFrom(kRate_radps * (steps - Vector3d::Ones()));
+    });
+    for (auto& one : found)
+        if (one.inlierRatio > best.inlierRatio) best = std::move(one);
+    return best;
+}
+
+/** `trajectory` until `last_s` at least: its acceleration goes on, and `more` is added to its rate
+ * of turn (rad/s). */
+ScanTrajectory extended(const ScanTrajectory& trajectory, double last_s, const Vector3d& more) {
+    auto times_s = trajectory.times_s();
+    auto poses = trajectory.poses();
+    const auto turn = [&](std::size_t k) {
+        return rotationLog(poses[k].linear().transpose() * poses[k + 1].linear());
+    };
+    for (Vector3d added = kInterval_s * more; times_s.back() < last_s; added.setZero()) {
         const std::size_t n = poses.size();
-        const auto turn = [&](std::size_t k) {
-            return rotationLog(poses[k].linear().transpose() * poses[k + 1].linear());
-        };
-        const Vector3d turned = n > 2 ? 2 * turn(n - 2) - turn(n - 3) : turn(n - 2);
+        const Vector3d turned = (n > 2 ? 2 * turn(n - 2) - turn(n - 3) : turn(n - 2)) + added;
         poses.push_back(isometry(poses[n - 1].linear() * rotationExp(turned),
                                  2 * poses[n - 1].translation() - poses[n - 2].translation()));
         times_s.push_back(times_s.back() + kInterval_s);
     }
-    trajectory_ = registerTogether(scans_, {times_s, poses}, kKernel_m).trajectory;
+    return {times_s, poses};
+}
+
+}  // namespace
+
+bool ScanWindow::add(const PointCloud& cloud, double time_s) {
+    constexpr double kKernel_m = 1, kUsual = 0.8, kLeast = 0.3;
+    scans_.push_back(timedScanOf(cloud, time_s));
+    if (scans_.size() > kMostScans) scans_.pop_front();
+    const auto& known_s = trajectory_.times_s();
+    std::size_t old = 0;
+    while (old + 3 < known_s.size() && known_s[old + 1] < scans_.front().first_s) ++old;
+    const auto first = static_cast<std::ptrdiff_t>(old);
+    const ScanTrajectory known({known_s.begin() + first, known_s.end()},
+                               {trajectory_.poses().begin() + first, trajectory_.poses().end()});
+    const double last_s = scans_.back().last_s;
+    Together best = registerTogether(scans_, extended(known, last_s, Vector3d::Zero()), kKernel_m);
+    if (best.inlierRatio < kUsual * inlierRatio_)
+        best = bestOf(std::move(best), [&](const Vector3d& rate) {
+            return registerTogether(scans_, extended(known, last_s, rate), kKernel_m);
+        });
+    trajectory_ = std::move(best.trajectory);
+    const bool fits = best.inlierRatio > kLeast * inlierRatio_;
+    inlierRatio_ = best.inlierRatio;
+    return fits;
 }
 
 bool ScanWindow::addSecond(const PointCloud& cloud, double time_s, const Twist& guess,
                            bool likely) {
     constexpr double kNear_m = 1, kFar_m = 2, kUneven_rad = 1.5 * M_PI / 180, kBetter = 1.1;
-    constexpr double kRate_radps = 1.5;
     scans_.push_back(timedScanOf(cloud, time_s));
     const auto times_s = knotTimes(scans_.front().first_s, scans_.back().last_s);
     const Isometry3d first = trajectory_.poses().front();
@@ -402,19 +438,13 @@ bool ScanWindow::addSecond(const PointCloud& cloud, double time_s, const Twist& 
     };
     Together best = registerTogether(scans_, from(guess), kNear_m);
     if (likely && unevennessOf(best.trajectory) < kUneven_rad) return false;
-    constexpr std::size_t kAll = 27;  // three about each axis
-    std::vector<Together> found(kAll);
-    tbb::parallel_for(std::size_t{0}, kAll, [&](std::size_t i) {
+    best = bestOf(std::move(best), [&](const Vector3d& rate) {
         Twist twist;
-        twist.turning =
-            kRate_radps * (Vector3d(static_cast<double>(i % 3), static_cast<double>(i / 3 % 3),
-                                    static_cast<double>(i / 9)) -
-                           Vector3d::Ones());
-        found[i] = registerTogether(scans_, from(twist), kFar_m);
+        twist.turning = rate;
+        return registerTogether(scans_, from(twist), kFar_m);
     });
-    for (auto& one : found)
-        if (one.inlierRatio > best.inlierRatio) best = std::move(one);
     trajectory_ = best.trajectory;
+    inlierRatio_ = best.inlierRatio;
     const double even = Registration(scans_, from(guess)).inlierRatio();
     return unevennessOf(trajectory_) > kUneven_rad && best.inlierRatio > kBetter * even;
 }

@@ -25,7 +25,8 @@ TimedScan timedScanOf(const PointCloud& cloud, double time_s);
 /** Scans that are registered to each other. */
 struct Together {
     ScanTrajectory trajectory{Twist{}};  //!< of the sensor, seconds since the start of the drive
-    double inlierRatio = 0;  //!< of all points on the surfaces of all other scans, 0 to 1
+    /** Of the latest scan's points on the surfaces of the other scans, and of theirs on its. */
+    double inlierRatio = 0;
 };
 
 /** Finds the trajectory on which scans fit each other: continuous-time registration of all points
@@ -50,8 +51,8 @@ class ScanWindow {
      *  the scan's). */
     void begin(const PointCloud& cloud, double time_s, const ScanTrajectory& trajectory);
     /** Registers a scan together with those before it, from where their motion leads, and drops the
-     *  oldest of more than four. */
-    void add(const PointCloud& cloud, double time_s);
+     *  oldest of more than four. False where far fewer points fit than before. */
+    bool add(const PointCloud& cloud, double time_s);
     /** The same of the second scan, while nothing is known of the motion: from `guess` (of the
      *  first scan, maps the sensor's frame at its time to that when it began), and where the motion
      *  changes during the two scans or `guess` is not `likely`, from many rates of turn. False
@@ -68,5 +69,6 @@ class ScanWindow {
  private:
     std::deque<TimedScan> scans_;
     ScanTrajectory trajectory_{Twist{}};  //!< a pose every 20 ms
+    double inlierRatio_ = 0;              //!< of the latest registration
 };
 }  // namespace delio::odometry
