@@ -206,7 +206,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAsPredicted(const PointCloud& cloud
     Attempt together = attemptInWindow(cloud, since_s, step);
     together.extrapolated = pose_ * extrapolation.at(duration_s);
     if (wasTogether && !together.placement.isLikely) best = attempt(true);
-    if (!best.isBetterThan(together)) return together;
+    if (together.placement.estimate.valid && !best.isBetterThan(together)) return together;
     endWindow();
     return best;
 }

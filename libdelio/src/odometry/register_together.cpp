@@ -1,6 +1,7 @@
 #include "odometry/register_together.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -385,19 +386,33 @@ Together bestOf(Together best, const Register& registerFrom) {
     return best;
 }
 
-/** `trajectory` until `last_s` at least: its acceleration goes on, and `more` is added to its rate
- * of turn (rad/s). */
-ScanTrajectory extended(const ScanTrajectory& trajectory, double last_s, const Vector3d& more) {
+/** How a sensor may turn on. */
+struct TurningOn {
+    double acceleration = 0;           //!< this part of its acceleration goes on, 0 to 1
+    Vector3d more = Vector3d::Zero();  //!< added to its rate of turn, rad/s
+};
+
+/** `trajectory`, of some poses at least, until `last_s` or longer. Its rate of turn is that of the
+ *  last three intervals, its acceleration that since the three before. */
+ScanTrajectory extended(const ScanTrajectory& trajectory, double last_s, const TurningOn& turning) {
+    constexpr std::size_t kIntervals = 3;
     auto times_s = trajectory.times_s();
     auto poses = trajectory.poses();
-    const auto turn = [&](std::size_t k) {
-        return rotationLog(poses[k].linear().transpose() * poses[k + 1].linear());
+    const std::size_t last = poses.size() - 1, over = std::min(kIntervals, last / 2);
+    const auto mean = [&](std::size_t end) -> Vector3d {
+        return rotationLog(poses[end - over].linear().transpose() * poses[end].linear()) /
+               static_cast<double>(over);
     };
-    for (Vector3d added = kInterval_s * more; times_s.back() < last_s; added.setZero()) {
-        const std::size_t n = poses.size();
-        const Vector3d turned = (n > 2 ? 2 * turn(n - 2) - turn(n - 3) : turn(n - 2)) + added;
-        poses.push_back(isometry(poses[n - 1].linear() * rotationExp(turned),
-                                 2 * poses[n - 1].translation() - poses[n - 2].translation()));
+    const double intervals = static_cast<double>(over);
+    const Vector3d acceleration =
+        turning.acceleration / intervals * (mean(last) - mean(last - over));
+    const Vector3d moved =
+        (poses[last].translation() - poses[last - over].translation()) / intervals;
+    Vector3d turned = mean(last) + kInterval_s * turning.more + (intervals - 1) / 2 * acceleration;
+    while (times_s.back() < last_s) {
+        turned += acceleration;
+        poses.push_back(isometry(poses.back().linear() * rotationExp(turned),
+                                 poses.back().translation() + moved));
         times_s.push_back(times_s.back() + kInterval_s);
     }
     return {times_s, poses};
@@ -416,10 +431,21 @@ bool ScanWindow::add(const PointCloud& cloud, double time_s) {
     const ScanTrajectory known({known_s.begin() + first, known_s.end()},
                                {trajectory_.poses().begin() + first, trajectory_.poses().end()});
     const double last_s = scans_.back().last_s;
-    Together best = registerTogether(scans_, extended(known, last_s, Vector3d::Zero()), kKernel_m);
+    const auto registerFrom = [&](const TurningOn& turning) {
+        return registerTogether(scans_, extended(known, last_s, turning), kKernel_m);
+    };
+    Together best, steady;
+    tbb::parallel_invoke(
+        [&] {
+            best = registerFrom({1, Vector3d::Zero()});
+        },
+        [&] {
+            steady = registerFrom({0, Vector3d::Zero()});
+        });
+    if (steady.inlierRatio > best.inlierRatio) best = std::move(steady);
     if (best.inlierRatio < kUsual * inlierRatio_)
-        best = bestOf(std::move(best), [&](const Vector3d& rate) {
-            return registerTogether(scans_, extended(known, last_s, rate), kKernel_m);
+        best = bestOf(std::move(best), [&](const Vector3d& more) {
+            return registerFrom({0, more});
         });
     trajectory_ = std::move(best.trajectory);
     const bool fits = best.inlierRatio > kLeast * inlierRatio_;
