@@ -2,6 +2,8 @@
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "cli.h"
 #include "delio/core/error.h"
@@ -13,10 +15,14 @@
 #include "delio/slam/options.h"
 #include "delio/version.h"
 #include "odometry/paper_odometry.h"
+#include "odometry/preprocess.h"
 #include "option_sections.h"
 #include "overlap.h"
+#include "paper/line_cloud.h"
+#include "paper/mean_shift.h"
 #include "paper/normals.h"
 #include "paper/outlier_removal.h"
+#include "paper/sphere.h"
 #include "picture/line_scenes.h"
 
 namespace {
@@ -27,8 +33,9 @@ constexpr std::size_t kScans = 4;  // as many as the paper's figure shows
 /** Files of the figures, as .3Dscene and .png. */
 std::vector<std::string> figureFiles() {
     std::vector<std::string> files;
-    for (const std::string name : {"normals_sphere", "outlier_removal", "line_cloud",
-                                   "line_matches_before", "line_matches_after"})
+    for (const std::string name :
+         {"scanner", "cloud", "sphere", "normals_sphere", "outlier_removal", "mean_shift",
+          "line_bin", "line_cloud", "line_matches_before", "line_matches_after"})
         for (const char* kind : {".3Dscene", ".png"}) files.push_back(name + kind);
     return files;
 }
@@ -126,6 +133,149 @@ void drawOutlierRemoval(const Scan& scan, const PaperOdometryOptions& options,
                  picture::sphereView(steps.size()));
 }
 
+/** The mean shift of a scan, whether its pattern needs it or not. */
+void drawMeanShift(const Scan& scan, const PaperOdometryOptions& options, const Figures& figures) {
+    const auto normals = normalsOf(scan, options);
+    const auto seeds = paper::sphereGrid(options.meanShift.seed_spacing_deg);
+    const auto modes = paper::seekModes(normals.directions, options.meanShift);
+    const auto pattern =
+        paper::patternOfModes(normals, modes, options.meanShift, options.outliers).directions;
+    figures.save("mean_shift",
+                 *picture::meanShiftScene(normals.directions, seeds.cast<float>(), modes,
+                                          options.meanShift.window_deg, pattern),
+                 picture::sphereView(3));
+}
+
+/** For a column of print; seen from above, +x to the right. */
+picture::SnapshotOptions columnView() {
+    picture::SnapshotOptions view = picture::topView();
+    view.width_px = 1600;
+    view.height_px = 900;
+    view.azimuth_deg = -90;
+    view.marks = 4;
+    return view;
+}
+
+double azimuthOf(const Eigen::Vector3f& p) { return std::atan2(p.y(), p.x()); }
+
+/** A scan as lines are drawn in it. */
+struct RingedScan {
+    RingedScan(const Scan& scan, const PaperOdometryOptions& options) {
+        auto cloud = odometry::preprocess(scan, options.scan);
+        rings = odometry::neighbouringRings(cloud);
+        points = std::move(cloud.points);
+    }
+
+    std::uint16_t ringOf(Eigen::Index i) const { return rings[static_cast<std::size_t>(i)]; }
+
+    Eigen::Matrix3Xf points;           // metres, sensor's frame
+    std::vector<std::uint16_t> rings;  // of each point, from the top
+};
+
+/** The scanner with the beam of each ring that points ahead, the cloud around it, its sphere. */
+void drawTeaser(const Scan& scan, const PaperOdometryOptions& options, const Figures& figures) {
+    const RingedScan ringed(scan, options);
+    std::map<std::uint16_t, Eigen::Vector3f> ahead;
+    std::vector<Eigen::Index> near;
+    constexpr float kNear_m = 40;
+    for (Eigen::Index i = 0; i < ringed.points.cols(); ++i) {
+        const Eigen::Vector3f p = ringed.points.col(i);
+        const auto beam = ahead.emplace(ringed.ringOf(i), p).first;
+        if (std::abs(azimuthOf(p)) < std::abs(azimuthOf(beam->second))) beam->second = p;
+        if (p.head<2>().norm() < kNear_m) near.push_back(i);
+    }
+    constexpr double kAhead = 0.02;  // rad
+    Eigen::Matrix3Xf beams(3, 0);
+    for (const auto& [ring, p] : ahead) {
+        if (std::abs(azimuthOf(p)) > kAhead) continue;
+        beams.conservativeResize(3, beams.cols() + 1);
+        beams.rightCols(1) = p;
+    }
+    picture::SnapshotOptions view = columnView();
+    view.ortho = false;
+    view.elevation_deg = 12;
+    figures.save("scanner", *picture::scannerScene(beams), view);
+    view.elevation_deg = 40;
+    figures.save("cloud", *picture::cloudScene(ringed.points(Eigen::all, near)), view);
+    const auto pattern = paper::removeOutliers(normalsOf(scan, options), options.outliers);
+    figures.save("sphere", *picture::sphereScene({pattern.directions}, {}), picture::sphereView(1));
+}
+
+/** Number of the line that shows best why short ones are kept: the longest one near the sensor
+ *  that still fits into the picture. Throws Error if there are no lines. */
+Eigen::Index tellingLine(const paper::LineCloud& drawn) {
+    if (drawn.lengths.size() == 0) throw Error("the first scan has no lines between its rings");
+    constexpr float kNear_m = 6, kFar_m = 14, kLongest_m = 4;
+    Eigen::Index best = 0;
+    float longest = 0;
+    for (Eigen::Index i = 0; i < drawn.lengths.size(); ++i) {
+        const float range = drawn.midpoints.col(i).head<2>().norm(), length = drawn.lengths[i];
+        if (range < kNear_m || range > kFar_m || length > kLongest_m || length <= longest) continue;
+        best = i;
+        longest = length;
+    }
+    return best;
+}
+
+/** One bin of the polar grid, the rings around it, and the lines drawn and kept there. */
+void drawBin(const Scan& scan, const PaperOdometryOptions& options, const Figures& figures) {
+    const RingedScan ringed(scan, options);
+    auto all = options.lines;
+    all.kept = all.drawn;
+    all.max_length = 1e6;
+    const auto drawn = paper::drawLines(ringed.points, ringed.rings, all);
+    const Eigen::Index line = tellingLine(drawn);
+    const Eigen::Vector3f begin =
+        drawn.midpoints.col(line) - drawn.lengths[line] / 2 * drawn.directions.col(line);
+    Eigen::Index first = 0;  // point of the line
+    (ringed.points.colwise() - begin).colwise().squaredNorm().minCoeff(&first);
+    const double width = 2 * M_PI / options.lines.sectors;
+    const double middle = (std::floor((azimuthOf(begin) + M_PI) / width) + 0.5) * width - M_PI;
+    const Eigen::Matrix3d ahead =
+        Eigen::AngleAxisd(-middle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const Eigen::Matrix3Xf turned = ahead.cast<float>() * ringed.points;
+
+    std::vector<Eigen::Index> shown, upper, lower;
+    std::vector<std::uint16_t> rings;
+    for (Eigen::Index i = 0; i < turned.cols(); ++i) {
+        const double sectors = std::abs(azimuthOf(turned.col(i))) / width;  // from the middle
+        const int ring = ringed.ringOf(i) - ringed.ringOf(first);
+        if (sectors > 1.5 || ring < -1 || ring > 2) continue;
+        shown.push_back(i);
+        rings.push_back(ringed.ringOf(i));
+        if (sectors < 0.5 && ring == 0) upper.push_back(i);
+        if (sectors < 0.5 && ring == 1) lower.push_back(i);
+    }
+    std::vector<Eigen::Index> corners;
+    const auto byAzimuth = [&](Eigen::Index a, Eigen::Index b) {
+        return azimuthOf(turned.col(a)) < azimuthOf(turned.col(b));
+    };
+    for (const auto* ring : {&upper, &lower}) {
+        const auto [right, left] = std::minmax_element(ring->begin(), ring->end(), byAzimuth);
+        if (ring->empty()) continue;
+        corners.insert(ring == &upper ? corners.end() : corners.begin(), {*right, *left});
+    }
+    if (corners.size() == 4) std::swap(corners[0], corners[1]);  // around the bin
+    const Eigen::Matrix3Xf some = ringed.points(Eigen::all, shown);
+    figures.save(
+        "line_bin",
+        *picture::binScene(turned(Eigen::all, shown), turned(Eigen::all, corners),
+                           paper::rotated(paper::drawLines(some, rings, all), ahead),
+                           paper::rotated(paper::drawLines(some, rings, options.lines), ahead)),
+        columnView());
+}
+
+/** Lines with midpoints so near to a place, seen from above. */
+paper::LineCloud within(const paper::LineCloud& lines, const Eigen::Vector3d& place,
+                        double radius_m) {
+    std::vector<Eigen::Index> inside;
+    for (Eigen::Index i = 0; i < lines.lengths.size(); ++i) {
+        const Eigen::Vector3d away = lines.midpoints.col(i).cast<double>() - place;
+        if (away.head<2>().norm() < radius_m) inside.push_back(i);
+    }
+    return picture::someOf(lines, inside);
+}
+
 /** The line cloud of a scan, and the pairs with the next one's before and after registration. */
 void drawLines(const std::vector<Scan>& scans, const PaperOdometryOptions& options,
                const Figures& figures) {
@@ -137,13 +287,20 @@ void drawLines(const std::vector<Scan>& scans, const PaperOdometryOptions& optio
     const Eigen::Isometry3d& pose = second.increment.pose;
     const paper::LineCloud& from = linesOf(first);
     const paper::LineCloud to = paper::rotated(linesOf(second), pose.linear());
-    picture::SnapshotOptions view = picture::topView();
-    view.zoom_m = 60;
-    figures.save("line_cloud", *picture::lineScene(from), view);
-    view.zoom_m = 30;
-    figures.save("line_matches_before", *picture::matchScene(from, to, Eigen::Vector3d::Zero()),
-                 view);
-    figures.save("line_matches_after", *picture::matchScene(from, to, pose.translation()), view);
+    constexpr double kFar_m = 25, kNear_m = 5;
+    const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+    const auto all = picture::lineScene(within(from, none, kFar_m));
+    picture::addCircle(*all, none, kFar_m);
+    figures.save("line_cloud", *all, columnView());
+    const Eigen::Vector3d place = from.midpoints.col(tellingLine(from)).cast<double>();
+    const auto drawMatches = [&](const std::string& name, const Eigen::Vector3d& t) {
+        const auto scene =
+            picture::matchScene(within(from, place, kNear_m), within(to, place - t, kNear_m), t);
+        picture::addCircle(*scene, place, kNear_m);
+        figures.save(name, *scene, columnView());
+    };
+    drawMatches("line_matches_before", none);
+    drawMatches("line_matches_after", pose.translation());
 }
 
 /** Options of the paper's stages from the command line. Throws Error as Options does. */
@@ -162,8 +319,13 @@ cli::HelpText help() {
     help.sections = cli::optionSections(stagesOf(Options::ofProfile("paper")));
     help.sections.erase(help.sections.begin());  // the odometry cannot be chosen
     help.writes = {
+        {"scanner", "scanner with one beam per ring"},
+        {"cloud", "point cloud of the first scan"},
+        {"sphere", "its pattern of normals on the sphere"},
         {"normals_sphere", "pattern of normals on the sphere, per scan"},
         {"outlier_removal", "the same for the first scan, after each round of outlier removal"},
+        {"mean_shift", "seeds, windows and modes of the mean shift in the first scan"},
+        {"line_bin", "rings, one bin, lines kept and rejected in the first scan"},
         {"line_cloud", "line cloud of the first scan"},
         {"line_matches_before", "matched lines of two scans before registration"},
         {"line_matches_after", "the same after registration; all as .png and .3Dscene"}};
@@ -210,7 +372,10 @@ int main(int argc, char** argv) {
         const auto scans = readScans(*reader, input.getValue(), scan.getValue(), every.getValue());
         Figures figures(output.getValue());
         drawPatterns(scans, options, figures);
+        drawTeaser(scans[0], options, figures);
         drawOutlierRemoval(scans[0], options, figures);
+        drawMeanShift(scans[0], options, figures);
+        drawBin(scans[0], options, figures);
         drawLines(scans, options, figures);
         figures.finish();
         return cli::kExitSuccess;
