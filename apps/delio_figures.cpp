@@ -192,6 +192,8 @@ void drawTeaser(const Scan& scan, const PaperOdometryOptions& options, const Fig
         beams.rightCols(1) = p;
     }
     picture::SnapshotOptions view = columnView();
+    view.width_px = 800;
+    view.height_px = 600;
     view.ortho = false;
     view.elevation_deg = 12;
     figures.save("scanner", *picture::scannerScene(beams), view);

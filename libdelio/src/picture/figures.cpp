@@ -279,7 +279,7 @@ COpenGLScene::Ptr binScene(const Eigen::Matrix3Xf& points, const Eigen::Matrix3X
         set->setVerticesPointSize(width_px);
         scene->insert(set);
     };
-    add(drawn, 0, kRed, 0.7F);
+    add(drawn, 0, kRed, kWidth_px / 2);
     add(kept, 0.1, kGreen, kWidth_px);
     auto bin = wideLines(kBlue, 2 * kWidth_px);
     const Eigen::Vector3d above(0, 0, 0.2);
