@@ -203,18 +203,21 @@ void drawTeaser(const Scan& scan, const PaperOdometryOptions& options, const Fig
     figures.save("sphere", *picture::sphereScene({pattern.directions}, {}), picture::sphereView(1));
 }
 
-/** Number of the line that shows best why short ones are kept: the longest one near the sensor
- *  that still fits into the picture. Throws Error if there are no lines. */
+/** Number of the line that shows best why short ones are kept: a long one, if possible from the
+ *  ground near the sensor. Throws Error if there are no lines. */
 Eigen::Index tellingLine(const paper::LineCloud& drawn) {
     if (drawn.lengths.size() == 0) throw Error("the first scan has no lines between its rings");
-    constexpr float kNear_m = 6, kFar_m = 14, kLongest_m = 4;
+    constexpr float kNear_m = 6, kFar_m = 14, kLongest_m = 4, kDown = 0.1F;
     Eigen::Index best = 0;
-    float longest = 0;
+    float most = 0;
     for (Eigen::Index i = 0; i < drawn.lengths.size(); ++i) {
-        const float range = drawn.midpoints.col(i).head<2>().norm(), length = drawn.lengths[i];
-        if (range < kNear_m || range > kFar_m || length > kLongest_m || length <= longest) continue;
+        const Eigen::Vector3f middle = drawn.midpoints.col(i);
+        const float range = middle.head<2>().norm();
+        const bool isGood = range > kNear_m && range < kFar_m && middle.z() < -kDown * range;
+        const float worth = drawn.lengths[i] * (isGood ? 10 : 1);
+        if (drawn.lengths[i] > kLongest_m || worth <= most) continue;
         best = i;
-        longest = length;
+        most = worth;
     }
     return best;
 }
@@ -289,16 +292,16 @@ void drawLines(const std::vector<Scan>& scans, const PaperOdometryOptions& optio
     const Eigen::Isometry3d& pose = second.increment.pose;
     const paper::LineCloud& from = linesOf(first);
     const paper::LineCloud to = paper::rotated(linesOf(second), pose.linear());
-    constexpr double kFar_m = 25, kNear_m = 5;
+    const double scale = odometry::scaleOf(scans[0]), far_m = 25 * scale, near_m = 5 * scale;
     const Eigen::Vector3d none = Eigen::Vector3d::Zero();
-    const auto all = picture::lineScene(within(from, none, kFar_m));
-    picture::addCircle(*all, none, kFar_m);
+    const auto all = picture::lineScene(within(from, none, far_m));
+    picture::addCircle(*all, none, far_m);
     figures.save("line_cloud", *all, columnView());
     const Eigen::Vector3d place = from.midpoints.col(tellingLine(from)).cast<double>();
     const auto drawMatches = [&](const std::string& name, const Eigen::Vector3d& t) {
         const auto scene =
-            picture::matchScene(within(from, place, kNear_m), within(to, place - t, kNear_m), t);
-        picture::addCircle(*scene, place, kNear_m);
+            picture::matchScene(within(from, place, near_m), within(to, place - t, near_m), t);
+        picture::addCircle(*scene, place, near_m);
         figures.save(name, *scene, columnView());
     };
     drawMatches("line_matches_before", none);

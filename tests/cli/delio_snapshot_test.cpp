@@ -110,6 +110,23 @@ TEST_F(SnapshotTool, EveryOptionChangesThePicture) {
         EXPECT_NE(render(option), plain) << option[0];
 }
 
+TEST_F(SnapshotTool, LettersOfPrintAreLarger) {
+    const auto legendOf = [&](const std::string& marks) {  // height, pixels
+        const auto result =
+            runTool("delio-snapshot", {"-i", at("map.ply"), "-o", at("p.png"), "--force", "--size",
+                                       "600x400", "--marks", marks, "--background", "white"});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        mrpt::img::CImage image;
+        EXPECT_TRUE(image.loadFromFile(at("p.png")));
+        int highest = 0;  // of the colour bar, which is to the left of everything
+        for (int row = 0; row < 400; ++row) highest += image.at<std::uint8_t>(20, row, 0) < 200;
+        return highest;
+    };
+    const int usual = legendOf("1");
+    EXPECT_GT(usual, 60);
+    EXPECT_NEAR(legendOf("2"), 2 * usual, 20);
+}
+
 TEST_F(SnapshotTool, OrbitWritesAsManyPictures) {
     const auto result = runTool("delio-snapshot", {"-i", at("map.3Dscene"), "-o", at("round.png"),
                                                    "--orbit", "3", "--size", "120x90"});

@@ -305,7 +305,7 @@ COpenGLScene::Ptr cloudScene(const Eigen::Matrix3Xf& points) {
         const TColor& c = colours.ofPoints[i];
         cloud->insertPoint({p.x(), p.y(), p.z(), c.R, c.G, c.B});
     }
-    cloud->setPointSize(3);
+    cloud->setPointSize(2);
     auto scene = emptyScene();
     scene->insert(cloud);
     return scene;
