@@ -54,8 +54,8 @@ TEST(DelioFigures, MakesASceneAndAPictureOfEachStage) {
                                                                  {"mean_shift", 0.004},
                                                                  {"line_bin", 0.01},
                                                                  {"line_cloud", 0.05},
-                                                                 {"line_matches_before", 0.1},
-                                                                 {"line_matches_after", 0.1}};
+                                                                 {"line_matches_before", 0.05},
+                                                                 {"line_matches_after", 0.05}};
     for (const auto& [name, share] : figures) {
         EXPECT_TRUE(picture::loadScene(out + "/" + name + ".3Dscene"));
         mrpt::img::CImage picture;

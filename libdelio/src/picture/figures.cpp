@@ -72,7 +72,7 @@ mrpt::opengl::CSetOfLines::Ptr globeLines() {
 TColor seenAt(const Eigen::Vector3f& n, const TColor& colour) {
     static const double kElevation = kSphereElevation_deg * M_PI / 180;
     if (double{n.z()} * std::sin(kElevation) >= double{n.x()} * std::cos(kElevation)) return colour;
-    const auto pale = [](int v) { return static_cast<std::uint8_t>(255 - (255 - v) * 2 / 5); };
+    const auto pale = [](int v) { return static_cast<std::uint8_t>(255 - (255 - v) / 2); };
     return {pale(colour.R), pale(colour.G), pale(colour.B)};
 }
 

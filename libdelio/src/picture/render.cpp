@@ -211,7 +211,7 @@ void PreparedScene::addScaleBar(const ScaleBar& bar, LegendLayer& layer) const {
     const auto pixels = [&](int px) { return px * double{enlarged_}; };
     const double bottom = pixels(static_cast<int>(options_.height_px) - bar.bottom_px);
     const double left = pixels(bar.right_px - bar.width_px), height = pixels(bar.height_px);
-    layer.addPlate(left, bottom, pixels(bar.width_px), 2.5 * height);  // up to the text
+    layer.addPlate(left, bottom, pixels(bar.width_px), 2.5 * height + double{font.vfont_scale});
     layer.addText(left, bottom + 2.5 * height, bar.text, font);
 }
 

@@ -111,6 +111,7 @@ TEST(FiguresScene, KeptLinesCoverThoseDrawn) {
         const auto scene = picture::binScene(outline, outline, lines, kept);
         auto view = picture::topView();
         view.width_px = 400;  // no legend, whose letters are coloured too
+        view.marks = 6;
         const auto picture = picture::picture(*scene, view);
         std::pair<int, int> count;
         for (unsigned y = 0; y < picture.getHeight(); ++y)
