@@ -112,6 +112,7 @@ void drawPatterns(const std::vector<Scan>& scans, const PaperOdometryOptions& op
     }
     figures.save("normals_sphere", *picture::sphereScene(patterns, captions),
                  picture::sphereView(patterns.size()));
+    figures.save("sphere", *picture::sphereScene({patterns[0]}, {}), picture::sphereView(1));
 }
 
 /** All normals of a scan, and what outlier removal leaves of them in steps of about as many rounds.
@@ -164,23 +165,24 @@ struct RingedScan {
         auto cloud = odometry::preprocess(scan, options.scan);
         rings = odometry::neighbouringRings(cloud);
         points = std::move(cloud.points);
+        scale = odometry::scaleOf(scan);
     }
 
     std::uint16_t ringOf(Eigen::Index i) const { return rings[static_cast<std::size_t>(i)]; }
 
     Eigen::Matrix3Xf points;           // metres, sensor's frame
     std::vector<std::uint16_t> rings;  // of each point, from the top
+    double scale = 1;                  // of the place: 1 for streets, less for rooms
 };
 
-/** The scanner with the beam of each ring that points ahead, the cloud around it, its sphere. */
-void drawTeaser(const Scan& scan, const PaperOdometryOptions& options, const Figures& figures) {
-    const RingedScan ringed(scan, options);
+/** The scanner with the beam of each ring that points ahead, and the cloud around it. */
+void drawTeaser(const RingedScan& scan, const Figures& figures) {
     std::map<std::uint16_t, Eigen::Vector3f> ahead;
     std::vector<Eigen::Index> near;
     constexpr float kNear_m = 40;
-    for (Eigen::Index i = 0; i < ringed.points.cols(); ++i) {
-        const Eigen::Vector3f p = ringed.points.col(i);
-        const auto beam = ahead.emplace(ringed.ringOf(i), p).first;
+    for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
+        const Eigen::Vector3f p = scan.points.col(i);
+        const auto beam = ahead.emplace(scan.ringOf(i), p).first;
         if (std::abs(azimuthOf(p)) < std::abs(azimuthOf(beam->second))) beam->second = p;
         if (p.head<2>().norm() < kNear_m) near.push_back(i);
     }
@@ -198,75 +200,99 @@ void drawTeaser(const Scan& scan, const PaperOdometryOptions& options, const Fig
     view.elevation_deg = 12;
     figures.save("scanner", *picture::scannerScene(beams), view);
     view.elevation_deg = 40;
-    figures.save("cloud", *picture::cloudScene(ringed.points(Eigen::all, near)), view);
-    const auto pattern = paper::removeOutliers(normalsOf(scan, options), options.outliers);
-    figures.save("sphere", *picture::sphereScene({pattern.directions}, {}), picture::sphereView(1));
+    figures.save("cloud", *picture::cloudScene(scan.points(Eigen::all, near)), view);
 }
 
-/** Number of the line that shows best why short ones are kept: a long one, if possible from the
- *  ground near the sensor. Throws Error if there are no lines. */
-Eigen::Index tellingLine(const paper::LineCloud& drawn) {
-    if (drawn.lengths.size() == 0) throw Error("the first scan has no lines between its rings");
-    constexpr float kNear_m = 6, kFar_m = 14, kLongest_m = 4, kDown = 0.1F;
-    Eigen::Index best = 0;
-    float most = 0;
-    for (Eigen::Index i = 0; i < drawn.lengths.size(); ++i) {
-        const Eigen::Vector3f middle = drawn.midpoints.col(i);
-        const float range = middle.head<2>().norm();
-        const bool isGood = range > kNear_m && range < kFar_m && middle.z() < -kDown * range;
-        const float worth = drawn.lengths[i] * (isGood ? 10 : 1);
-        if (drawn.lengths[i] > kLongest_m || worth <= most) continue;
-        best = i;
-        most = worth;
+/** A bin of the polar grid: a sector between ring `ring` and the next one. */
+struct Bin {
+    int ring = -1;
+    double azimuth = 0;  // of its middle, rad
+    double range_m = 0;  // of its middle
+    Eigen::Vector3d middle() const {
+        return {range_m * std::cos(azimuth), range_m * std::sin(azimuth), 0};
     }
-    return best;
+};
+
+/** The bin that shows lines best: both its rings are even and lie some way apart, as they do on
+ *  the ground, and around it are steps. Any bin where there is none like that. Throws Error if
+ * there are no bins. */
+Bin tellingBin(const RingedScan& scan, int sectors) {
+    const int rings =
+        scan.rings.empty() ? 0 : 1 + *std::max_element(scan.rings.begin(), scan.rings.end());
+    Eigen::MatrixXd near = Eigen::MatrixXd::Constant(rings, sectors, 1e9);
+    Eigen::MatrixXd far = Eigen::MatrixXd::Zero(rings, sectors);
+    for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
+        const Eigen::Vector3f p = scan.points.col(i);
+        const double range = double{p.head<2>().norm()};
+        const int sector =
+            std::min(sectors - 1, static_cast<int>((azimuthOf(p) / (2 * M_PI) + 0.5) * sectors));
+        near(scan.ringOf(i), sector) = std::min(near(scan.ringOf(i), sector), range);
+        far(scan.ringOf(i), sector) = std::max(far(scan.ringOf(i), sector), range);
+    }
+    const auto spread = [&](int ring, int sector) {
+        sector = (sector + sectors) % sectors;
+        return ring < 0 || ring >= rings ? -1 : far(ring, sector) - near(ring, sector);
+    };
+    const double m = scan.scale;
+    Bin bin;
+    double best = -1e9;
+    for (int ring = 0; ring + 1 < rings; ++ring)
+        for (int sector = 0; sector < sectors; ++sector) {
+            if (spread(ring, sector) < 0 || spread(ring + 1, sector) < 0) continue;
+            const double apart = std::abs(near(ring, sector) - near(ring + 1, sector));
+            const bool isGood = near(ring + 1, sector) > 6 * m && far(ring, sector) < 14 * m &&
+                                apart > 0.5 * m && apart < 2 * m && spread(ring, sector) < m &&
+                                spread(ring + 1, sector) < m;
+            double steps = isGood ? 100 : 0;
+            for (int other = ring - 1; other <= ring + 2; ++other)
+                for (const int side : {-1, 0, 1}) {
+                    const double step = spread(other, sector + side);
+                    steps +=
+                        step < 0 || step > 4 * m ? -4 * m : step;  // missing, or too large to show
+                }
+            if (steps <= best) continue;
+            best = steps;
+            bin = {ring, ((sector + 0.5) / sectors - 0.5) * 2 * M_PI,
+                   (near(ring, sector) + near(ring + 1, sector)) / 2};
+        }
+    if (bin.ring < 0) throw Error("the first scan has no two rings beside each other");
+    return bin;
 }
 
 /** One bin of the polar grid, the rings around it, and the lines drawn and kept there. */
-void drawBin(const Scan& scan, const PaperOdometryOptions& options, const Figures& figures) {
-    const RingedScan ringed(scan, options);
-    auto all = options.lines;
-    all.kept = all.drawn;
-    all.max_length = 1e6;
-    const auto drawn = paper::drawLines(ringed.points, ringed.rings, all);
-    const Eigen::Index line = tellingLine(drawn);
-    const Eigen::Vector3f begin =
-        drawn.midpoints.col(line) - drawn.lengths[line] / 2 * drawn.directions.col(line);
-    Eigen::Index first = 0;  // point of the line
-    (ringed.points.colwise() - begin).colwise().squaredNorm().minCoeff(&first);
-    const double width = 2 * M_PI / options.lines.sectors;
-    const double middle = (std::floor((azimuthOf(begin) + M_PI) / width) + 0.5) * width - M_PI;
+void drawBin(const RingedScan& scan, const Bin& bin, const LineCloudOptions& options,
+             const Figures& figures) {
     const Eigen::Matrix3d ahead =
-        Eigen::AngleAxisd(-middle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    const Eigen::Matrix3Xf turned = ahead.cast<float>() * ringed.points;
-
-    std::vector<Eigen::Index> shown, upper, lower;
+        Eigen::AngleAxisd(-bin.azimuth, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const Eigen::Matrix3Xf turned = ahead.cast<float>() * scan.points;
+    const double width = 2 * M_PI / options.sectors;
+    std::vector<Eigen::Index> shown;
     std::vector<std::uint16_t> rings;
+    std::vector<std::vector<Eigen::Index>> inside(2);  // of the bin's rings, in order of azimuth
     for (Eigen::Index i = 0; i < turned.cols(); ++i) {
         const double sectors = std::abs(azimuthOf(turned.col(i))) / width;  // from the middle
-        const int ring = ringed.ringOf(i) - ringed.ringOf(first);
+        const int ring = scan.ringOf(i) - bin.ring;
         if (sectors > 1.5 || ring < -1 || ring > 2) continue;
         shown.push_back(i);
-        rings.push_back(ringed.ringOf(i));
-        if (sectors < 0.5 && ring == 0) upper.push_back(i);
-        if (sectors < 0.5 && ring == 1) lower.push_back(i);
+        rings.push_back(scan.ringOf(i));
+        if (sectors < 0.5 && (ring == 0 || ring == 1))
+            inside[static_cast<std::size_t>(ring)].push_back(i);
     }
-    std::vector<Eigen::Index> corners;
-    const auto byAzimuth = [&](Eigen::Index a, Eigen::Index b) {
-        return azimuthOf(turned.col(a)) < azimuthOf(turned.col(b));
-    };
-    for (const auto* ring : {&upper, &lower}) {
-        const auto [right, left] = std::minmax_element(ring->begin(), ring->end(), byAzimuth);
-        if (ring->empty()) continue;
-        corners.insert(ring == &upper ? corners.end() : corners.begin(), {*right, *left});
-    }
-    if (corners.size() == 4) std::swap(corners[0], corners[1]);  // around the bin
-    const Eigen::Matrix3Xf some = ringed.points(Eigen::all, shown);
+    for (auto& ring : inside)
+        std::sort(ring.begin(), ring.end(), [&](Eigen::Index a, Eigen::Index b) {
+            return azimuthOf(turned.col(a)) < azimuthOf(turned.col(b));
+        });
+    std::vector<Eigen::Index> outline = inside[0];
+    outline.insert(outline.end(), inside[1].rbegin(), inside[1].rend());
+    auto all = options;
+    all.kept = all.drawn;
+    all.max_length = 1e6;
+    const Eigen::Matrix3Xf points = scan.points(Eigen::all, shown);
     figures.save(
         "line_bin",
-        *picture::binScene(turned(Eigen::all, shown), turned(Eigen::all, corners),
-                           paper::rotated(paper::drawLines(some, rings, all), ahead),
-                           paper::rotated(paper::drawLines(some, rings, options.lines), ahead)),
+        *picture::binScene(turned(Eigen::all, shown), turned(Eigen::all, outline),
+                           paper::rotated(paper::drawLines(points, rings, all), ahead),
+                           paper::rotated(paper::drawLines(points, rings, options), ahead)),
         columnView());
 }
 
@@ -282,8 +308,8 @@ paper::LineCloud within(const paper::LineCloud& lines, const Eigen::Vector3d& pl
 }
 
 /** The line cloud of a scan, and the pairs with the next one's before and after registration. */
-void drawLines(const std::vector<Scan>& scans, const PaperOdometryOptions& options,
-               const Figures& figures) {
+void drawLines(const std::vector<Scan>& scans, const Bin& bin, double scale,
+               const PaperOdometryOptions& options, const Figures& figures) {
     odometry::PaperOdometry method(options);
     const Step first = method.process(scans[0]), second = method.process(scans[1]);
     const auto linesOf = [](const Step& step) -> const paper::LineCloud& {
@@ -292,12 +318,12 @@ void drawLines(const std::vector<Scan>& scans, const PaperOdometryOptions& optio
     const Eigen::Isometry3d& pose = second.increment.pose;
     const paper::LineCloud& from = linesOf(first);
     const paper::LineCloud to = paper::rotated(linesOf(second), pose.linear());
-    const double scale = odometry::scaleOf(scans[0]), far_m = 25 * scale, near_m = 5 * scale;
+    const double far_m = 25 * scale, near_m = 5 * scale;
     const Eigen::Vector3d none = Eigen::Vector3d::Zero();
     const auto all = picture::lineScene(within(from, none, far_m));
     picture::addCircle(*all, none, far_m);
     figures.save("line_cloud", *all, columnView());
-    const Eigen::Vector3d place = from.midpoints.col(tellingLine(from)).cast<double>();
+    const Eigen::Vector3d place = bin.middle();
     const auto drawMatches = [&](const std::string& name, const Eigen::Vector3d& t) {
         const auto scene =
             picture::matchScene(within(from, place, near_m), within(to, place - t, near_m), t);
@@ -377,11 +403,13 @@ int main(int argc, char** argv) {
         const auto scans = readScans(*reader, input.getValue(), scan.getValue(), every.getValue());
         Figures figures(output.getValue());
         drawPatterns(scans, options, figures);
-        drawTeaser(scans[0], options, figures);
         drawOutlierRemoval(scans[0], options, figures);
         drawMeanShift(scans[0], options, figures);
-        drawBin(scans[0], options, figures);
-        drawLines(scans, options, figures);
+        const RingedScan ringed(scans[0], options);
+        const Bin bin = tellingBin(ringed, static_cast<int>(options.lines.sectors));
+        drawTeaser(ringed, figures);
+        drawBin(ringed, bin, options.lines, figures);
+        drawLines(scans, bin, ringed.scale, options, figures);
         figures.finish();
         return cli::kExitSuccess;
     });
