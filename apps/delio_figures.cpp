@@ -214,7 +214,7 @@ struct Bin {
 };
 
 /** The bin that shows lines best: both its rings are even and lie some way apart, as they do on
- *  the ground, and around it are steps. Any bin where there is none like that. Throws Error if
+ *  the ground, and around it are steps. Where no bin is like that, any bin. Throws Error if
  * there are no bins. */
 Bin tellingBin(const RingedScan& scan, int sectors) {
     const int rings =

@@ -39,13 +39,13 @@ COpenGLScene::Ptr emptyScene() {
 }
 
 mrpt::opengl::CSetOfLines::Ptr linesOf(const paper::LineCloud& lines, const Eigen::Vector3d& t,
-                                       const TColor& colour) {
+                                       const TColor& colour, double piece_m = kPiece_m) {
     auto set = wideLines(colour, kWidth_px);
     for (Eigen::Index i = 0; i < lines.midpoints.cols(); ++i) {
         const Eigen::Vector3d half =
             (lines.lengths[i] / 2 * lines.directions.col(i)).cast<double>();
         const Eigen::Vector3d middle = lines.midpoints.col(i).cast<double>() + t;
-        appendWide(*set, middle - half, middle + half, kPiece_m);
+        appendWide(*set, middle - half, middle + half, piece_m);
     }
     return set;
 }
@@ -270,12 +270,12 @@ COpenGLScene::Ptr binScene(const Eigen::Matrix3Xf& points, const Eigen::Matrix3X
     auto dots = mrpt::opengl::CPointCloudColoured::Create();
     for (Eigen::Index i = 0; i < points.cols(); ++i)
         dots->insertPoint({points(0, i), points(1, i), points(2, i), 90, 90, 90});
-    dots->setPointSize(3);
+    dots->setPointSize(2);
     scene->insert(dots);
     // The kept ones are among all; they cover themselves from above.
     const auto add = [&](const paper::LineCloud& lines, double above_m, const TColor& colour,
                          float width_px) {
-        const auto set = linesOf(lines, {0, 0, above_m}, colour);
+        const auto set = linesOf(lines, {0, 0, above_m}, colour, kPiece_m / 4);
         set->setVerticesPointSize(width_px);
         scene->insert(set);
     };
