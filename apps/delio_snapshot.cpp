@@ -113,7 +113,8 @@ struct Arguments {
     SizeConstraint sizes;
     ColourConstraint colours;
     RangeConstraint degrees{"DEG", -360, 360}, elevations{"DEG", -90, 90};
-    RangeConstraint metres{"M", 1e-3, 1e6}, pixels{"P", 0.1, 100}, strengths{"S", 0, 4};
+    RangeConstraint metres{"M", 1e-3, 1e6}, pixels{"P", 0.1, 100}, strengths{"S", 0, 4},
+        factors{"F", 0.2, 20};
     std::vector<std::string> colormapNames = map::colormapNames();
     std::vector<std::string> valueNames = map::colourByNames();
     Words colormaps{colormapNames}, values{valueNames};
@@ -121,7 +122,7 @@ struct Arguments {
     Text input, output, size;
     Number azimuth, elevation, zoom;
     TCLAP::SwitchArg ortho;
-    Number pointSize, shading;
+    Number pointSize, shading, marks;
     Text colormap, colourBy, background;
     TCLAP::ValueArg<delio::cli::Count> frames;
     TCLAP::SwitchArg force, verbose;
@@ -150,6 +151,9 @@ Arguments::Arguments()
           false, 0, &pixels, cmd),
       shading("", "shading", "Strength of edge shading (eye-dome lighting); 0: off", false, 1,
               &strengths, cmd),
+      marks("", "marks",
+            "Factor of the size of letters, lines and symbols; 4: legible in a column of print",
+            false, 1, &factors, cmd),
       colormap("", "colormap", "Colour map", false, "turbo", &colormaps, cmd),
       colourBy("", "color-by", "Value shown by the colours", false, "height", &values, cmd),
       background("", "background", "Background colour (default: the scene's)", false, "", &colours,
@@ -170,6 +174,7 @@ picture::SnapshotOptions Arguments::view() {
     if (zoom.isSet()) options.zoom_m = zoom.getValue();
     if (pointSize.isSet()) options.pointSize_px = static_cast<float>(pointSize.getValue());
     options.shading = shading.getValue();
+    options.marks = marks.getValue();
     options.background = colourIn(background.getValue());
     return options;
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/img/CImage.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -108,6 +109,27 @@ TEST_F(SnapshotTool, EveryOptionChangesThePicture) {
                                                    {"--color-by", "intensity"},
                                                    {"--colormap", "gray"}})
         EXPECT_NE(render(option), plain) << option[0];
+}
+
+TEST_F(SnapshotTool, MarksMakeTheLegendLarger) {
+    // Height of the colour bar in a column of the picture, pixels.
+    const auto barAt = [&](unsigned column, const std::string& marks) {
+        const auto result =
+            runTool("delio-snapshot", {"-i", at("map.ply"), "-o", at("p.png"), "--force", "--size",
+                                       "600x400", "--marks", marks, "--background", "white"});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        mrpt::img::CImage image;
+        EXPECT_TRUE(image.loadFromFile(at("p.png")));
+        int height = 0;
+        for (unsigned row = 0; row < 400; ++row) {
+            const auto* bgr = image.ptr<std::uint8_t>(column, row);
+            height += std::min({bgr[0], bgr[1], bgr[2]}) < 200;
+        }
+        return height;
+    };
+    const int usual = barAt(14, "1");
+    EXPECT_GT(usual, 60);
+    EXPECT_NEAR(barAt(28, "2"), 2 * usual, 30);
 }
 
 TEST_F(SnapshotTool, OrbitWritesAsManyPictures) {

@@ -74,6 +74,17 @@ TEST_F(KittiBenchmark, ScoresDrawsAndGoesOn) {
     EXPECT_EQ(again.out, first.out);
 }
 
+TEST_F(KittiBenchmark, DrawsOtherProgramsOnASequenceWithoutTruth) {
+    const fs::path other = folder_ / "other program";
+    fs::create_directories(other);
+    fs::copy_file(root() / "poses/07.txt", other / "14.txt");
+    fs::copy_file(root() / "poses/07.txt", other / "07.txt");
+    const auto result = run({"--sequences", "07 14", "--compare", "another=" + other.string()});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_TRUE(has(result.out, "another")) << result.out;
+    EXPECT_TRUE(fs::exists(out() / "figures/methods.png"));
+}
+
 TEST_F(KittiBenchmark, ASequenceThatFailsIsNamedAndTheOthersGoOn) {
     test::writeText(root() / "sequences/00/velodyne/000003.bin", "cut off");
     const auto result = run();

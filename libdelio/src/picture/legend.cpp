@@ -160,23 +160,8 @@ void LegendLayer::addBar(const mrpt::opengl::COpenGLViewport& bar, double x, dou
 
 void LegendLayer::addPlate(double x, double y, double width, double height) {
     const auto pixel = [](double v) { return static_cast<int>(std::lround(v)); };
-    Plate plate{pixel(x - around_px_), pixel(y - around_px_), pixel(x + width + around_px_),
-                pixel(y + height + around_px_)};
-    const auto touches = [&](const Plate& other) {
-        return plate.left < other.right && other.left < plate.right && plate.bottom < other.top &&
-               other.bottom < plate.top;
-    };
-    for (auto other = plates_.begin(); other != plates_.end();) {
-        if (!touches(*other)) {
-            ++other;
-            continue;
-        }
-        plate = {std::min(plate.left, other->left), std::min(plate.bottom, other->bottom),
-                 std::max(plate.right, other->right), std::max(plate.top, other->top)};
-        plates_.erase(other);
-        other = plates_.begin();  // the larger one may touch those that were passed
-    }
-    plates_.push_back(plate);
+    plates_.push_back({pixel(x - around_px_), pixel(y - around_px_), pixel(x + width + around_px_),
+                       pixel(y + height + around_px_)});
 }
 
 bool LegendLayer::isInRows(int lowest, int highest) const {

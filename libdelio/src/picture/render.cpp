@@ -136,7 +136,7 @@ PreparedScene::~PreparedScene() {
 float PreparedScene::mapPointSize(float stored_px, const View& view) const {
     // Neighbours touch, and overlap a little as they lie at random; larger ones would hide poles.
     constexpr double kOverlap = 1.2, kLargest = 8;
-    const double least_px = double{stored_px} * sizeOfMarks(options_);
+    const double least_px = double{stored_px} * sizeOfPoints(options_);
     const double spacing_px = mapSpacing_m(scene_) / view.metresAcross * options_.width_px;
     return static_cast<float>(std::clamp(kOverlap * spacing_px, least_px, kLargest * least_px)) *
            enlarged_;
@@ -211,7 +211,7 @@ void PreparedScene::addScaleBar(const ScaleBar& bar, LegendLayer& layer) const {
     const auto pixels = [&](int px) { return px * double{enlarged_}; };
     const double bottom = pixels(static_cast<int>(options_.height_px) - bar.bottom_px);
     const double left = pixels(bar.right_px - bar.width_px), height = pixels(bar.height_px);
-    layer.addPlate(left, bottom, pixels(bar.width_px), height);
+    layer.addPlate(left, bottom, pixels(bar.width_px), 2.5 * height + double{font.vfont_scale});
     layer.addText(left, bottom + 2.5 * height, bar.text, font);
 }
 

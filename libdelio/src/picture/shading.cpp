@@ -94,7 +94,7 @@ void toLogDepth(CMatrixFloat& depth, const View& view, const SnapshotOptions& op
 }
 
 EyeDome eyeDomeOf(const SnapshotOptions& options, unsigned enlarged) {
-    const double marks = sizeOfMarks(options);
+    const double marks = sizeOfPoints(options);
     EyeDome shading;
     shading.radius_px = marks * enlarged;
     // In small pictures a radius is a wider angle, across which slopes make larger differences.

@@ -18,10 +18,15 @@ constexpr const char* kMapName = "map";
 /** The name of the object that holds the points removed from the map. */
 constexpr const char* kRemovedName = "removed";
 
-/** How much larger than in a picture of 1080 lines marks, texts and points are. */
-inline double sizeOfMarks(const SnapshotOptions& options) {
+/** How much larger than in a picture of 1080 lines the points of a map are. */
+inline double sizeOfPoints(const SnapshotOptions& options) {
     const double lines = std::min(options.width_px / 16.0 * 9, double(options.height_px));
     return std::clamp(lines / 1080, 0.6, 4.0);
+}
+
+/** The same of marks and texts. */
+inline double sizeOfMarks(const SnapshotOptions& options) {
+    return options.marks * sizeOfPoints(options);
 }
 
 /** True if the picture is large enough for a legend. */

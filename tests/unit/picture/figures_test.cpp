@@ -70,6 +70,79 @@ TEST(FiguresScene, LinesAndTheirPairsAreDrawn) {
     EXPECT_NO_THROW(picture::lineScene({Eigen::Matrix3Xf(3, 0), Eigen::Matrix3Xf(3, 0), {}, 0}));
 }
 
+TEST(FiguresScene, NormalsOnTheFarSideOfTheSphereArePaler) {
+    const auto darkest = [](const Eigen::Vector3f& normal) {
+        const Eigen::Matrix3Xf pattern = normal.normalized().replicate(1, 5);
+        const auto view = picture::sphereView(1);
+        const auto picture = picture::picture(*picture::sphereScene({pattern}, {}), view);
+        int least = 255;
+        for (unsigned y = 0; y < picture.getHeight(); ++y)
+            for (unsigned x = 0; x < picture.getWidth(); ++x)
+                least = std::min<int>(least, picture.at<uint8_t>(x, y, 2));
+        return least;
+    };
+    EXPECT_LT(darkest({-1, 0.2F, 0.1F}) + 40, darkest({1, 0.2F, -0.1F}));
+}
+
+TEST(FiguresScene, MeanShiftShowsSeedsWindowsAndModes) {
+    const Eigen::Matrix3Xf none(3, 0), seeds = Eigen::Vector3f(-1, 0, 0).replicate(1, 3);
+    paper::Mode mode;
+    mode.direction = Eigen::Vector3d(-1, 0, 0.3).normalized();
+    const auto drawn = [&](const std::vector<paper::Mode>& modes) {
+        const auto scene = picture::meanShiftScene(none, seeds, modes, 20, none);
+        return colouredByThird(picture::picture(*scene, picture::sphereView(3)));
+    };
+    const auto with = drawn({mode}), without = drawn({});
+    EXPECT_EQ(with[0], 0);  // seeds are black
+    EXPECT_GT(with[1], 100);
+    EXPECT_GT(with[2], 20);
+    EXPECT_GT(with[1], with[2]);
+    EXPECT_EQ(without[1] + without[2], 0);
+}
+
+TEST(FiguresScene, KeptLinesCoverThoseDrawn) {
+    paper::LineCloud lines;
+    lines.midpoints = Eigen::Vector3f(5, 0, 0);
+    lines.directions = Eigen::Vector3f(0, 1, 0);
+    lines.lengths = Eigen::VectorXf::Constant(1, 2);
+    const Eigen::Matrix3Xf outline =
+        (Eigen::Matrix3Xf(3, 4) << 4, 6, 6, 4, -1, -1, 1, 1, 0, 0, 0, 0).finished();
+    const auto redAndGreen = [&](const paper::LineCloud& kept) {
+        const auto scene = picture::binScene(outline, outline, lines, kept);
+        auto view = picture::topView();
+        view.width_px = 400;  // no legend, whose letters are coloured too
+        view.marks = 6;
+        const auto picture = picture::picture(*scene, view);
+        std::pair<int, int> count;
+        for (unsigned y = 0; y < picture.getHeight(); ++y)
+            for (unsigned x = 0; x < picture.getWidth(); ++x) {
+                const auto p = pixel(picture, static_cast<int>(x), static_cast<int>(y));
+                count.first += p[0] > 150 && p[1] < 100;
+                count.second += p[1] > 120 && p[0] < 100 && p[2] < 100;
+            }
+        return count;
+    };
+    const auto rejected = redAndGreen({Eigen::Matrix3Xf(3, 0), Eigen::Matrix3Xf(3, 0), {}, 0});
+    EXPECT_GT(rejected.first, 50);
+    EXPECT_EQ(rejected.second, 0);
+    const auto kept = redAndGreen(lines);
+    EXPECT_EQ(kept.first, 0);
+    EXPECT_GT(kept.second, 50);
+}
+
+TEST(FiguresScene, TheScannerHasABeamForEachDirection) {
+    const auto coloured = [](const Eigen::Matrix3Xf& beams) {
+        const auto by = colouredByThird(picture::picture(*picture::scannerScene(beams), {}));
+        return by[0] + by[1] + by[2];
+    };
+    Eigen::Matrix3Xf beams(3, 2);
+    beams << 1, 1, 0, 0, 0, -1;
+    EXPECT_EQ(coloured(Eigen::Matrix3Xf(3, 0)), 0);
+    const int one = coloured(beams.leftCols(1));
+    EXPECT_GT(one, 100);
+    EXPECT_GT(coloured(beams), one);
+}
+
 TEST(PaperStages, DrawEachScanAndPairItsLinesWithThoseOfTheScanBefore) {
     picture::PaperStages stages{PaperOdometryOptions()};
     test::Noise noise;

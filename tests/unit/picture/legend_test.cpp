@@ -28,16 +28,16 @@ std::size_t covered(const picture::LegendLayer& layer, int lowest) {
     return count;
 }
 
-TEST(LegendLayer, PlatesReachBeyondWhatIsOnThemAndNeighboursAreOne) {
+TEST(LegendLayer, PlatesReachBeyondWhatIsOnThemAndNoFurther) {
     picture::LegendLayer one({0, 0, 0}, 1);
     one.addPlate(5, 5, 4, 2);
     EXPECT_EQ(covered(one, 0), 6U * 4U);
     picture::LegendLayer two({0, 0, 0}, 1);
     two.addPlate(5, 5, 10, 2);
-    two.addPlate(5, 8, 4, 2);  // a shorter line above: the plate is a rectangle all the same
-    EXPECT_EQ(covered(two, 0), 12U * 7U);
+    two.addPlate(5, 8, 4, 2);  // a shorter line above, whose plate overlaps in one row
+    EXPECT_EQ(covered(two, 0), 12U * 4U + 6U * 3U);
     two.addPlate(30, 20, 2, 2);
-    EXPECT_EQ(covered(two, 0), 12U * 7U + 4U * 4U);
+    EXPECT_EQ(covered(two, 0), 12U * 4U + 6U * 3U + 4U * 4U);
 }
 
 TEST(LegendLayer, BandsOfThePictureHaveTheirPartOfIt) {

@@ -14,7 +14,8 @@
 namespace delio::picture {
 /** Patterns of normals (unit vectors), each on a unit sphere of its own, side by side from left to
  *  right, coloured by their place on the sphere so that a pattern can be followed from one to the
- *  next; a caption each. In the axes of the sensor: x away from the viewer of sphereView(). */
+ *  next; a caption each. In the axes of the sensor: x away from the viewer of sphereView(), for
+ * which the far side is paler. */
 mrpt::opengl::COpenGLScene::Ptr sphereScene(const std::vector<Eigen::Matrix3Xf>& patterns,
                                             const std::vector<std::string>& captions);
 

@@ -29,6 +29,8 @@ struct SnapshotOptions {
     /** Of the points of a map where others in front of them are near: edge shading. 0: off; 1:
      *  default. Scenes without a map are never shaded. */
     double shading = 1;
+    /** Factor of the size of letters, lines and symbols; 4: legible in a column of print. */
+    double marks = 1;
 };
 
 /** The longest side of a picture, pixels. */
