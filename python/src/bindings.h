@@ -5,6 +5,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -71,6 +72,10 @@ Options optionsOf(const std::string& profile, const py::object& recording,
 /** A path, a folder of delio-slam, an (N, 4, 4) array, or a pair of such an array and stamps.
  * Error, which calls it `name`, for everything else. */
 io::Trajectory trajectoryOf(const py::handle& object, const std::string& name);
+
+/** An optional path: None is an empty text. */
+using OptionalPath = std::optional<std::filesystem::path>;
+inline std::string textOf(const OptionalPath& path) { return path ? path->string() : ""; }
 
 /** The scans of a recording, as Python iterates over them. */
 struct Scans {

@@ -19,7 +19,7 @@ struct RunArguments {
     fs::path input, output;
     std::size_t start = 0, count = 0, every = 1;
     std::string truthFrame;
-    fs::path truth;
+    std::string truth;
     bool pictures = true, force = false;
     py::object progress;
 };
@@ -43,8 +43,7 @@ void report(const py::object& progress, std::size_t done) {
 /** Processes scans as delio-slam does: the next one is read while this one is registered. Returns
  *  what Python raised meanwhile. */
 std::exception_ptr process(const RunArguments& arguments, io::ScanReader& reader, Reading now,
-                           run::Run& run) {
-    double read_ms = 0;
+                           double read_ms, run::Run& run) {
     try {
         for (std::size_t done = 1; now; ++done) {
             std::future<Reading> next;
@@ -72,7 +71,7 @@ void checkOutput(const RunArguments& arguments, const run::RunSettings& settings
     if (arguments.truthFrame != "cam0" && arguments.truthFrame != "vehicle")
         throw Error("'ground_truth_frame' must be 'cam0' or 'vehicle'");
     const run::RunFolder folder(settings.folder);
-    cli::refuseOverlap({arguments.input.string(), arguments.truth.string(), settings.storedMap},
+    cli::refuseOverlap({arguments.input.string(), arguments.truth, settings.storedMap},
                        folder.files());
     std::error_code ignored;
     if (!arguments.force && fs::exists(arguments.output) &&
@@ -84,13 +83,15 @@ void checkOutput(const RunArguments& arguments, const run::RunSettings& settings
 /** The record of a drive whose results are written. */
 run::RunRecord runDrive(const RunArguments& arguments, io::ScanReader& reader,
                         const Options& options, const run::RunSettings& settings) {
+    Stopwatch watch;
     auto first = read(reader, arguments.start);
+    const double read_ms = watch.lap_ms();
     if (!first) throw Error("'" + arguments.input.string() + "' contains no LiDAR scans there");
     run::Run run(options, settings);
     for (const auto& warning : reader.recording().warnings) run.warn(warning);
-    run.readSideFiles(reader.calibration(), reader.truth(), arguments.truth.string(),
+    run.readSideFiles(reader.calibration(), reader.truth(), arguments.truth,
                       arguments.truthFrame == "cam0");
-    const auto raised = process(arguments, reader, std::move(first), run);
+    const auto raised = process(arguments, reader, std::move(first), read_ms, run);
     if (run.record().rows.empty()) throw Error(run.record().fault);
     run.finish(!raised && run.record().fault.empty());
     const std::string fault =
@@ -177,27 +178,27 @@ void bindRun(py::module_& module) {
         "run",
         [](const fs::path& input, const fs::path& output, const std::string& profile,
            std::size_t start, std::size_t count, std::size_t every, const std::string& label,
-           const fs::path& sensorFile, const fs::path& images, const fs::path& truth,
-           const std::string& truthFrame, const fs::path& map, const py::object& initialPose,
+           const OptionalPath& sensorFile, const OptionalPath& images, const OptionalPath& truth,
+           const std::string& truthFrame, const OptionalPath& map, const py::object& initialPose,
            bool extend, bool loops, bool graph, bool buildMap, bool keepDynamic, bool pictures,
            bool force, const py::object& progress, const py::kwargs& options) {
             run::RunSettings settings;
-            settings.storedMap = map.string();
+            settings.storedMap = textOf(map);
             settings.extend = extend;
             settings.loops = loops;
             settings.graph = graph;
             settings.map = buildMap;
             settings.keepDynamic = keepDynamic;
-            return runOf(
-                {input, output, start, count, every, truthFrame, truth, pictures, force, progress},
-                profile, {input.string(), label, images.string(), sensorFile.string()}, settings,
-                initialPose, options);
+            return runOf({input, output, start, count, every, truthFrame, textOf(truth), pictures,
+                          force, progress},
+                         profile, {input.string(), label, textOf(images), textOf(sensorFile)},
+                         settings, initialPose, options);
         },
         py::arg("input"), py::arg("output"), py::arg("profile") = "accurate", py::kw_only(),
         py::arg("start") = 0, py::arg("count") = 0, py::arg("every") = 1,
-        py::arg("sensor_label") = "", py::arg("sensor_file") = fs::path(),
-        py::arg("images") = fs::path(), py::arg("ground_truth") = fs::path(),
-        py::arg("ground_truth_frame") = "cam0", py::arg("map") = fs::path(),
+        py::arg("sensor_label") = "", py::arg("sensor_file") = py::none(),
+        py::arg("images") = py::none(), py::arg("ground_truth") = py::none(),
+        py::arg("ground_truth_frame") = "cam0", py::arg("map") = py::none(),
         py::arg("initial_pose") = py::none(), py::arg("extend") = false, py::arg("loops") = true,
         py::arg("graph") = true, py::arg("build_map") = true, py::arg("keep_dynamic") = false,
         py::arg("pictures") = true, py::arg("force") = false, py::arg("progress") = py::none(),

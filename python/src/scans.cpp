@@ -175,16 +175,15 @@ void bindScans(py::module_& module) {
     module.def(
         "open_scans",
         [](const std::filesystem::path& path, const std::string& label,
-           const std::filesystem::path& sensorFile, const std::filesystem::path& images) {
+           const OptionalPath& sensorFile, const OptionalPath& images) {
             const py::gil_scoped_release release;
             auto scans = std::make_unique<Scans>();
             scans->path = path.string();
-            scans->in = io::openScans({path.string(), label, images.string(), sensorFile.string()});
+            scans->in = io::openScans({path.string(), label, textOf(images), textOf(sensorFile)});
             return scans;
         },
         py::arg("path"), py::kw_only(), py::arg("sensor_label") = "",
-        py::arg("sensor_file") = std::filesystem::path(),
-        py::arg("images") = std::filesystem::path(),
+        py::arg("sensor_file") = py::none(), py::arg("images") = py::none(),
         R"(Opens a recording and returns its Scans; everything that `delio-slam -i` reads.
 
 path: rawlog, KITTI folder, folder of .pcd, .ply, .bin, .txt or .csv, ROS 1 or 2 bag, MCAP, or pcap

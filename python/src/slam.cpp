@@ -102,14 +102,15 @@ void bindSlam(py::module_& module) {
     py::class_<PythonSlam> slam(module, "Slam", kSlamText);
     slam.def(
         py::init([](const std::string& profile, const py::object& recording,
-                    const std::string& drive, const fs::path& map, const py::object& initialPose,
-                    bool extend, bool loops, bool graph, bool buildMap, const py::kwargs& options) {
+                    const std::string& drive, const OptionalPath& map,
+                    const py::object& initialPose, bool extend, bool loops, bool graph,
+                    bool buildMap, const py::kwargs& options) {
             run::RunSettings settings;
             settings.profile = profile;
             settings.drive = drive;
             if (!recording.is_none() && py::isinstance<Scans>(recording))
                 settings.sensorLabel = recording.cast<const Scans&>().in->label();
-            settings.storedMap = map.string();
+            settings.storedMap = textOf(map);
             if (!initialPose.is_none()) settings.initialPose = poseIn(initialPose, "initial_pose");
             settings.extend = extend;
             settings.loops = loops;
@@ -118,7 +119,7 @@ void bindSlam(py::module_& module) {
             return std::make_unique<PythonSlam>(optionsOf(profile, recording, options), settings);
         }),
         py::arg("profile") = "accurate", py::kw_only(), py::arg("recording") = py::none(),
-        py::arg("drive") = "drive", py::arg("map") = fs::path(),
+        py::arg("drive") = "drive", py::arg("map") = py::none(),
         py::arg("initial_pose") = py::none(), py::arg("extend") = false, py::arg("loops") = true,
         py::arg("graph") = true, py::arg("build_map") = true);
     defProcess(slam, "Processes the next scan and returns its Step, by the odometry alone.");
