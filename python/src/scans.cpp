@@ -48,7 +48,7 @@ Scan scanOf(const ScanArguments& arguments, std::size_t index) {
         scan.points = cloudIn(arguments.points, "points", cloud);
         const auto intensity = columnIn<float>(arguments.intensity, "intensity", cloud->size());
         for (std::size_t i = 0; i < intensity.size(); ++i)
-            cloud->setPointIntensity(i, intensity[i]);
+            cloud->setPointColor_fast(i, intensity[i], 0, 0);
     }
     scan.times_s = columnIn<float>(arguments.times, "times", scan.points->size());
     scan.rings = columnIn<std::uint16_t>(arguments.rings, "rings", scan.points->size());

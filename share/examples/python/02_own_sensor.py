@@ -55,4 +55,4 @@ if len(sys.argv) > 1:
     plt.xlabel("x [m]")
     plt.ylabel("y [m]")
     plt.colorbar(label="z [m]")
-    plt.savefig(sys.argv[1], dpi=100, bbox_inches="tight")
+    plt.savefig(sys.argv[1], dpi=80, bbox_inches="tight")
