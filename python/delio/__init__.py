@@ -6,4 +6,4 @@ raises delio.Error with one plain line.
 """
 
 from ._delio import *
-from ._delio import Error, __version__
+from ._delio import __version__ as __version__

@@ -3,6 +3,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <utility>
 
 #include "bindings.h"
 #include "delio/version.h"
@@ -25,7 +26,7 @@ void setThreads(unsigned count) {
 /** What MRPT and others throw becomes an Error with one plain line, too. */
 void translate(std::exception_ptr thrown, const py::object& error) {
     try {
-        std::rethrow_exception(thrown);
+        std::rethrow_exception(std::move(thrown));
     } catch (const py::error_already_set&) {
         throw;
     } catch (const py::builtin_exception&) {
@@ -44,7 +45,7 @@ void bindModule(py::module_& module) {
         nullptr);
     module.add_object("Error", py::handle(error));
     py::register_local_exception_translator([](std::exception_ptr thrown) {
-        if (thrown) translate(thrown, py::reinterpret_borrow<py::object>(error));
+        if (thrown) translate(std::move(thrown), py::reinterpret_borrow<py::object>(error));
     });
     module.def("profiles", &Options::profileNames, "Names of the profiles, a list of str.");
     module.def("set_threads", &setThreads, py::arg("count"),

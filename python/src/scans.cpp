@@ -39,8 +39,6 @@ Scan scanOf(const ScanArguments& arguments, std::size_t index) {
     }
     Scan scan;
     scan.index = index;
-    scan.stamp_s = stampIn(arguments.stamp);
-    scan.time = mrpt::Clock::fromDouble(scan.stamp_s);
     if (arguments.intensity.is_none()) {
         scan.points = cloudIn(arguments.points, "points", mrpt::maps::CSimplePointsMap::Create());
     } else {
@@ -50,6 +48,8 @@ Scan scanOf(const ScanArguments& arguments, std::size_t index) {
         for (std::size_t i = 0; i < intensity.size(); ++i)
             cloud->setPointColor_fast(i, intensity[i], 0, 0);
     }
+    scan.stamp_s = stampIn(arguments.stamp);
+    scan.time = mrpt::Clock::fromDouble(scan.stamp_s);
     scan.times_s = columnIn<float>(arguments.times, "times", scan.points->size());
     scan.rings = columnIn<std::uint16_t>(arguments.rings, "rings", scan.points->size());
     if (!arguments.sensorPose.is_none())

@@ -18,7 +18,7 @@ localiser = delio.Localiser(stored, recording=scans)
 found = []
 for scan in scans:
     result = localiser.process(scan)
-    if result.pose is None:
+    if result.pose is None or result.covariance is None:
         print(f"{scan.index}: not found yet")
         continue
     x, y, z = result.pose[:3, 3]
