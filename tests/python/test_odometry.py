@@ -1,3 +1,5 @@
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -49,6 +51,19 @@ def test_any_number_of_threads_gives_the_same_bytes(drive, results, tmp_path):
     found = odometry_bytes(scans, odometry.process, tmp_path / "poses.txt")
     delio.set_threads(0)
     assert found == (results / "trajectory_odometry_kitti.txt").read_bytes()
+
+
+def test_one_thread_is_one_thread(drive):
+    """No thread is added to those that Python and numpy have."""
+    program = """if True:
+        import os, sys, delio
+        threads = lambda: len(os.listdir("/proc/self/task"))
+        delio.set_threads(1)
+        before, odometry = threads(), delio.Odometry()
+        for scan in delio.open_scans(sys.argv[1]):
+            odometry.process(scan)
+        sys.exit(threads() != before)"""
+    assert subprocess.run([sys.executable, "-c", program, drive]).returncode == 0
 
 
 def test_step(drive):
