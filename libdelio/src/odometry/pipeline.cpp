@@ -201,9 +201,11 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAsPredicted(const PointCloud& cloud
         if (best.placement.isLikely && !isShaken() && !isSecondScan()) return best;
         if (!best.placement.isLikely && !isGuessing()) best = attempt(true);
     }
-    const bool isExtended = isTogether && extendWindow(cloud, since_s, best.placement);
+    const bool isExtended = isTogether && extendWindow(cloud, since_s, best.placement, step);
     if (!isExtended) return wasTogether ? attempt(true) : best;
     Attempt together = attemptInWindow(cloud, since_s, step);
+    if (wasTogether && !together.placement.isLikely)
+        together = attemptAgain(cloud, since_s, std::move(together), step);
     together.extrapolated = pose_ * extrapolation.at(duration_s);
     if (wasTogether && !together.placement.isLikely) best = attempt(true);
     if (together.placement.estimate.valid && !best.isBetterThan(together)) return together;

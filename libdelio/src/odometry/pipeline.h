@@ -68,8 +68,9 @@ class PlaneOdometry : public Odometry {
                               Step& step);
 
     // Scans that are registered together (pipeline_window.cpp).
-    bool extendWindow(const PointCloud& cloud, double since_s, const Placement& found);
+    bool extendWindow(const PointCloud& cloud, double since_s, const Placement& found, Step& step);
     Attempt attemptInWindow(const PointCloud& cloud, double since_s, Step& step);
+    Attempt attemptAgain(const PointCloud& cloud, double since_s, Attempt first, Step& step);
     void beginMapAgain();
     void settleWindow(const Step& step);
     void endWindow();

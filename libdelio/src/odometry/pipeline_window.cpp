@@ -2,12 +2,15 @@
 
 #include "odometry/pipeline.h"
 #include "odometry/preprocess.h"
+#include "odometry/reporting.h"
 
 namespace delio::odometry {
 /** Registers the scan together with those before it. `found`: where the map alone places it, in
  *  case that the window is empty. False where no motion was found, or the second scan shows none
  *  that changes. */
-bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const Placement& found) {
+bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const Placement& found,
+                                 Step& step) {
+    const StageTimer timer(step, "undistort");
     const double time_s = arrivals_.sinceStart_s();
     if (!window_.isEmpty()) {
         if (window_.isFull()) start_.reset();
@@ -38,8 +41,19 @@ PlaneOdometry::Attempt PlaneOdometry::attemptInWindow(const PointCloud& cloud, d
     const Eigen::Isometry3d pose = window_.trajectory().at(time_s);
     Expectation expected = expectation(pose, false, since_s, true);
     expected.isShaken = expected.isPlacedByStanding = false;
-    expected.kernel_m = options_.points.first_kernel / 2;
+    expected.kernel_m = options_.points.least_kernel;
     return attemptBy(cloud, expected, window_.trajectory().seenFrom(time_s), step);
+}
+
+/** The better of `first` and of the scan where the window finds it from other rates of turn. */
+PlaneOdometry::Attempt PlaneOdometry::attemptAgain(const PointCloud& cloud, double since_s,
+                                                   Attempt first, Step& step) {
+    const ScanTrajectory before = window_.trajectory();
+    if (!window_.search()) return first;
+    Attempt again = attemptInWindow(cloud, since_s, step);
+    if (again.isBetterThan(first)) return again;
+    window_.use(before);
+    return first;
 }
 
 /** The map of the window's scans but the latest, each where it is now. */

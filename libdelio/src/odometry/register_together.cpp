@@ -109,11 +109,15 @@ Eigen::Matrix3Xf placed(const TimedPoints& points, const PoseTable& poses) {
 /** Registration of some scans along one trajectory. */
 class Registration {
  public:
-    Registration(const std::deque<TimedScan>& scans, const ScanTrajectory& start)
-        : scans_(scans), knots_(start) {
+    /** Of all scans to each other; or of the latest one to the others, which keep their poses. */
+    Registration(const std::deque<TimedScan>& scans, const ScanTrajectory& start, bool latestAlone)
+        : scans_(scans), knots_(start), surfaces_(scans.size()), trees_(scans.size()) {
+        const std::size_t last = scans.size() - 1;
         for (std::size_t to = 0; to < scans.size(); ++to)
             for (std::size_t from = 0; from < scans.size(); ++from)
-                if (from != to) pairs_.push_back({&scans[from], &scans[to], to, {}});
+                if (from != to && (!latestAlone || from == last))
+                    pairs_.push_back({&scans[from], &scans[to], to, {}});
+        if (latestAlone) firstFree_ = knots_.between(scans[last - 1].last_s).knot + 2;
     }
 
     const ScanTrajectory& trajectory() const { return knots_.trajectory(); }
@@ -121,11 +125,11 @@ class Registration {
     /** Finds the nearest surfaces. */
     void match(double reach) {
         const PoseTable poses = table();
-        std::vector<Eigen::Matrix3Xf> surfaces(scans_.size());
-        std::vector<std::unique_ptr<KdTree>> trees(scans_.size());
         tbb::parallel_for(std::size_t{0}, scans_.size(), [&](std::size_t i) {
-            surfaces[i] = placed(scans_[i].surfaces, poses);
-            trees[i] = std::make_unique<KdTree>(surfaces[i]);
+            const bool isFixed = firstFree_ > 0 && trees_[i];
+            if (isFixed || (firstFree_ > 0 && i + 1 == scans_.size())) return;
+            surfaces_[i] = placed(scans_[i].surfaces, poses);
+            trees_[i] = std::make_unique<KdTree>(surfaces_[i]);
         });
         tbb::parallel_for(std::size_t{0}, pairs_.size(), [&](std::size_t k) {
             auto& pair = pairs_[k];
@@ -134,7 +138,7 @@ class Registration {
             for (Index i = 0; i < points.cols(); ++i) {
                 std::uint32_t nearest = 0;
                 float squared = 0;
-                if (trees[pair.toNumber]->nearest(points.col(i), 1, &nearest, &squared) == 1 &&
+                if (trees_[pair.toNumber]->nearest(points.col(i), 1, &nearest, &squared) == 1 &&
                     squared < reach * reach)
                     pair.pairs.push_back({i, static_cast<Index>(nearest)});
             }
@@ -162,9 +166,11 @@ class Registration {
         addSmoothness(sums);
         // Along an axis that nothing constrains, the trajectory stays as it is.
         sums.information.diagonal().array() += 1;
-        constexpr double kKept = 1e8;
-        sums.information.topLeftCorner<6, 6>().diagonal().array() += kKept;
-        const Eigen::VectorXd step = -sums.information.ldlt().solve(sums.gradient);
+        // The first pose stays, or all those of the scans before the latest one.
+        const Index kept = 6 * std::max<Index>(firstFree_, 1), free = unknowns() - kept;
+        Eigen::VectorXd step = Eigen::VectorXd::Zero(unknowns());
+        step.tail(free) =
+            -sums.information.bottomRightCorner(free, free).ldlt().solve(sums.gradient.tail(free));
         knots_.move(step);
         return step.lpNorm<Eigen::Infinity>();
     }
@@ -273,7 +279,31 @@ class Registration {
     const std::deque<TimedScan>& scans_;
     std::vector<ScanPair> pairs_;
     Knots knots_;
+    Index firstFree_ = 0;  //!< knot; 0: all but the first
+    std::vector<Eigen::Matrix3Xf> surfaces_;
+    std::vector<std::unique_ptr<KdTree>> trees_;
 };
+
+/** See registerTogether(). */
+Together registered(Registration registration, double kernel) {
+    constexpr double kLastKernel_m = 0.15, kNarrower = 1.6, kLeastReach_m = 0.6, kMostReach_m = 2.5;
+    constexpr unsigned kMatchings = 2, kSteps = 3;
+    constexpr double kConverged = 0.01;  // of the kernel
+    for (double width = kernel;; width = std::max(width / kNarrower, kLastKernel_m)) {
+        for (unsigned matching = 0; matching < kMatchings; ++matching) {
+            registration.match(std::clamp(3 * width, kLeastReach_m, kMostReach_m));
+            double moved = 0;
+            for (unsigned i = 0; i < kSteps; ++i) {
+                const double step = registration.improve(width);
+                moved = std::max(moved, step);
+                if (step < kConverged * width) break;
+            }
+            if (moved < kConverged * width) break;
+        }
+        if (width <= kLastKernel_m) break;
+    }
+    return {registration.trajectory(), registration.inlierRatio()};
+}
 
 /** At equal intervals from the first to the last point of the scans. */
 std::vector<double> knotTimes(double first_s, double last_s) {
@@ -307,7 +337,7 @@ double unevennessOf(const ScanTrajectory& trajectory) {
 
 TimedScan timedScanOf(const PointCloud& cloud, double time_s) {
     constexpr double kSpacing_m = 0.5, kSurfaceSpacing_m = 0.25;
-    constexpr Index kMostPoints = 1500, kMostSurfaces = 6000;
+    constexpr Index kMostPoints = 1000, kMostSurfaces = 4000;
     TimedScan scan;
     scan.time_s = time_s;
     const auto [least, most] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
@@ -339,24 +369,7 @@ TimedScan timedScanOf(const PointCloud& cloud, double time_s) {
 
 Together registerTogether(const std::deque<TimedScan>& scans, const ScanTrajectory& start,
                           double kernel) {
-    constexpr double kLastKernel_m = 0.15, kNarrower = 1.6, kLeastReach_m = 0.6, kMostReach_m = 2.5;
-    constexpr unsigned kMatchings = 3, kSteps = 3;
-    constexpr double kConverged = 0.01;  // of the kernel
-    Registration registration(scans, start);
-    for (double width = kernel;; width = std::max(width / kNarrower, kLastKernel_m)) {
-        for (unsigned matching = 0; matching < kMatchings; ++matching) {
-            registration.match(std::clamp(3 * width, kLeastReach_m, kMostReach_m));
-            double moved = 0;
-            for (unsigned i = 0; i < kSteps; ++i) {
-                const double step = registration.improve(width);
-                moved = std::max(moved, step);
-                if (step < kConverged * width) break;
-            }
-            if (moved < kConverged * width) break;
-        }
-        if (width <= kLastKernel_m) break;
-    }
-    return {registration.trajectory(), registration.inlierRatio()};
+    return registered(Registration(scans, start, false), kernel);
 }
 
 void ScanWindow::begin(const PointCloud& cloud, double time_s, const ScanTrajectory& trajectory) {
@@ -386,12 +399,6 @@ Together bestOf(Together best, const Register& registerFrom) {
     return best;
 }
 
-/** How a sensor may turn on. */
-struct TurningOn {
-    double acceleration = 0;           //!< this part of its acceleration goes on, 0 to 1
-    Vector3d more = Vector3d::Zero();  //!< added to its rate of turn, rad/s
-};
-
 /** `trajectory`, of some poses at least, until `last_s` or longer. Its rate of turn is that of the
  *  last three intervals, its acceleration that since the three before. */
 ScanTrajectory extended(const ScanTrajectory& trajectory, double last_s, const TurningOn& turning) {
@@ -420,37 +427,51 @@ ScanTrajectory extended(const ScanTrajectory& trajectory, double last_s, const T
 
 }  // namespace
 
+Together ScanWindow::registerLatest(const TurningOn& turning) const {
+    constexpr double kKernel_m = 1;
+    const auto start = extended(known_, scans_.back().last_s, turning);
+    return registered(Registration(scans_, start, true), kKernel_m);
+}
+
+/** All scans together, from where the latest one was found. */
+void ScanWindow::accept(Together found) {
+    constexpr double kKernel_m = 0.3;
+    trajectory_ = registerTogether(scans_, found.trajectory, kKernel_m).trajectory;
+    inlierRatio_ = found.inlierRatio;
+}
+
 bool ScanWindow::add(const PointCloud& cloud, double time_s) {
-    constexpr double kKernel_m = 1, kUsual = 0.8, kLeast = 0.3;
+    constexpr double kUsual = 0.8, kLeast = 0.3;
     scans_.push_back(timedScanOf(cloud, time_s));
     if (scans_.size() > kMostScans) scans_.pop_front();
-    const auto& known_s = trajectory_.times_s();
+    const auto& times_s = trajectory_.times_s();
     std::size_t old = 0;
-    while (old + 3 < known_s.size() && known_s[old + 1] < scans_.front().first_s) ++old;
+    while (old + 3 < times_s.size() && times_s[old + 1] < scans_.front().first_s) ++old;
     const auto first = static_cast<std::ptrdiff_t>(old);
-    const ScanTrajectory known({known_s.begin() + first, known_s.end()},
-                               {trajectory_.poses().begin() + first, trajectory_.poses().end()});
-    const double last_s = scans_.back().last_s;
-    const auto registerFrom = [&](const TurningOn& turning) {
-        return registerTogether(scans_, extended(known, last_s, turning), kKernel_m);
-    };
+    known_ = ScanTrajectory({times_s.begin() + first, times_s.end()},
+                            {trajectory_.poses().begin() + first, trajectory_.poses().end()});
+    const double usual = inlierRatio_;
     Together best, steady;
     tbb::parallel_invoke(
         [&] {
-            best = registerFrom({1, Vector3d::Zero()});
+            best = registerLatest({1, Vector3d::Zero()});
         },
         [&] {
-            steady = registerFrom({0, Vector3d::Zero()});
+            steady = registerLatest({0, Vector3d::Zero()});
         });
     if (steady.inlierRatio > best.inlierRatio) best = std::move(steady);
-    if (best.inlierRatio < kUsual * inlierRatio_)
-        best = bestOf(std::move(best), [&](const Vector3d& more) {
-            return registerFrom({0, more});
-        });
-    trajectory_ = std::move(best.trajectory);
-    const bool fits = best.inlierRatio > kLeast * inlierRatio_;
-    inlierRatio_ = best.inlierRatio;
-    return fits;
+    accept(std::move(best));
+    if (inlierRatio_ < kUsual * usual) search();
+    return inlierRatio_ > kLeast * usual;
+}
+
+bool ScanWindow::search() {
+    const double before = inlierRatio_;
+    Together best = bestOf({trajectory_, before}, [&](const Vector3d& more) {
+        return registerLatest({0, more});
+    });
+    if (best.inlierRatio > before) accept(std::move(best));
+    return inlierRatio_ > before;
 }
 
 bool ScanWindow::addSecond(const PointCloud& cloud, double time_s, const Twist& guess,
@@ -470,8 +491,7 @@ bool ScanWindow::addSecond(const PointCloud& cloud, double time_s, const Twist& 
         return registerTogether(scans_, from(twist), kFar_m);
     });
     trajectory_ = best.trajectory;
-    inlierRatio_ = best.inlierRatio;
-    const double even = Registration(scans_, from(guess)).inlierRatio();
+    const double even = Registration(scans_, from(guess), false).inlierRatio();
     return unevennessOf(trajectory_) > kUneven_rad && best.inlierRatio > kBetter * even;
 }
 

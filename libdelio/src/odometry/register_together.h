@@ -38,6 +38,12 @@ struct Together {
 Together registerTogether(const std::deque<TimedScan>& scans, const ScanTrajectory& start,
                           double kernel);
 
+/** How a sensor may go on turning. */
+struct TurningOn {
+    double acceleration = 0;  //!< this part of its acceleration goes on, 0 to 1
+    Eigen::Vector3d more = Eigen::Vector3d::Zero();  //!< added to its rate of turn, rad/s
+};
+
 /** The latest scans of a sensor whose rate of turn changes faster than it can be predicted, as in a
  *  swinging hand, registered together. */
 class ScanWindow {
@@ -53,10 +59,13 @@ class ScanWindow {
     /** Registers a scan together with those before it, from where their motion leads, and drops the
      *  oldest of more than four. False where far fewer points fit than before. */
     bool add(const PointCloud& cloud, double time_s);
-    /** The same of the second scan, while nothing is known of the motion: from `guess` (of the
-     *  first scan, maps the sensor's frame at its time to that when it began), and where the motion
-     *  changes during the two scans or `guess` is not `likely`, from many rates of turn. False
-     *  where no motion is found that changes and that clearly more points fit. */
+    /** Registers the latest scan again, from many rates of turn. False where it fits no better. Not
+     *  after addSecond(). */
+    bool search();
+    /** The same as add() of the second scan, while nothing is known of the motion: from `guess` (of
+     * the first scan, maps the sensor's frame at its time to that when it began), and where the
+     * motion changes during the two scans or `guess` is not `likely`, from many rates of turn.
+     * False where no motion is found that changes and that clearly more points fit. */
     bool addSecond(const PointCloud& cloud, double time_s, const Twist& guess, bool likely);
 
     /** Oldest first. */
@@ -65,10 +74,16 @@ class ScanWindow {
     const ScanTrajectory& trajectory() const { return trajectory_; }
     /** Moves the trajectory such that the latest scan is at `pose` (sensor to map). */
     void moveTo(const Eigen::Isometry3d& pose);
+    /** Takes an earlier trajectory() of the same scans again. */
+    void use(const ScanTrajectory& trajectory) { trajectory_ = trajectory; }
 
  private:
+    Together registerLatest(const TurningOn& turning) const;
+    void accept(Together found);
+
     std::deque<TimedScan> scans_;
     ScanTrajectory trajectory_{Twist{}};  //!< a pose every 20 ms
+    ScanTrajectory known_{Twist{}};       //!< the same before the latest scan
     double inlierRatio_ = 0;              //!< of the latest registration
 };
 }  // namespace delio::odometry

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ring_scan.h"
+#include "swing.h"
 
 using namespace delio;
 using namespace delio::odometry;
@@ -15,16 +16,9 @@ using odometry::TimedPoints;
 using odometry::TrajectoryPrior;
 using test::degreesBetween;
 using test::poseAt;
+using test::swung;
 
 constexpr double kSince_s = 0.1;
-
-/** As a hand swings it: 8 deg and 5 cm about and along all axes, 1.5 times a second. */
-Isometry3d swung(double time_s) {
-    const double phase = 2 * M_PI * 1.5 * time_s;
-    const Eigen::Vector3d sines(std::sin(phase), std::sin(phase + 1), std::sin(phase + 2));
-    return isometry(rotationExp(8 * M_PI / 180 * sines),
-                    Eigen::Vector3d(1.2 * time_s, 0, 0) + 0.05 * sines);
-}
 
 odometry::PlaneMap mapOf(const test::Scene& scene) {
     test::Noise noise;
@@ -36,24 +30,6 @@ odometry::PlaneMap mapOf(const test::Scene& scene) {
         map.add((pose.linear() * points).colwise() + pose.translation());
     }
     return map;
-}
-
-/** A sweep on the way there, with `noise_m` in the points. */
-TimedPoints seen(const test::Scene& scene, double noise_m) {
-    constexpr int kColumns = 200;
-    test::Noise noise(3);
-    TimedPoints scan{Eigen::Matrix3Xd(3, 0), {}};
-    for (int c = 0; c < kColumns; ++c) {
-        const double time_s = 0.1 * c / kColumns - 0.05, azimuth = 2 * M_PI * c / kColumns;
-        const Isometry3d head(Eigen::AngleAxisd(azimuth, Eigen::Vector3d::UnitZ()));
-        const auto points =
-            test::ringScan(scene, swung(time_s) * head, {32, 1, -24, 8, noise_m}, noise).points;
-        const Eigen::Index before = scan.points.cols();
-        scan.points.conservativeResize(3, before + points.cols());
-        scan.points.rightCols(points.cols()) = head.linear() * points.cast<double>();
-        scan.times_s.insert(scan.times_s.end(), static_cast<std::size_t>(points.cols()), time_s);
-    }
-    return scan;
 }
 
 /** At one twist, from the true pose before to a pose that is off at the stamp. */
@@ -82,7 +58,7 @@ const TrajectoryPrior kOfHand{0.05, 0.02, 0.1, 0.1};
 
 TEST(CourseRegistration, FindsTheSwingWithinAScan) {
     const auto map = mapOf(test::yard());
-    const auto scan = seen(test::yard(), 0.01);
+    const auto scan = test::sweep(test::yard(), 0.01);
     for (const auto& off : {poseAt(0, 0, 0), poseAt(0.04, -0.03, 0.02, 0.01, -0.01, 0.005)}) {
         const ScanTrajectory even = constantTwist(off);
         EXPECT_GT(worstOf(even).degrees, 1);
@@ -95,7 +71,7 @@ TEST(CourseRegistration, FindsTheSwingWithinAScan) {
 
 TEST(CourseRegistration, StartsWhereItIsKnownToStart) {
     const auto found =
-        odometry::registerTrajectory(mapOf(test::yard()), seen(test::yard(), 0),
+        odometry::registerTrajectory(mapOf(test::yard()), test::sweep(test::yard(), 0),
                                      constantTwist(poseAt(0, 0, 0)), kSince_s, kOfHand, 1, {});
     EXPECT_LT((found.at(-kSince_s).matrix() - swung(-kSince_s).matrix()).norm(), 1e-12);
 }
@@ -106,8 +82,8 @@ TEST(CourseRegistration, IsLedAstrayNoFartherThanIsLikely) {
     constexpr double kSigma_m = 0.01;
     const ScanTrajectory even = constantTwist(poseAt(0, 0, 0));
     const auto found =
-        odometry::registerTrajectory(mapOf(test::corridor()), seen(test::corridor(), 0), even,
-                                     kSince_s, {kSigma_m, 0.02, kSigma_m, 0.1}, 1, {});
+        odometry::registerTrajectory(mapOf(test::corridor()), test::sweep(test::corridor(), 0),
+                                     even, kSince_s, {kSigma_m, 0.02, kSigma_m, 0.1}, 1, {});
     for (const double time_s : {-0.05, 0.0, 0.05})
         EXPECT_NEAR(found.at(time_s).translation().x(), even.at(time_s).translation().x(),
                     3 * kSigma_m);
@@ -117,8 +93,8 @@ TEST(CourseRegistration, IsLedAstrayNoFartherThanIsLikely) {
 TEST(CourseRegistration, AnEvenMotionStaysEvenWhereItIsKnownToBe) {
     const ScanTrajectory even = constantTwist(poseAt(0, 0, 0));
     const auto found =
-        odometry::registerTrajectory(mapOf(test::yard()), seen(test::yard(), 0.01), even, kSince_s,
-                                     {1e-4, 1e-4, 1e-5, 1e-5}, 1, {});
+        odometry::registerTrajectory(mapOf(test::yard()), test::sweep(test::yard(), 0.01), even,
+                                     kSince_s, {1e-4, 1e-4, 1e-5, 1e-5}, 1, {});
     for (const double time_s : {-0.05, 0.0, 0.05})
         EXPECT_LT((found.at(time_s).matrix() - even.at(time_s).matrix()).norm(), 1e-2);
 }
@@ -134,5 +110,4 @@ TEST(CourseRegistration, WithTooFewPointsTheCourseStays) {
     }
 }
 
-// The rate of turn changes so fast that the end of the scan is degrees off its prediction.
 }  // namespace
