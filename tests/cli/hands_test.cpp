@@ -21,8 +21,8 @@ INSTANTIATE_TEST_SUITE_P(Swing, Hands,
                          testing::Values(Hand{"urban", "hdl64e", 301}, Hand{"forest", "vlp16", 302},
                                          Hand{"forest", "hdl32e", 303},
                                          Hand{"indoor", "os1-64", 304}),
-                         [](const auto& info) {
-                             std::string name = info.param.scene + "_" + info.param.sensor;
+                         [](const auto& of) {
+                             std::string name = of.param.scene + "_" + of.param.sensor;
                              std::replace(name.begin(), name.end(), '-', '_');
                              return name;
                          });

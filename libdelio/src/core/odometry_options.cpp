@@ -119,7 +119,7 @@ std::vector<OptionField> DynamicObjectsOptions::fields() const {
 
 std::vector<OptionField> NormalsOptions::fields() const {
     return {{"voxel_size", &NormalsOptions::voxel_size,
-             "m; the cloud is thinned to one point a voxel first", 0.01, 10},
+             "m; the cloud is thinned to one point per voxel first", 0.01, 10},
             {"neighbours", &NormalsOptions::neighbours,
              "nearest neighbours that a normal is made of", 5, 1000},
             {"max_radius", &NormalsOptions::max_radius,
@@ -148,7 +148,7 @@ std::vector<OptionField> OutlierRemovalOptions::fields() const {
             {"both_ends", &OutlierRemovalOptions::both_ends,
              "true: what is as far below the mean is removed, too"},
             {"small_share", &OutlierRemovalOptions::small_share,
-             "share of the normals that makes a small set, which ends the rounds", 0, 1},
+             "0 to 1; fraction of the normals that is a small set and ends the rounds", 0, 1},
             {"stable_share", &OutlierRemovalOptions::stable_share,
              "share of a set: a round that removes less shows that it is stable, and is the last",
              0, 1}};
@@ -178,7 +178,7 @@ std::vector<OptionField> PatternRegistrationOptions::fields() const {
             {"max_iterations", &PatternRegistrationOptions::max_iterations, "pairings at most", 1,
              10000},
             {"max_correction_deg", &PatternRegistrationOptions::max_correction_deg,
-             "deg; a rotation farther than this from the prediction is not believed", 0.1, 180},
+             "deg; a rotation farther than this from the prediction is rejected", 0.1, 180},
             {"prior_sigma_deg", &PatternRegistrationOptions::prior_sigma_deg,
              "deg; the motion model's error on such an axis", 1e-6, 180}};
 }
@@ -239,10 +239,8 @@ std::vector<OptionField> LineRegistrationOptions::fields() const {
 std::vector<OptionField> PointCheckOptions::fields() const {
     using Me = PointCheckOptions;
     return {{"enabled", &Me::enabled, "true: points may overrule lines and patterns"},
-            {"believed", &Me::believed,
-             "m; lines that lead farther than this from where points place the scan are not "
-             "believed",
-             0, 10},
+            {"tolerance", &Me::tolerance,
+             "m; a translation by lines farther than this from that by points is rejected", 0, 10},
             {"rest", &Me::rest,
              "m; points nearer than this to the scan before, were the vehicle at rest, say nothing",
              0.01, 10},

@@ -85,8 +85,8 @@ mrpt::maps::CPointsMap::Ptr readKittiPoints(const std::string& file, std::uint64
     return points;
 }
 
-/** Throws Error for a name that leads out of the folder that it is looked for in: a rawlog of
- *  somebody else's is not to choose what is read. (A link in the folder is its owner's.) */
+/** Throws Error for a name that leads out of its folder: a foreign rawlog must not choose
+ *  which files are read. (A link in the folder is its owner's.) */
 void refuseOutside(const fs::path& name) {
     if (name.empty() || !name.has_filename())
         throw Error("its points are in another file, but it does not say which");

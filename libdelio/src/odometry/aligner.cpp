@@ -56,7 +56,7 @@ Eigen::Matrix3d mapTurn() {
     return rotationExp(0.5 * Eigen::Vector3d::UnitZ()) * rotationExp({0.012, 0.016, 0});
 }
 
-/** One alignment: what is known of both clouds, and the ways to bring them together. Estimates are
+/** One alignment: properties of both clouds, and the ways to register them. Estimates are
  *  in the turned map; see inFirst(). */
 class Alignment {
  public:

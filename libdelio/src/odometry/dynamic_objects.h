@@ -129,7 +129,7 @@ class DynamicObjects {
     std::optional<Track> trackOf(const Object& object) const;
     void unmask(const Track& track);
     /** True where scan `by` saw through the place that `object` took in scan `seen`. `minKnown`:
-     *  the share of its points whose places it has to know of. */
+     *  the fraction of the object's points in known places that is required. */
     bool isFree(const Object& object, const View& seen, const View& by, double minKnown) const;
 
     DynamicObjectsOptions options_;

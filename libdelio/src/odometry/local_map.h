@@ -41,7 +41,7 @@ class LocalMap {
     void add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
     /** The same of an earlier scan of this drive. Its rings look the same from where it was. */
     void addScan(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
-    /** `points`: in the map's frame; they turned out to move, and what is there goes. */
+    /** Removes the map at `points` (map's frame), which turned out to be dynamic. */
     void erase(const Eigen::Matrix3Xf& points);
     /** `up`: the unit vector that does, in the map's frame. */
     void clear(const Eigen::Vector3d& up);

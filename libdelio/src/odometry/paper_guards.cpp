@@ -54,8 +54,8 @@ PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
 
 bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b,
            const PointCheckOptions& options) {
-    return (a.translation() - b.translation()).norm() <= options.believed &&
-           angleOf(a.linear().transpose() * b.linear()) <= options.believed_deg * M_PI / 180;
+    return (a.translation() - b.translation()).norm() <= options.tolerance &&
+           angleOf(a.linear().transpose() * b.linear()) <= options.tolerance_deg * M_PI / 180;
 }
 
 namespace {
@@ -98,13 +98,13 @@ void hold(const Eigen::Isometry3d& placed, const PaperOdometryOptions& options,
     auto& rotation = found.rotation;
     auto& translation = found.translation;
     const Eigen::Vector3d turned = rotationLog(placed.linear().transpose() * rotation.rotation);
-    if (turned.norm() > options.check.believed_deg * kDeg) {
+    if (turned.norm() > options.check.tolerance_deg * kDeg) {
         rotation.rotation = placed.linear();
         nameAxis(turned.normalized(), options.pattern.prior_sigma_deg * kDeg,
                  rotation.unobservedAxes, rotation.covariance);
     }
     const Eigen::Vector3d off = translation.translation - placed.translation();
-    if (off.norm() > options.check.believed) {
+    if (off.norm() > options.check.tolerance) {
         translation.translation = placed.translation();
         nameAxis(off.normalized(), options.lineRegistration.prior_sigma, translation.unobservedAxes,
                  translation.covariance);
@@ -140,8 +140,8 @@ bool applyGuardsToLink(const PaperFeatures& from, const PaperFeatures& to,
     refineInPlace(from, to, options, found);
     if (!from.check || !to.check) return true;
     PointCheckOptions wider = options.check;  // seen from afar, surfaces differ
-    wider.believed *= 2;
-    wider.believed_deg *= 2;
+    wider.tolerance *= 2;
+    wider.tolerance_deg *= 2;
     const auto placed =
         checkByPoints(*from.check, *to.check, poseOf(found), guess, 0, wider, options.points);
     return !placed.valid || agree(placed.pose, poseOf(found), wider);

@@ -33,7 +33,7 @@ PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,
                             double reach, const PointCheckOptions& options,
                             const PointRegistrationOptions& registration);
 
-/** True if it is the same place within what is `believed`. */
+/** True if both are the same place within the tolerance. */
 bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b,
            const PointCheckOptions& options);
 

@@ -95,7 +95,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     step.deskewed = !cloud.times_s.empty();
     step.interrupted = !isEmpty && interval.kind == IntervalKind::kUnknown;
     if (step.interrupted) {
-        constexpr double kLongest_s = 3.5;  // longer, motion does not go on as before
+        constexpr double kLongest_s = 3.5;  // longer, the motion is not extrapolated
         if (interval.elapsed_s > kLongest_s) prediction_.forget();
         state_ = lostFrom(std::move(state_), missesOf(state_));
     }
@@ -124,7 +124,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     return step;
 }
 
-/** Degenerate scans go on as before, where it is known how. */
+/** A degenerate scan is not lost while the motion is known. */
 bool PlaneOdometry::isLostAfter(const Step& step) const {
     constexpr unsigned kPatience = 3;
     if (const auto* degenerate = std::get_if<Degenerate>(&state_))

@@ -39,8 +39,8 @@ class PlaneMap {
      *  is what drift is held against. */
     void add(const Eigen::Matrix3Xd& points);
 
-    /** Drops the planes where `points` (likewise) are, but for those of the largest levels, which
-     *  are the ground's: what was taken for a part of the world is none. */
+    /** Drops the planes at `points` (likewise), which are dynamic. Planes of the largest levels,
+     *  which are the ground's, stay. */
     void erase(const Eigen::Matrix3Xd& points);
 
     /** Drops what lies farther than `radius` from `centre`. */

@@ -19,8 +19,7 @@ class PointMap {
     /** Takes points (metres, the map's frame) in. */
     void add(const Eigen::Matrix3Xd& points);
 
-    /** Drops what lies within `spacing` of one of `points` in its voxel: what was taken for a part
-     *  of the world is none. */
+    /** Drops points within `spacing` of one of `points`, which are dynamic, in its voxel. */
     void erase(const Eigen::Matrix3Xd& points);
 
     /** Drops what lies farther than `radius` from `centre`. */

@@ -20,7 +20,7 @@ struct PointCloud {
     std::size_t outOfRange = 0;  //!< points dropped by min_range and max_range
 };
 
-/** Drops what is not finite or out of range, and raises every point's vertical angle by
+/** Drops points that are not finite or out of range, and raises every point's vertical angle by
  *  `vertical_correction_deg` (range kept): KITTI's HDL-64E needs 0.205 deg (IMLS-SLAM, KISS-ICP).
  */
 PointCloud preprocess(const Scan& scan, const PreprocessOptions& options);

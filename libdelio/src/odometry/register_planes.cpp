@@ -220,7 +220,7 @@ bool iterate(Matcher& matcher, const Prior& known, double kernel,
     return false;
 }
 
-/** Unit axes along which `information` is no better than what was known before. */
+/** Unit axes along which `information` is no better than `before`. */
 Eigen::Matrix3Xd unobservedAxes(const Eigen::Matrix3d& information, const Eigen::Matrix3d& before) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(information);
     const auto isSeen = [&](Eigen::Index i) {

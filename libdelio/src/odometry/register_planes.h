@@ -122,16 +122,16 @@ class Matcher {
 /** What plane residuals say of the rotation alone. */
 struct PlaneRotation {
     Eigen::Vector3d step = Eigen::Vector3d::Zero();  //!< rad; R exp(step) is the better rotation
-    /** 1/rad^2, right tangent (sensor's frame): the Schur complement H_rr - H_rt H_tt^-1 H_tr; what
-     *  is known of the rotation before is not in it. */
+    /** 1/rad^2, right tangent (sensor's frame): the Schur complement H_rr - H_rt H_tt^-1 H_tr,
+     *  without the prior. */
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     double weight = 0;  //!< sum of the matches' weights
 };
 
 /** The rotation from translation-free residuals: n . (R p + t - q) is linear in t, so with N the
  *  stack of weighted normals the projection I - N (N'N)^-1 N' takes t out of all residuals, and
- *  what is left has a minimum over R alone. One Gauss-Newton step. What is known before (in units
- *  of the weights) is fused by its information; an axis of which nothing is known stays. */
+ *  the rest has a minimum over R alone. One Gauss-Newton step. The prior (in units of the weights)
+ * is fused by its information. There is no step about an unconstrained axis. */
 PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Isometry3d& pose,
                                  const Prior& prior = {});
 
@@ -145,9 +145,8 @@ struct PlaneTranslation {
     double weight = 0;                                //!< sum of the matches' weights
 };
 
-/** The closed form: the least-squares translation of the unrotated scan. What is known before (in
- *  units of the weights) is fused by its information; along an axis of which nothing is known there
- *  is no step. */
+/** The closed form: the least-squares translation of the unrotated scan. The prior (in units of
+ *  the weights) is fused by its information. There is no step along an unconstrained axis. */
 PlaneTranslation translationFromPlanes(const Correspondences& matches,
                                        const Eigen::Isometry3d& pose, const Prior& prior = {});
 

@@ -28,7 +28,7 @@ bool Pairing::isStill(const Latest& latest, const Eigen::Vector3d& placed, doubl
 void Pairing::pairBlock(const Eigen::Isometry3d& pose, double kernel, Eigen::Index first,
                         Eigen::Index every, Pair* pairs, std::size_t count) {
     constexpr double kReach = 3;  // kernel widths
-    // Farther than is asked now: where there is none, none has to be looked for again soon.
+    // Farther than needed now: an empty neighbourhood is then not searched again soon.
     constexpr double kFarthest = std::numeric_limits<double>::max();
     const double reach = kReach * kernel;
     std::array<Eigen::Vector3d, kBlock> placed;

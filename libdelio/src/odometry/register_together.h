@@ -8,7 +8,7 @@
 #include "odometry/register_trajectory.h"
 
 namespace delio::odometry {
-/** A scan of which each point has its own time: metres, the sensor's frame at that time; seconds
+/** A scan whose points have their own times: metres, the sensor's frame at that time; seconds
  *  since the start of the drive. */
 struct TimedScan {
     PointCloud cloud;                //!< as it came; its times count from `time_s`

@@ -6,7 +6,7 @@
 #include "delio/odometry/step.h"
 
 namespace delio::odometry {
-/** The quality of a scan `to` of which both estimates are. */
+/** The quality of the registration that gave both estimates. */
 Quality qualityOf(const RotationEstimate& rotation, const TranslationEstimate& translation);
 
 /** Adds the time of its own life to that of a stage in Step::times_ms. */

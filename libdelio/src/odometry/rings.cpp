@@ -163,7 +163,7 @@ std::vector<std::uint16_t> ringsByOrder(const Eigen::Matrix3Xf& points) {
         float azimuth = std::atan2(points(1, i), points(0, i));
         if (azimuth < 0) azimuth += static_cast<float>(2 * M_PI);
         // Half a turn: a ring may turn either way, and noise at its seam is small. One ring too
-        // many is enough to tell that these are none.
+        // many shows that these are no rings.
         if (i > 0 && std::abs(azimuth - before) > static_cast<float>(M_PI) && ring < kMostRings)
             ++ring;
         before = azimuth;

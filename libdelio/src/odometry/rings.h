@@ -4,12 +4,12 @@
 #include <vector>
 
 namespace delio::odometry {
-/** The ring (laser) of each point of a spinning LiDAR, from 0, for a cloud that does not say. In
- *  whatever order the points come, rings are the modes of their elevations, from the top. Where
- *  those are blurred (an HDL-64E's beams do not come from one point, and points that were brought
- *  to one stamp have moved), ring after ring is told by the order, as KITTI's files have it: a ring
- *  ends where the azimuth falls back by more than half a turn. Where nothing looks like rings,
- *  points are put into 64 equal steps of elevation. */
+/** The ring (laser) of each point of a spinning LiDAR, from 0, for a cloud without ring
+ *  numbers. Rings are the modes of the points' elevations, from the top, in any order of points.
+ *  Elevations can be blurred: an HDL-64E's beams do not come from one point, and de-skewed points
+ *  have moved. Rings that follow each other, as in KITTI's files, are then separated where the
+ *  azimuth falls back by more than half a turn. A cloud without rings is cut into 64 equal steps of
+ *  elevation. */
 std::vector<std::uint16_t> ringsOf(const Eigen::Matrix3Xf& points);
 
 /** The same rings numbered from the highest mean elevation (0) down, so that consecutive numbers

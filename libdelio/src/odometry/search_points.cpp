@@ -16,8 +16,8 @@ Eigen::Array3i cellOf(const Eigen::Vector3d& inCells) {
     return inCells.array().unaryExpr([](double x) { return static_cast<int>(floorOf(x)); });
 }
 
-/** Cells of half a step, so that a step is two of them: what is asked for from one row of places
- * are every second one's bits. So those of even numbers lie side by side, and those of odd ones. */
+/** Cells of half a step: a row of places needs every second cell. Bits of even cells therefore lie
+ *  side by side, and bits of odd cells. */
 class Grid {
  public:
     using Cell = Eigen::Array3i;

@@ -143,7 +143,7 @@ View viewFrom(double azimuth_deg, double elevation_deg) {
     return view;
 }
 
-/** Half of what is seen at a distance of 1. */
+/** Half of the visible width and height at a distance of 1. */
 struct Lens {
     explicit Lens(const SnapshotOptions& options)
         : aspect(double(options.width_px) / options.height_px),

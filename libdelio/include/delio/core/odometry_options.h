@@ -276,12 +276,12 @@ struct LineRegistrationOptions : public StageOptions {
 /** When points overrule the lines; a guard of the profile `paper-extended`. */
 struct PointCheckOptions : public StageOptions {
     bool enabled = false;
-    double believed = 0.1;
+    double tolerance = 0.1;
     double rest = 0.3;
     double reach = 4;
 
     // Not read from .ini files:
-    double believed_deg = 0.5;   //!< deg; largest deviation of the rotation
+    double tolerance_deg = 0.5;   //!< deg; largest deviation of the rotation
     double map_spacing = 0.1;    //!< m; between points of the scan before
     double point_spacing = 1.0;  //!< m; between points of the scan
     double min_moved = 0.3;      //!< part of the points that a standstill must not explain
