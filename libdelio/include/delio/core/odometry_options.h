@@ -281,7 +281,7 @@ struct PointCheckOptions : public StageOptions {
     double reach = 4;
 
     // Not read from .ini files:
-    double tolerance_deg = 0.5;   //!< deg; largest deviation of the rotation
+    double tolerance_deg = 0.5;  //!< deg; largest deviation of the rotation
     double map_spacing = 0.1;    //!< m; between points of the scan before
     double point_spacing = 1.0;  //!< m; between points of the scan
     double min_moved = 0.3;      //!< part of the points that a standstill must not explain
