@@ -389,10 +389,9 @@ Together bestOf(Together best, const Register& registerFrom) {
     constexpr std::size_t kAll = 27;  // three about each axis
     constexpr double kRate_radps = 1.5;
     std::vector<Together> found(kAll);
+    const auto step = [](std::size_t number) { return static_cast<double>(number % 3) - 1; };
     tbb::parallel_for(std::size_t{0}, kAll, [&](std::size_t i) {
-        const Vector3d steps(static_cast<double>(i % 3), static_cast<double>(i / 3 % 3),
-                             static_cast<double>(i / 9));
-        found[i] = registerFrom(kRate_radps * (steps - Vector3d::Ones()));
+        found[i] = registerFrom(kRate_radps * Vector3d(step(i), step(i / 3), step(i / 9)));
     });
     for (auto& one : found)
         if (one.inlierRatio > best.inlierRatio) best = std::move(one);
@@ -434,7 +433,7 @@ Together ScanWindow::registerLatest(const TurningOn& turning) const {
 }
 
 /** All scans together, from where the latest one was found. */
-void ScanWindow::accept(Together found) {
+void ScanWindow::accept(const Together& found) {
     constexpr double kKernel_m = 0.3;
     trajectory_ = registerTogether(scans_, found.trajectory, kKernel_m).trajectory;
     inlierRatio_ = found.inlierRatio;
@@ -460,7 +459,7 @@ bool ScanWindow::add(const PointCloud& cloud, double time_s) {
             steady = registerLatest({0, Vector3d::Zero()});
         });
     if (steady.inlierRatio > best.inlierRatio) best = std::move(steady);
-    accept(std::move(best));
+    accept(best);
     if (inlierRatio_ < kUsual * usual) search();
     return inlierRatio_ > kLeast * usual;
 }
@@ -470,7 +469,7 @@ bool ScanWindow::search() {
     Together best = bestOf({trajectory_, before}, [&](const Vector3d& more) {
         return registerLatest({0, more});
     });
-    if (best.inlierRatio > before) accept(std::move(best));
+    if (best.inlierRatio > before) accept(best);
     return inlierRatio_ > before;
 }
 

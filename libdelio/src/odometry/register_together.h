@@ -79,7 +79,7 @@ class ScanWindow {
 
  private:
     Together registerLatest(const TurningOn& turning) const;
-    void accept(Together found);
+    void accept(const Together& found);
 
     std::deque<TimedScan> scans_;
     ScanTrajectory trajectory_{Twist{}};  //!< a pose every 20 ms
