@@ -11,6 +11,7 @@ namespace delio::odometry {
 bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const Placement& found,
                                  Step& step) {
     const StageTimer timer(step, "undistort");
+    constexpr double kFastestHand_mps = 5;
     const double time_s = arrivals_.sinceStart_s();
     if (!window_.isEmpty()) {
         if (window_.isFull()) start_.reset();
@@ -19,14 +20,15 @@ bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const 
     }
     if (const auto* first = std::get_if<FirstScan>(&state_); first && first->skewed) {
         const auto& at = reference_.pose;
-        window_.begin(*first->skewed, reference_.time_s, ScanTrajectory({0, 1}, {at, at}));
         Twist guess;
         if (found.estimate.valid) guess = Twist::of(at.inverse() * found.estimate.pose, since_s);
+        if (found.isLikely && guess.velocity.norm() > kFastestHand_mps) return false;
+        window_.begin(*first->skewed, reference_.time_s, ScanTrajectory({0, 1}, {at, at}));
         if (window_.addSecond(cloud, time_s, guess, found.isLikely))
             start_ = Start{stamped_.time_s + stamped_.stamp_s};
         else
             window_.clear();
-    } else if (latest_) {
+    } else if (latest_ && prediction_.predict(1).translation().norm() < kFastestHand_mps) {
         window_.begin(latest_->cloud, latest_->time_s, latest_->trajectory);
         if (!window_.add(cloud, time_s)) endWindow();
     }
