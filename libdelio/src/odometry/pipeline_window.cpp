@@ -55,6 +55,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAgain(const PointCloud& cloud, doub
     Attempt again = attemptInWindow(cloud, since_s, step);
     if (again.isBetterThan(first)) return again;
     window_.use(before);
+    if (start_) beginMapAgain();
     return first;
 }
 

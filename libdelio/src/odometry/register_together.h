@@ -62,10 +62,10 @@ class ScanWindow {
     /** Registers the latest scan again, from many rates of turn. False where it fits no better. Not
      *  after addSecond(). */
     bool search();
-    /** The same as add() of the second scan, while nothing is known of the motion: from `guess` (of
-     * the first scan, maps the sensor's frame at its time to that when it began), and where the
-     * motion changes during the two scans or `guess` is not `likely`, from many rates of turn.
-     * False where no motion is found that changes and that clearly more points fit. */
+    /** Adds the second scan, while the motion is unknown. The registration starts from `guess`, the
+     *  twist since the first scan. If the motion found from there changes during the two scans, or
+     *  `guess` is not `likely`, it starts from many rates of turn as well. False where no changing
+     *  motion is found that clearly more points fit. */
     bool addSecond(const PointCloud& cloud, double time_s, const Twist& guess, bool likely);
 
     /** Oldest first. */
