@@ -76,6 +76,18 @@ void PoseGraph::addEdge(std::size_t from, std::size_t to, const Eigen::Isometry3
     append({from, to, {pose, inverseOf(information)}}, information);
 }
 
+void PoseGraph::correct(const std::vector<NodePose>& corrected) {
+    std::vector<bool> isMoved(poses_.size(), false);
+    for (const auto& [node, pose] : corrected) {
+        requireFinite(pose, node);
+        poses_.at(node) = pose;
+        isMoved[node] = true;
+    }
+    for (auto& [from, to, increment] : edges_)
+        if (to == from + 1 && (isMoved[from] || isMoved[to]))
+            increment.pose = poses_[from].inverse() * poses_[to];
+}
+
 void PoseGraph::append(const Edge& edge, const Matrix6& information) {
     const std::string name = nameOf(edge.from, edge.to);
     if (edge.from >= poses_.size() || edge.to >= poses_.size())

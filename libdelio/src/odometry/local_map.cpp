@@ -138,8 +138,9 @@ PointEstimate LocalMap::placeAnywhere(const Eigen::Matrix3Xd& coarse,
 }
 
 PointEstimate LocalMap::placeTurned(const Eigen::Matrix3Xd& coarse,
-                                    const Eigen::Isometry3d& predicted, double enough) const {
-    return searchTurns(points_, coarse, predicted, enough, pointOptions_);
+                                    const Eigen::Isometry3d& predicted, double enough,
+                                    double reach_rad) const {
+    return searchTurns(points_, coarse, predicted, reach_rad, enough, pointOptions_);
 }
 
 PointEstimate LocalMap::levelled(const ScanView& view, PointEstimate placed) const {

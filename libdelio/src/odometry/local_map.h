@@ -59,10 +59,11 @@ class LocalMap {
     PointEstimate placeAnywhere(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
                                 const SearchReach& reach, const Eigen::Matrix3f& upright) const;
 
-    /** By points, where the rotation of `predicted` may be off by up to 30 deg about any axis,
+    static constexpr double kTurned_rad = 0.55;
+    /** By points, where the rotation of `predicted` may be off by up to `reach_rad` about any axis,
      * until a share of `enough` fits. */
     PointEstimate placeTurned(const Eigen::Matrix3Xd& coarse, const Eigen::Isometry3d& predicted,
-                              double enough) const;
+                              double enough, double reach_rad = kTurned_rad) const;
 
     /** By points, where scans may be missing after the one at `latest` (sensor to map), while the
      *  sensor moved on by `increment` a scan. */

@@ -110,6 +110,7 @@ Step PlaneOdometry::process(const Scan& scan) {
         track(cloud, interval, step);
     carryToStamp(cloud.stamp_s, !motionWasKnown && !step.predicted && !step.interrupted, step);
     settleWindow(step);
+    correctPast(step);
 
     step.standing = isStanding(step, interval.duration_s);
     step.lost = isLostAfter(step);
@@ -161,6 +162,7 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
             update(estimate, placed, extrapolated, since_s, hasSight, view, step);
         else
             miss(cloud);
+        if (left_ && estimate.valid) rejoin(view);
     }
     if (!estimate.valid)
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";
@@ -347,6 +349,7 @@ void PlaneOdometry::miss(const PointCloud& cloud) {
     const unsigned misses = missesOf(state_) + (cloud.points.cols() > 0 ? 1 : 0);
     state_ = lostFrom(std::move(state_), misses);
     if (misses < kPatience) return;
+    leaveMap();
     takeScale(seenScale_);  // the map may have begun with the vehicle's own body
     beginMap(cloud, false);
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <deque>
 #include <optional>
 
 #include "core/voxel_grid.h"
@@ -122,6 +123,11 @@ class PlaneOdometry : public Odometry {
     void insertWaiting();
     void takeScale(double scale);
     bool isOtherScale();
+    // The map that the sensor left when it was lost (pipeline_rejoin.cpp).
+    void leaveMap();
+    void rejoin(const ScanView& view);
+    void moveToLeftMap(const Eigen::Isometry3d& toLeft);
+    void correctPast(Step& step);
     /** The vertical in the map's frame, of a sensor at `pose`. */
     Eigen::Vector3d upAt(const Eigen::Isometry3d& pose) const {
         return pose.linear() * upright_.row(2).transpose().cast<double>();
@@ -167,7 +173,9 @@ class PlaneOdometry : public Odometry {
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
     ScanTrajectory motion_{Twist{}};  //!< during the latest scan, seen from pose_
     Stamped stamped_;                 //!< the latest scan at its stamp
-    double unregistered_s_ = 0;       //!< since the latest scan that was registered
+    /** Sensor at the latest stamp to that at the first one, as the steps said. */
+    Eigen::Isometry3d said_ = Eigen::Isometry3d::Identity();
+    double unregistered_s_ = 0;  //!< since the latest scan that was registered
     /** The latest scan as it came, where its points have times, and its trajectory (sensor to map,
      *  times from the scan's). */
     struct Latest {
@@ -185,6 +193,26 @@ class PlaneOdometry : public Odometry {
         Eigen::Isometry3d reported = Eigen::Isometry3d::Identity();
     };
     std::optional<Start> start_;
+    /** The map before the sensor was lost: the new map began at a prediction. */
+    struct LeftMap {
+        LocalMap map;
+        ReferenceScan reference;
+        Eigen::Isometry3d toSaid = Eigen::Isometry3d::Identity();  //!< its frame to that of said_
+        double usualInlierRatio = 0;
+        double left_s = 0;   //!< time of the first scan in the new map
+        unsigned scans = 0;  //!< that were sought in it since
+        /** New map's frame to this map's, as the latest scan has it. */
+        std::optional<Eigen::Isometry3d> toThis;
+    };
+    std::optional<LeftMap> left_;
+    /** An earlier scan, whose pose later scans may correct. */
+    struct PastScan {
+        double time_s = 0;                                       //!< of the scan, since the start
+        double stamp_s = 0;                                      //!< its stamp, likewise
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< at the stamp, sensor to map
+        bool isCorrected = false;                                //!< by the latest scan
+    };
+    std::deque<PastScan> past_;  //!< the latest ones, oldest first
     /** The latest scan, until it enters the map: the next scan is thinned meanwhile. */
     std::optional<PlacedPoints> waiting_;
 

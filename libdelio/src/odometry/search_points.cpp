@@ -282,14 +282,14 @@ PointEstimate searchOnward(const PointMap& map, const Eigen::Matrix3Xd& points,
 }
 
 PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
-                          const Eigen::Isometry3d& guess, double enough,
+                          const Eigen::Isometry3d& guess, double reach_rad, double enough,
                           const PointRegistrationOptions& options) {
-    constexpr double kReach = 0.55, kStep = 0.11;  // rad
+    constexpr double kStep_rad = 0.11;
     constexpr Eigen::Index kFew = 250, kFewest = 60;
     constexpr std::size_t kLikely = 60;
     constexpr std::ptrdiff_t kTogether = 2;  // for any number of threads
     const double start = options.first_kernel / 2;
-    const auto likely = bestOf(turnsAbout(guess, kReach, kStep), kLikely, map,
+    const auto likely = bestOf(turnsAbout(guess, reach_rad, kStep_rad), kLikely, map,
                                sample(points, kFewest), start / 2, 0),
                starts = bestOf(likely, kBest, map, sample(points, kFew), start / 2, 0);
     const Eigen::Matrix3Xd part = sample(points, kEnough);

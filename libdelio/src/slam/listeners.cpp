@@ -16,6 +16,12 @@ void GraphBuilder::add(const SlamScan& scan) {
         graph_.addNode(graph_.poses().back() * scan.increment.pose);
         graph_.addEdge({latest.node - 1, latest.node, scan.increment});
     }
+    if (!scan.corrected.empty()) {
+        auto corrected = scan.corrected;
+        const Eigen::Isometry3d toGraph = graph_.poses().back() * scan.pose.inverse();
+        for (auto& node : corrected) node.pose = toGraph * node.pose;
+        graph_.correct(corrected);
+    }
     if (!scan.step.predicted && latest.features) {
         const std::size_t before = graph_.edges().size();
         addSkipEdges(latest);

@@ -79,15 +79,19 @@ ScanReport Slam::process(const Scan& scan) {
     report.step = odometry_->process(scan);
     requireFinite(report.step.increment, scan);
     auto& [poses, stamps_s] = trajectory_;
-    SlamScan told{nodes_, scan, report.step, {}, Eigen::Isometry3d::Identity()};
+    SlamScan told{nodes_, scan, report.step, {}, Eigen::Isometry3d::Identity(), {}};
     if (nodes_ > 0) {
         told.increment = ofVehicle(report.step.increment, sensorPose_, scan.sensorPose);
         told.pose = poses.back() * told.increment.pose;
+        for (const auto& [scansAgo, pose] : report.step.corrected)
+            told.corrected.push_back({nodes_ - scansAgo, told.pose * scan.sensorPose * pose *
+                                                             scan.sensorPose.inverse()});
     }
     if (history_ == History::Last) {
         poses.clear();
         stamps_s.clear();
-    }
+    } else
+        for (const auto& [node, pose] : told.corrected) poses[node] = pose;
     poses.push_back(told.pose);
     stamps_s.push_back(scan.stamp_s);
     ++nodes_;

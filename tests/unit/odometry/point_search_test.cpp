@@ -18,6 +18,8 @@ using test::poseAt;
 const test::Sensor kSensor{16, 900, -15, 15, 0.02};
 const PointRegistrationOptions kOptions;
 
+constexpr double kTurned_rad = 0.55;
+
 Eigen::Matrix3Xd seenFrom(const test::Scene& scene, const Isometry3d& pose, double spacing,
                           test::Noise& noise) {
     return voxelCentroids(test::ringScan(scene, pose, kSensor, noise).points, spacing)
@@ -82,7 +84,7 @@ TEST(PointSearch, ATurnOfTwentyDegreesAboutAnyAxisIsFound) {
             << "nothing to search for";
         for (const double enough : {0.5, 2.0}) {  // with the first that fits, and by all of them
             const auto found = odometry::searchTurns(pair.map, pair.scan, Isometry3d::Identity(),
-                                                     enough, kOptions);
+                                                     kTurned_rad, enough, kOptions);
             EXPECT_TRUE(found.valid);
             EXPECT_LT(offBy(found, moved), kFound_m) << axis.transpose();
             EXPECT_LT(test::degreesBetween(found.pose, moved), kFound_deg) << axis.transpose();
@@ -93,7 +95,9 @@ TEST(PointSearch, ATurnOfTwentyDegreesAboutAnyAxisIsFound) {
 TEST(PointSearch, WhereNothingFitsNoTurnIsFound) {
     const Pair pair = pairIn(test::yard(), Isometry3d::Identity());
     const Eigen::Matrix3Xd far = pair.scan.colwise() + Vector3d(500, 0, 0);
-    EXPECT_FALSE(odometry::searchTurns(pair.map, far, Isometry3d::Identity(), 0.5, kOptions).valid);
+    EXPECT_FALSE(
+        odometry::searchTurns(pair.map, far, Isometry3d::Identity(), kTurned_rad, 0.5, kOptions)
+            .valid);
 }
 
 // The disc of starts lies level, whatever the axes of the points.

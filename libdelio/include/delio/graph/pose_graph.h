@@ -17,6 +17,12 @@ struct Edge {
     Increment increment;   //!< `to` to `from`, covariance in the frame of `to`
 };
 
+/** Where a node is. */
+struct NodePose {
+    std::size_t node = 0;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< node's frame to the graph's
+};
+
 /** Construction and optimisation of a graph. */
 struct PoseGraphOptions : StageOptions {
     /** More edges than the chain (i,i+1): 1 adds (i,i+2), 2 adds (i,i+3) too, as long as the two
@@ -62,6 +68,10 @@ class PoseGraph {
     /** The same from an information matrix Omega, which is kept to the bit. */
     void addEdge(std::size_t from, std::size_t to, const Eigen::Isometry3d& pose,
                  const Matrix6& information);
+
+    /** Moves nodes that were measured better since. The edges of the chain (i, i+1) at these nodes
+     *  then lead where the nodes are; their covariances stay. Error as addNode(). */
+    void correct(const std::vector<NodePose>& corrected);
 
     /** Error, naming the node, where a node is not connected to node 0. */
     OptimisationResult optimise(const PoseGraphOptions& options);

@@ -51,6 +51,12 @@ class ScanFeatures {
                                        const Eigen::Isometry3d& guess) const = 0;
 };
 
+/** The pose of an earlier scan, which later scans have corrected. */
+struct CorrectedPose {
+    std::size_t scansAgo = 0;                                //!< 1: the scan before
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor's frame then to that now
+};
+
 /** A named value. */
 using Named = std::pair<std::string, double>;
 
@@ -59,6 +65,9 @@ struct Step {
     /** Maps the sensor's frame at this scan to that at the scan before; identity for the first.
      *  The covariance of a predicted one is the motion model's. */
     Increment increment;
+    /** Earlier scans that are now known to have been elsewhere, oldest first: after a start in
+     *  motion and after a loss. `increment` leads from where the scan before was said to be. */
+    std::vector<CorrectedPose> corrected;
     bool predicted = false;  //!< the scan could not be registered: `increment` is the prediction
     std::string reason;      //!< why; empty where it was registered
     /** Where the sensor went since it was tracked last is not known: the scan was not found in the

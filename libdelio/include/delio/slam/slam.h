@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "delio/formats/trajectory.h"
+#include "delio/graph/pose_graph.h"
 #include "delio/odometry/odometry.h"
 #include "delio/odometry/scan.h"
 #include "delio/odometry/step.h"
@@ -14,6 +15,9 @@ namespace delio {
 /** Poses kept: of all scans, or only of the last one, so that memory does not grow with the drive.
  */
 enum class History { All, Last };
+
+/** Pose of a node: vehicle to world. */
+using NodePose = graph::NodePose;
 
 /** One scan as Slam passes it to its listeners. References are valid during the call. */
 struct SlamScan {
@@ -25,6 +29,8 @@ struct SlamScan {
     /** Of the vehicle, by the odometry alone: maps its coordinates to those it had at the first
      *  scan. */
     Eigen::Isometry3d pose;
+    /** The same of earlier scans whose poses this one corrects (Step::corrected). */
+    std::vector<NodePose> corrected;
 };
 
 /** Static points of a scan, in the vehicle's frame: at most 20 000, as several scans are merged. */
