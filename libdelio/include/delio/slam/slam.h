@@ -30,7 +30,7 @@ struct SlamScan {
      *  scan. */
     Eigen::Isometry3d pose;
     /** The same of earlier scans whose poses this one corrects (Step::corrected). */
-    std::vector<NodePose> corrected;
+    std::vector<NodePose> corrected = {};
 };
 
 /** Static points of a scan, in the vehicle's frame: at most 20 000, as several scans are merged. */
