@@ -70,6 +70,16 @@ void bindPoses(StepClass& step) {
             "(4, 4): maps the sensor's coordinates to those at the scan before; identity for the "
             "first scan.")
         .def_property_readonly(
+            "corrected",
+            [](const PythonStep& of) {
+                py::list poses;
+                for (const auto& [scansAgo, pose] : of.step.corrected)
+                    poses.append(py::make_tuple(scansAgo, arrayOf(pose)));
+                return poses;
+            },
+            "list of (scans_ago, (4, 4)): earlier scans that are now known to have been elsewhere; "
+            "each pose maps the sensor's coordinates at that scan to those at this one.")
+        .def_property_readonly(
             "covariance",
             [](const PythonStep& of) {
                 return arrayOf(Eigen::MatrixXd(of.step.increment.covariance));

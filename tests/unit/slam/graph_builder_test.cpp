@@ -54,6 +54,25 @@ TEST(GraphBuilder, EachScanGetsItsEdgesAndMovesTheWindow) {
     }
 }
 
+// A scan may know better where the scans before it were: their nodes move, and the chain with them.
+TEST(GraphBuilder, CorrectedPosesMoveTheirNodes) {
+    constexpr double kExact_m = 1e-12;
+    const Told drive{Options()};
+    GraphBuilder builder{graph::PoseGraphOptions()};
+    const std::size_t last = drive.size() - 1;
+    for (std::size_t i = 0; i < last; ++i) builder.add(drive.at(i));
+    SlamScan told = drive.at(last);
+    const Eigen::Isometry3d moved = told.pose * Eigen::Translation3d(-2, 0.5, 0);
+    told.corrected = {{last - 1, moved}};
+    builder.add(told);
+    const auto& poses = builder.graph().poses();
+    EXPECT_TRUE(poses[last - 1].isApprox(moved, kExact_m));
+    EXPECT_TRUE(poses[last - 2].isApprox(drive.at(last - 2).pose, kExact_m));
+    EXPECT_TRUE(poses[last].isApprox(told.pose, kExact_m));
+    for (const auto& [from, to, increment] : builder.graph().edges())
+        EXPECT_TRUE(increment.pose.isApprox(poses[from].inverse() * poses[to], kExact_m)) << from;
+}
+
 // An odometry may keep features of some scans only.
 TEST(GraphBuilder, AScanWithoutFeaturesHasNoSkipEdges) {
     const Told drive(withWindow());

@@ -216,6 +216,35 @@ class AnyScan : public Odometry {
     Step process(const Scan&) override { return {}; }
 };
 
+/** A metre a scan; the third one corrects the second. */
+class Correcting : public Odometry {
+ public:
+    Step process(const Scan&) override {
+        Step step;
+        if (scans_++ > 0) step.increment.pose.translation().x() = 1;
+        if (scans_ == 3) step.corrected = {{1, Eigen::Isometry3d(Eigen::Translation3d(-3, 0, 1))}};
+        return step;
+    }
+
+ private:
+    unsigned scans_ = 0;
+};
+
+TEST(Slam, CorrectedPosesReplaceThoseOfEarlierScans) {
+    constexpr double kExact_m = 1e-12;
+    Slam slam(std::make_unique<Correcting>()), last(std::make_unique<Correcting>(), History::Last);
+    for (Scan scan : scansOf(drive(4))) {
+        scan.sensorPose = test::poseAt(0.5, 0, 2, M_PI / 2);  // the vehicle's x is the sensor's -y
+        slam.process(scan);
+        last.process(scan);
+    }
+    // Increments lead on from where the scans were said to be.
+    const std::vector<Eigen::Vector3d> expected = {{0, 0, 0}, {0, -1, 1}, {0, 2, 0}, {0, 3, 0}};
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_LT((slam.trajectory().poses[i].translation() - expected[i]).norm(), kExact_m) << i;
+    EXPECT_LT((last.trajectory().poses[0].translation() - expected[3]).norm(), kExact_m);
+}
+
 std::string faultOf(const std::function<void()>& act) {
     try {
         act();
