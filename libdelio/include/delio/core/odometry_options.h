@@ -266,7 +266,7 @@ struct LineRegistrationOptions : public StageOptions {
 
     // Not read from .ini files:
     double min_angle_deg = 15;        //!< deg; lines at smaller angles count as parallel
-    double short_length = 0.06;       //!< m; pairs of much shorter lines hardly count
+    double short_length = 0.12;       //!< m; pairs of much shorter lines hardly count
     double max_distance = 5;          //!< m; midpoints of a pair are at most so far apart
     double min_observability = 0.03;  //!< 0 to 1; an axis seen less is unobserved
     double independent_share = 0.25;  //!< of the pairs, that count as independent in the covariance
