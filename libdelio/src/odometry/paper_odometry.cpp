@@ -112,6 +112,7 @@ std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const PointCloud& cl
         modes = found.size();
         return paper::patternOfModes(normals, found, options_->meanShift, options_->outliers);
     });
+    paper::weighGround(features->pattern, upright().transpose().col(2), options_->pattern);
     // Another draw for every scan: of two scans made from nearly one place, the same draw gives
     // nearly the same lines, each of which then pairs with itself and holds the vehicle at rest.
     auto lineOptions = options_->lines;

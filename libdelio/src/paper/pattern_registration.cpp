@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/kd_tree.h"
+#include "core/portable_math.h"
 #include "core/principal_axes.h"
 #include "core/voxel_grid.h"
 #include "delio/core/geometry.h"
@@ -225,6 +226,14 @@ void settle(const Pattern& to, const Eigen::Matrix3d& predicted,
     estimate.rotation = predicted * rotationExp(correction);
 }
 }  // namespace
+
+void weighGround(Pattern& pattern, const Eigen::Vector3f& up,
+                 const PatternRegistrationOptions& options) {
+    const auto cosine = static_cast<float>(portable::cos(options.ground_deg * kDeg));
+    const auto weight = static_cast<float>(options.ground_weight);
+    for (Eigen::Index i = 0; i < pattern.directions.cols(); ++i)
+        if (std::abs(up.dot(pattern.directions.col(i))) > cosine) pattern.weights[i] *= weight;
+}
 
 RotationEstimate registerPatterns(const Pattern& from, const Pattern& to,
                                   const Eigen::Matrix3d& predicted,

@@ -292,4 +292,44 @@ TEST(PatternRegistration, MoreNormalsGiveASmallerCovariance) {
         }
     }
 }
+
+TEST(PatternRegistration, OnlyNormalsNearTheSpinAxisAreGround) {
+    const Eigen::Vector3f up = Eigen::Vector3f(0.1F, -0.2F, 1).normalized();
+    const Eigen::Vector3f across = up.unitOrthogonal();
+    const auto tilted = [&](float deg) {
+        const float angle = deg * static_cast<float>(kDeg);
+        return Eigen::Vector3f(std::cos(angle) * up + std::sin(angle) * across);
+    };
+    Pattern pattern;
+    pattern.directions.resize(3, 5);
+    pattern.directions << tilted(0), tilted(24), tilted(26), -tilted(24), across;
+    pattern.weights = Eigen::VectorXf::Constant(5, 0.8F);
+    PatternRegistrationOptions options;
+    options.ground_weight = 0.25;
+    paper::weighGround(pattern, up, options);
+    const auto expected = (Eigen::VectorXf(5) << 0.2F, 0.2F, 0.8F, 0.2F, 0.8F).finished();
+    EXPECT_LT((pattern.weights - expected).cwiseAbs().maxCoeff(), 1e-6F);
+}
+
+// The road bends under a vehicle that pitches with it: walls turn, the visible ground does not.
+TEST(PatternRegistration, WallsGiveThePitchWhereTheGroundMovesAlong) {
+    test::Noise noise;
+    const Eigen::Matrix3d truth = rotationAbout({0, 1, 0}, 0.4);
+    const auto walls = blobs({{1, 0, 0}, {0, 1, 0}}, 500, 1, noise);
+    const auto ground = blobs({{0, 0, 1}}, 2000, 1, noise);
+    const auto errorAt = [&](double weight) {
+        PatternRegistrationOptions options;
+        options.ground_weight = weight;
+        Eigen::Matrix3Xd before(3, 3000), now(3, 3000);
+        before << walls, ground;
+        now << truth.transpose() * walls, ground;
+        Pattern from = patternOf(before), to = patternOf(now);
+        paper::weighGround(from, Eigen::Vector3f::UnitZ(), options);
+        paper::weighGround(to, Eigen::Vector3f::UnitZ(), options);
+        return degreesBetween(
+            registerPatterns(from, to, Eigen::Matrix3d::Identity(), options).rotation, truth);
+    };
+    EXPECT_GT(errorAt(1), 0.3);
+    EXPECT_LT(errorAt(0.1), 0.1);
+}
 }  // namespace

@@ -186,16 +186,20 @@ struct MeanShiftOptions : public StageOptions {
  *  sphere, as the paper says; inside a dense blob every normal then finds a partner beside itself,
  *  which pulls towards the start. With a kernel, the densities of the two patterns are correlated
  *  instead: each normal is paired with all normals of the other pattern, weighted by a Gaussian of
- *  the angle between them that narrows from `kernel_deg` to `last_kernel_deg`. */
+ *  the angle between them that narrows from `kernel_deg` to `last_kernel_deg`. The part of the
+ *  ground that a scan sees moves along with the vehicle: `ground_weight` below 1 leaves roll and
+ *  pitch to walls, where there are any. */
 struct PatternRegistrationOptions : public StageOptions {
     double kernel_deg = 8;
     double last_kernel_deg = 0.7;
     double cell_deg = 0.5;
     unsigned max_iterations = 60;
+    double ground_weight = 1;
     double max_correction_deg = 30;
     double prior_sigma_deg = 1.0;
 
     // Not read from .ini files:
+    double ground_deg = 25;           //!< deg; normals so near to the spin axis are ground
     double converged_deg = 0.001;     //!< deg; a smaller step ends the iteration
     unsigned min_normals = 50;        //!< that are needed; fewer: predicted
     double min_observability = 0.01;  //!< 0 to 1; an axis seen less is unobserved
@@ -262,7 +266,7 @@ struct LineRegistrationOptions : public StageOptions {
 
     // Not read from .ini files:
     double min_angle_deg = 15;        //!< deg; lines at smaller angles count as parallel
-    double short_length = 0.06;       //!< m; pairs of much shorter lines hardly count
+    double short_length = 0.12;       //!< m; pairs of much shorter lines hardly count
     double max_distance = 5;          //!< m; midpoints of a pair are at most so far apart
     double min_observability = 0.03;  //!< 0 to 1; an axis seen less is unobserved
     double independent_share = 0.25;  //!< of the pairs, that count as independent in the covariance
