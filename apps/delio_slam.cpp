@@ -31,7 +31,8 @@ using namespace delio;
 namespace fs = std::filesystem;
 
 struct Reading {
-    std::optional<Scan> scan;  //!< nothing at the end
+    std::optional<Scan> scan;    //!< nothing at the end
+    std::vector<ImuSample> imu;  //!< that were read with it
     std::optional<double> fraction;
 };
 
@@ -42,7 +43,7 @@ Reading read(io::ScanReader& reader, std::size_t passedOver) {
         if (!reader.skip()) break;
     }
     auto scan = reader.next();
-    return {std::move(scan), reader.fraction()};
+    return {std::move(scan), reader.takeImu(), reader.fraction()};
 }
 
 void warnOfOthers(const io::ScanReader& reader,
@@ -64,6 +65,8 @@ void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double 
             // Do not read beyond the last scan: a fault there does not matter.
             std::future<Reading> next;
             if (done != count) next = std::async(policy, [&] { return read(reader, passedOver); });
+            if (!line.noImu.getValue())
+                for (const auto& sample : now.imu) run.addImu(sample);
             const auto row = run.process(*now.scan, read_ms);
             if (line.verbose.getValue()) cli::inform(describe(row));
             progress.update(done, now.fraction);

@@ -95,6 +95,7 @@ struct SlamCommandLine {
                   cmd};
     Switch keepDynamic{"", "keep-dynamic", "Also write the removed dynamic points: map_dynamic.ply",
                        cmd};
+    Switch noImu{"", "no-imu", "Do not use the recording's IMU", cmd};
     Switch noMap{"", "no-map", "Do not build a map", cmd};
     Switch noLoops{"", "no-loops", "Do not search for loop closures", cmd};
     Switch noGraph{"", "no-graph", "Skip pose-graph optimisation and loop closures", cmd};

@@ -44,7 +44,9 @@ DriveWriter::DriveWriter(const DriveRequest& request, const Scene& scene, const 
       window_(scene, caster_),
       scanner_(caster_, &trafficCaster_, request.sensor, request.scanner),
       writer_(request.output, kLabel, request.embed, request.force),
-      faults_(kFaultsHeader) {}
+      faults_(kFaultsHeader) {
+    if (request.imu) imu_.emplace(*request.imu, drive, request.scanner.seed);
+}
 
 int DriveWriter::write() {
     if (traffic_.size() < request_.movers)
@@ -63,6 +65,7 @@ int DriveWriter::write() {
 }
 
 void DriveWriter::writeScan(std::size_t scan) {
+    addImu(kScanPeriod_s * static_cast<double>(scan));
     const Fault fault = faultOf(request_.faults, scan, request_.scanner.seed);
     if (fault != Fault::kNone) {
         const std::string written =
@@ -92,6 +95,12 @@ void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
     poses_ += poseRow(scan);
 }
 
+/** Samples up to this stamp. */
+void DriveWriter::addImu(double stamp_s) {
+    if (!imu_) return;
+    while (const auto sample = imu_->next(stamp_s)) writer_.add(*sample, io::kDriveEpoch_s);
+}
+
 /** Pose of cam0 in the world at the first scan, which relates two drives through one world. */
 std::string DriveWriter::origin() const {
     return io::kittiRow(cam0PoseOf(drive_.lidarPose(0), lidarToCam0()));
@@ -112,13 +121,16 @@ std::string DriveWriter::calibration() const {
 }
 
 void DriveWriter::finish() {
+    constexpr double kAfter_s = 0.3;
+    addImu(kScanPeriod_s * static_cast<double>(drive_.scans()) + kAfter_s);
     io::DriveMeta meta;
     meta.sensorModel = request_.sensor.name;
     meta.source = "synthetic";
     meta.motionCompensated = !request_.distort;
     meta.epoch_s = io::kDriveEpoch_s;
     meta.generator = std::string("synth2rawlog 2 (delio ") + kVersion + ")";
-    writer_.finish(meta, times_, calibration(), poses_, faults_, origin());
+    writer_.finish(meta, times_, calibration(), poses_, faults_, origin(),
+                   imu_ ? imu_->truth() : "");
     cli::inform("wrote " + std::to_string(writer_.scans()) + " scans, " +
                 std::to_string(
                     std::lround(std::abs(drive_.station(drive_.scans() - 1) - drive_.station(0)))) +

@@ -1,11 +1,13 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "delio/mrpt/rawlog_writer.h"
 #include "drive.h"
 #include "faults.h"
+#include "imu.h"
 #include "mount.h"
 #include "ray_caster.h"
 #include "scanner.h"
@@ -24,6 +26,7 @@ struct DriveRequest {
     FaultRates faults;
     bool distort = false;  //!< every column is fired on the way: OUT_Images/NNNNNN.time says when
     bool labels = false;   //!< OUT_Images/NNNNNN.label says which points move
+    std::optional<ImuModel> imu;  //!< recorded beside the scans
     bool embed = false, force = false;
 };
 
@@ -42,6 +45,7 @@ class DriveWriter {
  private:
     void writeScan(std::size_t scan);
     void add(std::size_t scan, const ScanPoints& points);
+    void addImu(double stamp_s);
     ScanPoints simulate(std::size_t scan);
     std::string poseRow(std::size_t scan) const;
     std::string origin() const;
@@ -56,6 +60,7 @@ class DriveWriter {
     TileWindow window_;
     Scanner scanner_;
     io::RawlogWriter writer_;
+    std::optional<Imu> imu_;
     ScanPoints last_;  //!< what a repeated scan repeats
     std::string times_, poses_, faults_;
 };

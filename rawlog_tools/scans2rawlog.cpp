@@ -72,6 +72,7 @@ class Conversion {
         while (count == 0 || writer_.scans() < count) {
             const auto scan = next(passed);
             if (cli::interrupted()) return false;
+            for (const auto& sample : reader_.takeImu()) imu_.push_back(sample);
             if (!scan) break;
             add(*scan);
             progress.update(writer_.scans(), reader_.fraction());
@@ -92,6 +93,7 @@ class Conversion {
         if (meta.sensorModel == "unknown" && !recording.sensor.empty())
             meta.sensorModel = recording.sensor;
         meta.epoch_s = epoch_s_;
+        for (const auto& sample : imu_) writer_.add(sample, epoch_s_);
         meta.generator = std::string("scans2rawlog (delio ") + kVersion + ")";
         writer_.finish(meta, times_, reader_.calibration().text, poses_);
         return writer_.scans();
@@ -121,6 +123,8 @@ class Conversion {
             epoch_s_ = reader_.meta() && reader_.meta()->epoch_s > 0
                            ? reader_.meta()->epoch_s
                            : std::round(mrpt::Clock::toDouble(scan.time) - scan.stamp_s);
+        for (const auto& sample : imu_) writer_.add(sample, epoch_s_);
+        imu_.clear();
         writer_.add(scan, epoch_s_);
         char row[48];
         std::snprintf(row, sizeof(row), "%.9f\n", scan.stamp_s);
@@ -132,6 +136,7 @@ class Conversion {
     io::ScanReader& reader_;
     std::vector<std::string> truth_;
     io::RawlogWriter writer_;
+    std::vector<ImuSample> imu_;  //!< before the next scan
     double epoch_s_ = 0;
     std::string times_, poses_, fault_;
 };
@@ -177,7 +182,7 @@ int convert(Arguments& args) {
 cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
-        {"OUT.rawlog", "one CObservationPointCloud per scan"},
+        {"OUT.rawlog", "one CObservationPointCloud per scan, one CObservationIMU per IMU sample"},
         {"OUT_Images/",
          "their points, x y z intensity as float32 (not with --embed), and rings and times where "
          "they exist; start RawLogViewer in the rawlog's folder to see the points"},

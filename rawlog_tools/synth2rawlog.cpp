@@ -134,6 +134,27 @@ struct Arguments {
         cmd};
     TCLAP::ValueArg<std::string> sensor{
         "", "sensor", "Sensor", false, "hdl64e", choiceOf(sensorNames()), cmd};
+    TCLAP::ValueArg<double> imu{
+        "",    "imu", "Also record an IMU at so many samples a second (CObservationIMU, label imu)",
+        false, 0,     "HZ",
+        cmd};
+    TCLAP::ValueArg<std::string> imuGrade{"",    "imu-grade",         "Its noise and bias",
+                                          false, imuGrades().front(), choiceOf(imuGrades()),
+                                          cmd};
+    TCLAP::ValueArg<double> imuBias{
+        "",    "imu-bias", "Its bias at the start about each axis, deg/s; default: of its grade",
+        false, 0,          "DEG_S",
+        cmd};
+    TCLAP::ValueArg<double> imuOffset{
+        "", "imu-offset", "Seconds by which its stamps are late", false, 0, "S", cmd};
+    TCLAP::ValueArg<std::string> imuMount{
+        "",
+        "imu-mount",
+        "Its orientation on the vehicle, degrees; the rawlog does not contain it",
+        false,
+        "0,0,0",
+        "ROLL,PITCH,YAW",
+        cmd};
     TCLAP::ValueArg<double> noise{
         "", "noise", "Standard deviation of the range noise, metres", false, 0.01, "M", cmd};
     TCLAP::ValueArg<double> ringBias{
@@ -235,6 +256,39 @@ std::string faultInDrive(Arguments& args) {
     return "";
 }
 
+/** The same of the IMU. */
+std::string faultInImu(Arguments& args) {
+    constexpr double kMost_hz = 10000, kMostOffset_s = 1;
+    for (auto* option : {&args.imuBias, &args.imuOffset})
+        if (option->isSet() && !args.imu.isSet()) return "--" + option->getName() + " needs --imu";
+    for (auto* option : {&args.imuGrade, &args.imuMount})
+        if (option->isSet() && !args.imu.isSet()) return "--" + option->getName() + " needs --imu";
+    if (!args.imu.isSet()) return "";
+    if (!(args.imu.getValue() >= 1 && args.imu.getValue() <= kMost_hz))
+        return "--imu must be between 1 and 10000 Hz";
+    if (!imuOfGrade(args.imuGrade.getValue()))
+        return "unknown --imu-grade '" + args.imuGrade.getValue() +
+               "'; choose one of: " + listed(imuGrades());
+    if (!(std::abs(args.imuOffset.getValue()) <= kMostOffset_s))
+        return "--imu-offset must be between -1 and 1 s";
+    if (!std::isfinite(args.imuBias.getValue())) return "--imu-bias must be a number";
+    if (!mountIn(args.imuMount.getValue()))
+        return "--imu-mount needs ROLL,PITCH,YAW in degrees, not '" + args.imuMount.getValue() +
+               "'";
+    return "";
+}
+
+std::optional<ImuModel> imuOf(Arguments& args) {
+    if (!args.imu.isSet()) return {};
+    auto model = imuOfGrade(args.imuGrade.getValue());
+    model->rate_hz = args.imu.getValue();
+    model->offset_s = args.imuOffset.getValue();
+    model->mount = *mountIn(args.imuMount.getValue());
+    if (args.imuBias.isSet())
+        model->rateBias_radps = args.imuBias.getValue() * 3.14159265358979323846 / 180;
+    return model;
+}
+
 DriveRequest requestOf(Arguments& args) {
     DriveRequest request;
     request.output = args.output.getValue();
@@ -254,6 +308,7 @@ DriveRequest requestOf(Arguments& args) {
         std::tie(request.faults.gapFirst, request.faults.gapScans) = *gapIn(args.gap.getValue());
     request.distort = args.distort.getValue();
     request.labels = args.labels.getValue();
+    request.imu = imuOf(args);
     request.embed = args.embed.getValue();
     request.force = args.force.getValue();
     return request;
@@ -269,6 +324,7 @@ int makeDrive(Arguments& args) {
     std::string fault = faultInScene(args);
     if (fault.empty()) fault = faultInMotion(args);
     if (fault.empty()) fault = faultInDrive(args);
+    if (fault.empty()) fault = faultInImu(args);
     if (!fault.empty()) {
         cli::inform(fault + "; see --help");
         return cli::kExitBadCommandLine;
@@ -300,6 +356,7 @@ cli::HelpText help() {
         {"OUT.times.txt, OUT.calib.txt, OUT.poses.txt", "in KITTI's formats; the poses are exact"},
         {"OUT.origin.txt", "pose of cam0 in the world at the first scan"},
         {"OUT.faults.tsv", "lost, repeated and empty scans"},
+        {"OUT.imu.yaml", "with --imu: its true orientation, offset and bias"},
         {"OUT.meta.yaml", "sensor model and processing of the points"}};
     help.examples = {{{"synth2rawlog -o town.rawlog --scene urban --scans 100 --movers 20",
                        "A street with traffic"},

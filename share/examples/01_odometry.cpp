@@ -31,7 +31,10 @@ int main(int argc, char** argv) try {
     };
     delio::run::Run run(options, settings);
     run.readSideFiles(reader->calibration(), reader->truth());
-    while (const auto scan = reader->next()) run.process(*scan);
+    while (const auto scan = reader->next()) {
+        for (const auto& sample : reader->takeImu()) run.addImu(sample);
+        run.process(*scan);
+    }
     run.finish(/*complete=*/true);
     const auto fault = delio::run::RunFolder(results).write(run.record(), run.maps());
     if (!fault.empty()) throw delio::Error(fault);

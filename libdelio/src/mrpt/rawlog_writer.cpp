@@ -10,6 +10,7 @@
 #include "clock.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
+#include "imu_observation.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -18,8 +19,8 @@ using mrpt::obs::CObservationPointCloud;
 
 namespace {
 constexpr const char* kImages = "_Images";
-constexpr const char* kSideFiles[] = {".meta.yaml", ".times.txt",  ".calib.txt",
-                                      ".poses.txt", ".faults.tsv", ".origin.txt"};
+constexpr const char* kSideFiles[] = {".meta.yaml",  ".times.txt",  ".calib.txt", ".poses.txt",
+                                      ".faults.tsv", ".origin.txt", ".imu.yaml"};
 
 /** `path`, if it can be a drive's. */
 const std::string& checked(const std::string& path) {
@@ -146,12 +147,23 @@ void RawlogWriter::setPoints(CObservationPointCloud& observation, const std::vec
 void RawlogWriter::append(CObservationPointCloud& observation, double stamp_s, double epoch_s) {
     observation.sensorLabel = label_;
     observation.timestamp = timeOf(stamp_s, epoch_s);
+    put(observation);
+    ++count_;
+}
+
+void RawlogWriter::add(const ImuSample& sample, double epoch_s) {
+    auto observation = observationOf(sample);
+    observation.sensorLabel = "imu";
+    observation.timestamp = timeOf(sample.stamp_s, epoch_s);
+    put(observation);
+}
+
+void RawlogWriter::put(const mrpt::obs::CObservation& observation) {
     try {
         mrpt::serialization::archiveFrom(out_) << observation;
     } catch (const std::exception&) {  // MRPT's words do not name the file
         giveUp();
     }
-    ++count_;
 }
 
 std::string RawlogWriter::extraFile(const std::string& extension) const {
@@ -162,7 +174,8 @@ std::string RawlogWriter::extraFile(const std::string& extension) const {
 
 void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
                           const std::string& calibText, const std::string& posesText,
-                          const std::string& faultsText, const std::string& originText) {
+                          const std::string& faultsText, const std::string& originText,
+                          const std::string& imuText) {
     // A full disk may show only now: everything that was handed over has to be in the file.
     const auto written = out_.getPosition();
     out_.close();
@@ -176,6 +189,7 @@ void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
     writeText(".poses.txt", posesText);
     writeText(".faults.tsv", faultsText);
     writeText(".origin.txt", originText);
+    writeText(".imu.yaml", imuText);
     writeText(".meta.yaml", textOf(meta));
     std::vector<std::string> names;  // the rawlog's first: it marks the whole
     for (const auto& output : outputsOf(path_)) names.push_back(fs::path(output).filename());

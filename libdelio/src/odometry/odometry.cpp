@@ -29,6 +29,10 @@ void requireConsistent(const Scan& scan) {
     if (!scan.sensorPose.matrix().allFinite()) throw Error(name + ": sensorPose is not finite");
 }
 
+void Odometry::addImu(const ImuSample& /*sample*/) {}
+
+std::optional<ImuReport> Odometry::imuReport() const { return {}; }
+
 namespace odometry {
 Quality qualityOf(const RotationEstimate& rotation, const TranslationEstimate& translation) {
     Quality quality;

@@ -91,6 +91,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     const Arrival arrival = arrivals_.take(scan, scan.stamp_s - cloud.stamp_s);
     const Interval& interval = arrival.interval;
     unregistered_s_ += interval.elapsed_s;
+    advanceGyro(cloud, scan);
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
     step.interrupted = !isEmpty && interval.kind == IntervalKind::kUnknown;
@@ -120,6 +121,7 @@ Step PlaneOdometry::process(const Scan& scan) {
         beginMap(cloud, !std::holds_alternative<Degenerate>(state_));
     }
     step.details.emplace_back("scale", scale_);
+    gyro_.count(usesGyro_);
     step.used.indices = std::move(cloud.indices);
     keep(std::move(cloud), step);
     return step;
@@ -141,7 +143,7 @@ void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Ste
     Attempt attempt =
         step.interrupted && prediction_.hasMotion()
             ? attemptAfterPause(cloud, interval, since_s, step)
-            : attemptAsPredicted(cloud, interval.duration_s, since_s, !step.interrupted, step);
+            : attemptWithGyro(cloud, interval.duration_s, since_s, !step.interrupted, step);
     auto& [predicted, extrapolated, motion, view, voxels, sight, placement] = attempt;
     motion_ = motion;
     const PointEstimate& placed = placement.estimate;
@@ -366,10 +368,13 @@ void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& 
             usualInlierRatio_ = usualInlierRatio_ == 0 ? placed.inlierRatio
                                                        : (1 - kForget) * usualInlierRatio_ +
                                                              kForget * placed.inlierRatio;
-        kernel_.observe(pose_, predicted);
+        learnFromGyro(predicted, since_s);
+        kernel_.observe(pose_, usesGyro_ ? atConstantSpeed_ : predicted);
         unevenness_.observe(reference_.pose.inverse() * pose_, prediction_.predict(since_s));
     }
     prediction_.observe(reference_.pose.inverse() * pose_, since_s);
+    gyro_.observe(reference_.time_s, reference_.time_s + since_s,
+                  reference_.pose.linear().transpose() * pose_.linear());
 }
 
 /** What is known of the next scan's pose, `since_s` after the latest registered scan. */
@@ -460,7 +465,7 @@ void PlaneOdometry::carryToStamp(double stamp_s, bool hasFoundMotion, Step& step
 ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     // The second scan has this one alone to be registered against: it enters as dense as it came.
     constexpr double kDense = 0.2;
-    const bool isSkewed = window_.isEmpty() && !cloud.times_s.empty();
+    const bool isSkewed = window_.isEmpty() && !cloud.times_s.empty() && !usesGyro_;
     ScanView view = undistorted(cloud, isSkewed ? ScanTrajectory(Twist{}) : motion_);
     odometry::thin(view, kDense * options_.spacing.map_spacing, options_.spacing.scan_spacing);
     map_.clear(upAt(pose_));

@@ -7,6 +7,7 @@
 #include "delio/odometry/odometry.h"
 #include "odometry/arrivals.h"
 #include "odometry/dynamic_objects.h"
+#include "odometry/inertial.h"
 #include "odometry/initial_guess.h"
 #include "odometry/motion_model.h"
 #include "odometry/register_together.h"
@@ -39,6 +40,8 @@ class PlaneOdometry : public Odometry {
     explicit PlaneOdometry(const PlaneOdometryOptions& options);
 
     Step process(const Scan& scan) override;
+    void addImu(const ImuSample& sample) override { gyro_.add(sample); }
+    std::optional<ImuReport> imuReport() const override { return gyro_.report(); }
 
  private:
     void begin(const PointCloud& cloud, Step& step);
@@ -80,6 +83,16 @@ class PlaneOdometry : public Odometry {
         const auto* first = std::get_if<FirstScan>(&state_);
         return first && first->skewed;
     }
+
+    // The rotation by a gyroscope (pipeline_gyro.cpp).
+    void advanceGyro(const PointCloud& cloud, const Scan& scan);
+    std::optional<Attempt> attemptByGyro(const PointCloud& cloud, double duration_s, double since_s,
+                                         Step& step);
+    Attempt attemptWithGyro(const PointCloud& cloud, double duration_s, double since_s,
+                            bool timeIsKnown, Step& step);
+    std::optional<ScanTrajectory> trajectoryByGyro(const KnownEnds& known,
+                                                   const PointCloud& cloud) const;
+    void learnFromGyro(const Eigen::Isometry3d& predicted, double since_s);
 
     // The stages of track(), in their order.
     Extrapolation predictMotion(double duration_s);
@@ -147,12 +160,13 @@ class PlaneOdometry : public Odometry {
     }
     /** Predictions are off by more than any kernel. */
     bool isShaken() const {
-        return kernel_.isKnown() && kernel_m() >= options_.points.first_kernel;
+        return kernel().isKnown() && kernel_m() >= options_.points.first_kernel;
     }
     Motion motion() const;
     double kernel_m() const {
-        return kernel_.width(options_.points.least_kernel, options_.points.first_kernel);
+        return kernel().width(options_.points.least_kernel, options_.points.first_kernel);
     }
+    const AdaptiveKernel& kernel() const { return usesGyro_ ? gyroKernel_ : kernel_; }
     PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose) const {
         return odometry::predictedEstimate(pose, options_.registration,
                                            errorGrowth(unregistered_s_));
@@ -222,5 +236,12 @@ class PlaneOdometry : public Odometry {
     Unevenness unevenness_;
     std::optional<Extrapolation> extrapolation_;  //!< where the points have times
     double usualInlierRatio_ = 0;                 //!< 0: not known
+
+    // The rotation by a gyroscope, and how far predictions by it are off.
+    GyroPrior gyro_;
+    bool usesGyro_ = false;  //!< for this scan
+    AdaptiveKernel gyroKernel_;
+    Unevenness gyroUnevenness_;
+    Eigen::Isometry3d atConstantSpeed_ = Eigen::Isometry3d::Identity();  //!< predicted without it
 };
 }  // namespace delio::odometry

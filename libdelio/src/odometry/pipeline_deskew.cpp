@@ -9,8 +9,8 @@ constexpr double kNoise = 0.02;  //!< of an inlier ratio
 
 ScanTrajectory PlaneOdometry::refined(const ScanTrajectory& start, const KnownEnds& known,
                                       const PointCloud& cloud, const ScanView& view) const {
-    return refinedTrajectory(map_.planes(), start, known.since_s, cloud, view, unevenness_,
-                             kernel_m(), options_);
+    return refinedTrajectory(map_.planes(), start, known.since_s, cloud, view,
+                             usesGyro_ ? gyroUnevenness_ : unevenness_, kernel_m(), options_);
 }
 
 /** The scan that the map began with, which is all there is in it, as seen on this trajectory. */
@@ -56,7 +56,8 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewByMotion(const KnownEnds& k
     const auto along = [&](const ScanTrajectory& trajectory) {
         return registerAlong(trajectory, known, map_, cloud, view, options_);
     };
-    const ScanTrajectory constant = constantTwist(known, cloud);
+    const ScanTrajectory constant =
+        trajectoryByGyro(known, cloud).value_or(constantTwist(known, cloud));
     auto best = along(refined(constant, known, cloud, view));
     for (unsigned round = 1; round < mostRounds && best; ++round) {
         auto next = along(refined(best->trajectory, known, cloud, view));

@@ -7,6 +7,7 @@
 #include "delio/core/error.h"
 #include "delio/recordings/scan_reader.h"
 #include "files/input_file.h"
+#include "imu_samples.h"
 #include "message_source.h"
 #include "ouster.h"
 #include "scan_maker.h"
@@ -37,7 +38,7 @@ std::string recordedDescription(const std::string& topic, const OpenSource& open
             found = &other;
     }
     if (!found) return "";
-    bag->only(std::string(found->name));
+    bag->only({std::string(found->name)});
     try {
         const auto message = bag->next();
         return message ? WireReader(*message).text() : "";
@@ -95,6 +96,16 @@ SideFile ousterDescription(const ScanSource& source, const std::string& topic,
     return ousterJsonBeside(source.path, nullptr, 0);
 }
 
+/** The topic of the IMU that belongs to the LiDAR of `topic`: with the longest common prefix. Empty
+ *  without an IMU. */
+std::string imuTopicFor(const std::vector<Topic>& topics, const std::string& topic) {
+    const Topic* found = nullptr;
+    for (const Topic& other : topics)
+        if (isImu(other) && (!found || inCommon(other.name, topic) > inCommon(found->name, topic)))
+            found = &other;
+    return found ? found->name : "";
+}
+
 /** The scans of one topic of a bag, whatever it is stored in. */
 class BagReader : public ScanReader {
  public:
@@ -104,7 +115,11 @@ class BagReader : public ScanReader {
         topic_ = chooseTopic(bag_->topics(), label);
         type_ = scanTypeOf(topic_);
         picksFrame_ = !frame.empty();
-        bag_->only(topic_.name);
+        imuTopic_ = imuTopicFor(bag_->topics(), topic_.name);
+        if (imuTopic_.empty())
+            bag_->only({topic_.name});
+        else
+            bag_->only({topic_.name, imuTopic_});
         if (type_ == ScanType::kCloud) {
             maker_ = makeCloudMaker(topic_.name, frame);
             lookAhead(open);
@@ -129,7 +144,7 @@ class BagReader : public ScanReader {
         return guarded([this]() -> std::optional<bool> {
                    // Where a turn ends is known from its packets only, the frame from the message.
                    const bool isAScan = type_ == ScanType::kCloud && !picksFrame_;
-                   const bool there = isAScan ? bag_->next().has_value() : nextScan().has_value();
+                   const bool there = isAScan ? nextMessage().has_value() : nextScan().has_value();
                    if (!there) return std::nullopt;
                    ++count_;
                    return true;
@@ -137,6 +152,7 @@ class BagReader : public ScanReader {
             .has_value();
     }
 
+    std::vector<ImuSample> takeImu() override { return std::exchange(imu_, {}); }
     const std::string& label() const override { return topic_.name; }
     const std::set<std::string>& otherLabels() const override { return otherLabels_; }
     std::optional<double> fraction() const override { return ended_ ? 1 : bag_->fraction(); }
@@ -147,6 +163,7 @@ class BagReader : public ScanReader {
         recording.kind = container_ + ", topic " + topic_.name;
         recording.sensor = maker_->sensor();
         recording.findings = maker_->findings();
+        recording.imu = imuTopic_;
         if (type_ == ScanType::kCloud)
             recording.scans = topic_.messages;
         else
@@ -160,12 +177,21 @@ class BagReader : public ScanReader {
         constexpr std::size_t kMessages = 8;  // some may be empty
         try {
             const auto bag = open();
-            bag->only(topic_.name);
+            bag->only({topic_.name});
             for (std::size_t i = 0; i < kMessages; ++i) {
                 const auto message = bag->next();
                 if (!message || !maker_->look(*message)) return;
             }
         } catch (const std::exception&) {
+        }
+    }
+
+    /** The next message with scans; samples of the IMU before it are kept. */
+    std::optional<Message> nextMessage() {
+        while (true) {
+            auto message = bag_->next();
+            if (!message || message->topic == topic_.name) return message;
+            if (const auto sample = sampleOf(*message)) addSample(*sample, imu_);
         }
     }
 
@@ -176,7 +202,7 @@ class BagReader : public ScanReader {
                 return scan;
             }
             if (finished_) return std::nullopt;
-            const auto message = bag_->next();
+            const auto message = nextMessage();
             if (!message) {
                 finish();
             } else {
@@ -238,6 +264,8 @@ class BagReader : public ScanReader {
     std::unique_ptr<MessageSource> bag_;
     Topic topic_;
     ScanType type_ = ScanType::kNone;
+    std::string imuTopic_;  //!< empty: the bag has no IMU
+    std::vector<ImuSample> imu_;
     bool picksFrame_ = false;  //!< only messages of one frame_id are taken
     std::unique_ptr<ScanMaker> maker_;
     std::optional<DriveMeta> meta_;

@@ -41,7 +41,7 @@ bool isSideText(const fs::path& file) {
     const std::string stem = lowerCase(file.stem().string());
     const std::string extension = lowerCase(file.extension().string());
     if (extension != ".txt" && extension != ".csv") return false;
-    for (const char* name : {"calib", "license", "poses", "readme"})
+    for (const char* name : {"calib", "imu", "license", "poses", "readme"})
         if (stem == name) return true;
     return false;
 }
@@ -107,6 +107,7 @@ CloudFolder::CloudFolder(const fs::path& folder) : FilesReader("lidar") {
         return naturallyBefore(a.filename().string(), b.filename().string());
     });
     times_ = timesOf(folder, files);
+    setImu(imuBeside(folder));
     files_ = std::move(files);
     readRecords_ = recordsReader(extension);
     extension_ = extension;
@@ -134,6 +135,7 @@ Recording CloudFolder::recording() const {
     recording.kind =
         "folder of " + extension_ + " files" + (times_.nominal ? ", nominal times" : "");
     recording.pointTimes = pointTimes_;
+    if (hasImu()) recording.imu = "imu.csv";
     recording.scans = files_.size();
     recording.findings = table_.findings();
     return recording;

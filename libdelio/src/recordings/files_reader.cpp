@@ -73,9 +73,10 @@ std::vector<double> readTimesFile(const fs::path& file) {
     return numbers;
 }
 
-std::optional<fs::path> timesFileOf(const fs::path& folder) {
+/** The first file of these names in the folder or the one above. */
+std::optional<fs::path> firstFileOf(const fs::path& folder, const std::vector<std::string>& names) {
     for (const auto& place : {folder, fs::absolute(folder / "").parent_path().parent_path()})
-        for (const char* name : kTimesFiles)
+        for (const auto& name : names)
             if (fs::is_regular_file(place / name)) return place / name;
     return {};
 }
@@ -117,9 +118,41 @@ bool isTimesFile(const fs::path& file) {
            std::end(kTimesFiles);
 }
 
+std::vector<ImuSample> imuBeside(const fs::path& folder) {
+    const auto file = firstFileOf(folder, {"imu.csv"});
+    if (!file) return {};
+    const auto bytes = bytesOfFile(*file);
+    std::string_view rest(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    std::vector<ImuSample> samples;
+    std::size_t row = 0;
+    double ticks = 0;
+    while (const auto line = nextLine(rest, &row)) {
+        if (line->front() == '#') continue;
+        constexpr std::size_t kRate = 4, kBoth = 7;
+        std::vector<double> values(kBoth);
+        const std::size_t count = numbersIn(*line, values);
+        if (count == kNoNumbers && samples.empty()) continue;  // names of the columns
+        if ((count != kRate && count != kBoth) || !std::isfinite(values[0]))
+            throw Error("'" + file->string() + "', line " + std::to_string(row) +
+                        ": expected time, angular velocity (x y z, rad/s) and optionally "
+                        "acceleration (x y z, m/s^2)");
+        if (samples.empty()) ticks = std::max(1.0, ticksOfUnix(values[0]));
+        ImuSample sample;
+        const auto word = wordsIn(*line).front();
+        sample.stamp_s = numberIn<double>(word) ? secondsOf(word, ticks) : values[0] / ticks;
+        sample.rate_radps = Eigen::Vector3d(values[1], values[2], values[3]);
+        if (count == kBoth)
+            sample.acceleration_mps2 = Eigen::Vector3d(values[4], values[5], values[6]);
+        samples.push_back(sample);
+    }
+    std::stable_sort(samples.begin(), samples.end(),
+                     [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; });
+    return samples;
+}
+
 ScanTimes timesOf(const fs::path& folder, std::vector<fs::path>& scans) {
     ScanTimes times;
-    if (const auto file = timesFileOf(folder)) {
+    if (const auto file = firstFileOf(folder, {std::begin(kTimesFiles), std::end(kTimesFiles)})) {
         times.stamps_s = readTimesFile(*file);
         if (times.stamps_s.size() != scans.size())
             throw Error("'" + file->string() + "' has " + std::to_string(times.stamps_s.size()) +
@@ -142,8 +175,21 @@ std::optional<Scan> FilesReader::next() {
     count_ = files().size();  // should it fail
     Scan scan = read(index);
     scan.index = index;
+    latest_s_ = scan.stamp_s;
     count_ = index + 1;
     return scan;
+}
+
+/** Those up to half a second after the latest scan. */
+std::vector<ImuSample> FilesReader::takeImu() {
+    constexpr double kAhead_s = 0.5;
+    std::vector<ImuSample> taken;
+    const bool isEnd = count_ >= files().size();
+    for (; takenImu_ < imu_.size(); ++takenImu_) {
+        if (!isEnd && imu_[takenImu_].stamp_s > latest_s_ + kAhead_s) break;
+        taken.push_back(imu_[takenImu_]);
+    }
+    return taken;
 }
 
 bool FilesReader::skip() {

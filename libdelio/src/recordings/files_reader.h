@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "delio/recordings/scan_reader.h"
@@ -10,12 +11,16 @@ class FilesReader : public ScanReader {
  public:
     std::optional<Scan> next() override;
     bool skip() override;
+    std::vector<ImuSample> takeImu() override;
     const std::string& label() const override { return label_; }
     const std::set<std::string>& otherLabels() const override { return otherLabels_; }
     std::optional<double> fraction() const override;
 
  protected:
     explicit FilesReader(std::string label) : label_(std::move(label)) {}
+    /** The samples of an IMU beside the scans, in the order of their stamps. */
+    void setImu(std::vector<ImuSample> samples) { imu_ = std::move(samples); }
+    bool hasImu() const { return !imu_.empty(); }
     /** The files, in the order of the scans. */
     virtual const std::vector<std::filesystem::path>& files() const = 0;
     /** Points and times of the `index`-th scan. Throws Error, which names the file. */
@@ -25,6 +30,9 @@ class FilesReader : public ScanReader {
     std::string label_;
     std::set<std::string> otherLabels_;  // none
     std::size_t count_ = 0;
+    std::vector<ImuSample> imu_;
+    std::size_t takenImu_ = 0;
+    double latest_s_ = 0;  //!< stamp of the latest scan
 };
 
 /** When the scans of a folder were taken. */
@@ -38,6 +46,13 @@ struct ScanTimes {
 
 /** True for a file that lists times: times.txt, timestamps.txt, times.csv. */
 bool isTimesFile(const std::filesystem::path& file);
+
+/** The samples in imu.csv in `folder` or in the folder above; empty without that file. A row has
+ *  the time (as the scans' times; Unix times may be in milli-, micro- or nanoseconds), the angular
+ *  velocity (rad/s), and optionally the acceleration (m/s^2): 4 or 7 numbers. A first row without
+ *  numbers and rows that begin with # are passed over. Sorted by time. Throws Error, which names
+ *  the file and the line, for other rows. */
+std::vector<ImuSample> imuBeside(const std::filesystem::path& folder);
 
 /** Times of `scans`, which lie in `folder`: those of a times file there or in the folder above
  *  (seconds, or where they are large milli-, micro- or nanoseconds, or dates as KITTI raw has them;

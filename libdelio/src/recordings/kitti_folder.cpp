@@ -313,12 +313,15 @@ mrpt::maps::CPointsMap::Ptr readPoints(const fs::path& file) {
 KittiReader::KittiReader(const fs::path& folder)
     : FilesReader("velodyne"),
       drive_(openKittiDrive(kittiFolderOf(folder), 0, 0)),
-      meta_(drive_.meta) {}
+      meta_(drive_.meta) {
+    setImu(imuBeside(kittiFolderOf(folder)));
+}
 
 Recording KittiReader::recording() const {
     Recording recording;
     recording.kind = meta_->source == "kitti-raw" ? "KITTI raw" : "KITTI odometry";
     if (drive_.nominalTimes) recording.kind += ", nominal times";
+    if (hasImu()) recording.imu = "imu.csv";
     if (meta_->sensorModel != "unknown") recording.sensor = meta_->sensorModel;
     recording.motionCompensated = meta_->motionCompensated;
     // KITTI's own scans are known to be, those of another sensor in its format are not.

@@ -152,7 +152,7 @@ std::optional<Message> McapFile::readMessage(ByteInput& in, std::uint64_t bytes)
         throw Error("is damaged: a message of channel " + std::to_string(id) +
                     ", which has no description");
     const auto& [topic, type, encoding, messages] = channel->second;
-    if (only_ && topic != *only_) {
+    if (!isWanted(topic)) {
         in.skip(bytes - kMessageStart);
         return std::nullopt;
     }

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -49,7 +50,7 @@ class MessageSource {
     const std::vector<Topic>& topics() const { return topics_; }
 
     /** Messages of other topics are passed over from here on; to be called before next(). */
-    virtual void only(const std::string& topic) { only_ = topic; }
+    virtual void only(const std::vector<std::string>& topics) { only_ = topics; }
 
     /** The next message, or nothing at the end. Throws Error where the bag is cut off or damaged;
      *  not to be called after that. */
@@ -66,7 +67,12 @@ class MessageSource {
 
     std::string path_;
     std::vector<Topic> topics_;
-    std::optional<std::string> only_;  //!< nothing: all topics
+    /** The messages of this topic are given. */
+    bool isWanted(const std::string& topic) const {
+        return only_.empty() || std::find(only_.begin(), only_.end(), topic) != only_.end();
+    }
+
+    std::vector<std::string> only_;  //!< empty: all topics
 };
 
 /** Opens a bag, from its begin, as often as it is called. */

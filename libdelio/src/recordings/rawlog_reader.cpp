@@ -1,5 +1,6 @@
 #include "delio/recordings/rawlog_reader.h"
 
+#include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
 #include <algorithm>
@@ -17,8 +18,10 @@
 #include "delio/odometry/scan.h"
 #include "files/gz.h"
 #include "files/input_file.h"
+#include "imu_samples.h"
 #include "mrpt/clock.h"
 #include "mrpt/external_files.h"
+#include "mrpt/imu_observation.h"
 #include "mrpt/object_archive.h"
 
 namespace delio::io {
@@ -82,6 +85,7 @@ std::optional<double> RawlogReader::fraction() const {
 Recording RawlogReader::recording() const {
     Recording recording;
     recording.kind = "rawlog";
+    if (imuLabel_) recording.imu = imuLabel_->empty() ? "without a label" : "'" + *imuLabel_ + "'";
     if (meta_) {
         if (meta_->sensorModel != "unknown") recording.sensor = meta_->sensorModel;
         recording.motionCompensated = meta_->motionCompensated;
@@ -170,13 +174,20 @@ bool RawlogReader::readEntry() {
                          ? ", or contains something unknown to this MRPT: " + plainMessage(e)
                          : ""));
     }
-    const auto accept = [&](const CObservation::Ptr& observation) {
-        if (observation && isScan(*observation)) pending_.push_back(observation);
-    };
     accept(std::dynamic_pointer_cast<CObservation>(object));
     if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object))
         for (const auto& observation : *frame) accept(observation);
     return true;
+}
+
+/** Scans, and the samples of the first IMU; what else there is may be null. */
+void RawlogReader::accept(const CObservation::Ptr& observation) {
+    if (observation && isScan(*observation)) pending_.push_back(observation);
+    const auto imu = std::dynamic_pointer_cast<mrpt::obs::CObservationIMU>(observation);
+    if (!imu) return;
+    if (!imuLabel_) imuLabel_ = imu->sensorLabel;
+    if (imu->sensorLabel == *imuLabel_)
+        addSample(sampleOf(*imu, secondsSince(meta_ ? meta_->epoch_s : 0, imu->timestamp)), imu_);
 }
 
 std::vector<std::string> RawlogReader::imagesFolders() const {

@@ -2,6 +2,7 @@
 #include <deque>
 #include <exception>
 #include <memory>
+#include <vector>
 
 #include "delio/recordings/scan_reader.h"
 #include "stamp_order.h"
@@ -17,6 +18,7 @@ class RecognisedReader : public ScanReader {
 
     std::optional<Scan> next() override;
     bool skip() override;
+    std::vector<ImuSample> takeImu() override { return source_->takeImu(); }
     const std::string& label() const override { return source_->label(); }
     const std::set<std::string>& otherLabels() const override { return source_->otherLabels(); }
     std::optional<double> fraction() const override { return fraction_; }

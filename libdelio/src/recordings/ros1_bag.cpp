@@ -177,7 +177,7 @@ std::optional<Message> Ros1Bag::readMessage(const Record& record, ByteInput& in)
         throw Error("is damaged: a message of connection " + std::to_string(id) +
                     ", which has no description");
     const auto& [topic, type] = connection->second;
-    if (only_ && topic != *only_) {
+    if (!isWanted(topic)) {
         in.skip(record.bytes);
         return std::nullopt;
     }

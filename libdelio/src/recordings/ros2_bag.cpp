@@ -174,11 +174,14 @@ void Ros2Database::list() {
 
 void Ros2Database::start() {
     for (const Topic& topic : topics_)
-        if (!only_ || topic.name == *only_) rows_ += topic.messages.value_or(0);
-    const std::string one =
-        only_ ? " WHERE topic_id IN (SELECT id FROM topics WHERE name = ?1)" : "";
-    order_.prepare(handle_.database, "SELECT id FROM messages" + one + " ORDER BY timestamp, id");
-    if (only_) order_.bind(1, *only_);
+        if (isWanted(topic.name)) rows_ += topic.messages.value_or(0);
+    std::string some;
+    for (std::size_t i = 0; i < only_.size(); ++i)
+        some += (i == 0 ? " WHERE topic_id IN (SELECT id FROM topics WHERE name IN (?" : ", ?") +
+                std::to_string(i + 1);
+    if (!some.empty()) some += "))";
+    order_.prepare(handle_.database, "SELECT id FROM messages" + some + " ORDER BY timestamp, id");
+    for (std::size_t i = 0; i < only_.size(); ++i) order_.bind(static_cast<int>(i + 1), only_[i]);
     contents_.prepare(handle_.database,
                       "SELECT t.name, t.type, t.serialization_format, m.timestamp, m.data FROM "
                       "messages m JOIN topics t ON t.id = m.topic_id WHERE m.id = ?1");
@@ -209,7 +212,7 @@ class Ros2Folder : public MessageSource {
      *  says that they are compressed, and as the first file's source. */
     explicit Ros2Folder(const std::string& folder);
 
-    void only(const std::string& topic) override;
+    void only(const std::vector<std::string>& topics) override;
     std::optional<Message> next() override;
     double fraction() const override;
 
@@ -267,12 +270,12 @@ void Ros2Folder::open() {
         source_ = mcapSource(path_);
     else
         source_ = std::make_unique<Ros2Database>(path_);
-    if (only_) source_->only(*only_);
+    source_->only(only_);
 }
 
-void Ros2Folder::only(const std::string& topic) {
-    only_ = topic;
-    source_->only(topic);
+void Ros2Folder::only(const std::vector<std::string>& topics) {
+    only_ = topics;
+    source_->only(topics);
 }
 
 std::optional<Message> Ros2Folder::next() {

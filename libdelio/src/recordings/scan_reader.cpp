@@ -153,6 +153,7 @@ std::string describe(const Recording& recording) {
         text += (*recording.motionCompensated ? ", de-skewed by the recorder"
                                               : ", not de-skewed by the recorder") +
                 how;
+    if (!recording.imu.empty()) text += ", IMU " + recording.imu;
     if (recording.scans) text += ", " + std::to_string(*recording.scans) + " scans";
     return text + " (" + recording.kind + ")";
 }

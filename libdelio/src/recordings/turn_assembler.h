@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "delio/recordings/scan_reader.h"
 #include "findings.h"
@@ -24,6 +25,7 @@ class TurnAssembler : public ScanReader {
 
     std::optional<Scan> next() override;
     bool skip() override;
+    std::vector<ImuSample> takeImu() override { return source_->takeImu(); }
     const std::string& label() const override { return source_->label(); }
     const std::set<std::string>& otherLabels() const override { return source_->otherLabels(); }
     std::optional<double> fraction() const override;

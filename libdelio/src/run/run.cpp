@@ -285,6 +285,9 @@ void Run::finish(bool complete) {
     else if (const auto why = whyUnreliable(doubts); !why.empty())
         fail(why + ": the trajectory is not to be relied on");
     record_.complete = complete;
+    record_.imu = slam_.imuReport();
+    if (record_.imu)
+        for (const auto& finding : record_.imu->findings) warn(finding);
     slam_.close();
     optimise();
     if (map_) record_.options.map = map_->builder().options();  // as they were used

@@ -68,6 +68,29 @@ std::size_t countOf(const RunRecord& record, const Flag& flag) {
                                                   [&](const RunRow& row) { return row.*flag; }));
 }
 
+/** Rotations as roll, pitch and yaw: rotations about x, then y, then z. */
+Summary::Figures figuresOf(const ImuReport& imu) {
+    constexpr double kDegrees = 180 / M_PI;
+    Summary::Figures figures{{"samples", static_cast<double>(imu.samples)},
+                             {"dropped", static_cast<double>(imu.dropped)},
+                             {"scans_used", static_cast<double>(imu.scansUsed)},
+                             {"scans_without_samples", static_cast<double>(imu.scansWithout)}};
+    const auto put = [&](const char* name, double value) { figures.emplace_back(name, value); };
+    if (!imu.rotation) return figures;
+    put("bias_x_deg_per_s", kDegrees * imu.bias_radps.x());
+    put("bias_y_deg_per_s", kDegrees * imu.bias_radps.y());
+    put("bias_z_deg_per_s", kDegrees * imu.bias_radps.z());
+    put("residual_deg", kDegrees * imu.residual_rad);
+    const Eigen::Matrix3d& R = *imu.rotation;
+    put("roll_deg", kDegrees * std::atan2(R(2, 1), R(2, 2)));
+    put("pitch_deg", kDegrees * -std::asin(std::clamp(R(2, 0), -1.0, 1.0)));
+    put("yaw_deg", kDegrees * std::atan2(R(1, 0), R(0, 0)));
+    if (imu.rotationSigma_rad) put("rotation_sigma_deg", kDegrees * *imu.rotationSigma_rad);
+    put("offset_ms", 1e3 * imu.offset_s);
+    if (imu.offsetSigma_s) put("offset_sigma_ms", 1e3 * *imu.offsetSigma_s);
+    return figures;
+}
+
 std::string wordsOf(const std::vector<std::string>& words) {
     std::string text;
     for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
@@ -176,6 +199,7 @@ void forEachField(Record& s, const Field& field) {
         field("outside_map", s.outside_map);
         field("not_found_in_map", s.not_found_in_map);
     }
+    if (field.hasGroup("imu", !s.imu.empty())) field("imu", s.imu);
     field("path_m", s.path_m);
     field("vertical_correction_deg", s.vertical_correction_deg);
     field("deskewed", s.deskewed);
@@ -244,6 +268,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
         ++(fix.where == Whereabouts::kInMap     ? summary.in_map
            : fix.where == Whereabouts::kOutside ? summary.outside_map
                                                 : summary.not_found_in_map);
+    if (record.imu) summary.imu = figuresOf(*record.imu);
     summary.deskewed = countOf(record, &RunRow::deskewed);
     summary.path_m = record.path_m();
     summary.vertical_correction_deg = record.options.scan().vertical_correction_deg;

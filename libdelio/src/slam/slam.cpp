@@ -72,6 +72,16 @@ void Slam::tell(const SlamScan& scan, ScanReport& report) {
     }
 }
 
+void Slam::addImu(const ImuSample& sample) {
+    requireOpen();
+    odometry_->addImu(sample);
+}
+
+std::optional<ImuReport> Slam::imuReport() const {
+    requireOpen();
+    return odometry_->imuReport();
+}
+
 ScanReport Slam::process(const Scan& scan) {
     requireOpen();
     requireConsistent(scan);

@@ -9,6 +9,7 @@
 
 #include "delio/files/output_folder.h"
 #include "delio/formats/drive_meta.h"
+#include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
 
 namespace delio::io {
@@ -47,6 +48,10 @@ class RawlogWriter {
      */
     void addLinked(double stamp_s, double epoch_s, const std::string& file);
 
+    /** Appends a sample of an IMU as a CObservationIMU with the label `imu`; `stamp_s` counts from
+     *  `epoch_s`. */
+    void add(const ImuSample& sample, double epoch_s);
+
     /** Writes one value per point of the next scan into `OUT_Images/NNNNNN` + extension. Throws
      *  Error where that fails. */
     template <typename Value>
@@ -57,17 +62,18 @@ class RawlogWriter {
 
     /** Writes OUT.meta.yaml and, where the text is not empty, OUT.times.txt, OUT.calib.txt,
      *  OUT.poses.txt, OUT.faults.tsv, OUT.origin.txt (origin of a synthetic drive in its world),
-     *  byte for byte as given; then puts the drive in place of the old one. Throws Error where that
-     *  fails; then the old one is still there. */
+     * OUT.imu.yaml (truth of its IMU), byte for byte as given; then puts the drive in place of the
+     * old one. Throws Error where that fails; then the old one is still there. */
     void finish(const DriveMeta& meta, const std::string& timesText, const std::string& calibText,
                 const std::string& posesText, const std::string& faultsText = "",
-                const std::string& originText = "");
+                const std::string& originText = "", const std::string& imuText = "");
 
     std::size_t scans() const { return count_; }  //!< that were added
 
  private:
-    /** Appends an observation that has no time or label yet. */
+    /** Appends a scan that has no time or label yet. */
     void append(mrpt::obs::CObservationPointCloud& observation, double stamp_s, double epoch_s);
+    void put(const mrpt::obs::CObservation& observation);
     /** Its points: in `OUT_Images` or embedded. */
     void setPoints(mrpt::obs::CObservationPointCloud& observation, const std::vector<float>& xyzi);
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
-#include "delio/odometry/scan.h"
+#include <optional>
 
 #include "delio/core/odometry_options.h"
+#include "delio/odometry/imu.h"
+#include "delio/odometry/scan.h"
 #include "delio/odometry/step.h"
 
 namespace delio {
@@ -16,6 +18,15 @@ class Odometry {
     /** Registers the next scan of the drive. A scan that cannot be registered (empty, too few
      *  surfaces) gives the prediction, and says so. */
     virtual Step process(const Scan& scan) = 0;
+
+    /** Takes a sample of the drive's IMU. Samples are used by their stamps: those up to 0.1 s after
+     *  the last point of a scan have to be added before process() gets the scan, in any order;
+     *  later ones wait, up to 200 000 of them. Not to be called during process(). An odometry that
+     *  uses no IMU ignores them (the paper's profiles). */
+    virtual void addImu(const ImuSample& sample);
+
+    /** What was found out about the IMU so far; nothing: no sample came, or none is used. */
+    virtual std::optional<ImuReport> imuReport() const;
 };
 
 /** The odometry that the options choose. Throws Error where two of its options contradict each

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "delio/recordings/scan_reader.h"
@@ -16,7 +17,8 @@ namespace delio::io {
 class GzInput;
 
 /** Reads the LiDAR scans of a rawlog, whatever class they were recorded as (see isScan()), bare or
- *  inside CSensoryFrames, embedded or in external files. Rings and times of points are taken from
+ *  inside CSensoryFrames, embedded or in external files, and the samples of its first IMU
+ *  (CObservationIMU). Rings and times of points are taken from
  *  `.ring` and `.time` files beside the external ones (synth2rawlog writes them), from packets and
  *  from range images; the drive's metadata come from the meta.yaml next to the rawlog, if it
  *  exists, and times count from its `epoch_unix_s`. Readers share nothing: several may run at once
@@ -43,6 +45,7 @@ class RawlogReader : public ScanReader {
     /** Nothing where the file is compressed. */
     std::optional<double> fraction() const override;
     const std::optional<DriveMeta>& meta() const override { return meta_; }
+    std::vector<ImuSample> takeImu() override { return std::exchange(imu_, {}); }
     Recording recording() const override;
     SideFile calibration() const override;
     SideFile truth() const override;
@@ -59,6 +62,7 @@ class RawlogReader : public ScanReader {
      *  class and pose on the vehicle, are `unlabelled-2` and so on. */
     std::string nameOf(const mrpt::obs::CObservation& observation);
     bool readEntry();
+    void accept(const mrpt::obs::CObservation::Ptr& observation);
     std::vector<std::string> imagesFolders() const;
     /** Where the extras of an embedded scan's points would lie, without the extension. */
     std::string embeddedStem(std::size_t scan) const;
@@ -71,6 +75,8 @@ class RawlogReader : public ScanReader {
     std::size_t count_ = 0;
     std::unique_ptr<GzInput> in_;
     std::deque<mrpt::obs::CObservation::Ptr> pending_;
+    std::vector<ImuSample> imu_;
+    std::optional<std::string> imuLabel_;  //!< of the first one
     std::set<std::string> otherLabels_;
 };
 }  // namespace delio::io

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "delio/formats/drive_meta.h"
+#include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
 
 namespace delio::io {
@@ -23,6 +24,7 @@ struct Recording {
     /** First scan found to be de-skewed although the first scans, of a standing vehicle, did not
      *  show it. */
     std::optional<std::size_t> compensatedAfterAll;
+    std::string imu;                    //!< label or topic of the IMU; empty: none was met
     std::optional<std::size_t> scans;   //!< where they are counted without reading them
     std::vector<std::string> warnings;  //!< missing optional parts
     /** Scans and points that the reader ignored or corrected, one line per kind with the number;
@@ -51,6 +53,11 @@ class ScanReader {
 
     /** Passes over the next scan without reading its points; false at the end. Throws as next(). */
     virtual bool skip() = 0;
+
+    /** Samples of the recording's IMU that were read since the last call, in their order in the
+     *  recording, stamped as the scans. Those of skipped scans are among them. Where they are not
+     *  taken, the oldest are dropped. */
+    virtual std::vector<ImuSample> takeImu() { return {}; }
 
     /** Name of the sensor that is read (of a ROS bag: the topic); empty until its first scan was
      *  read. */

@@ -67,6 +67,9 @@ class Run {
      *  warning. */
     void attach(std::shared_ptr<SlamListener> listener) { slam_.attach(std::move(listener)); }
 
+    /** Takes a sample of the drive's IMU: see Odometry::addImu(). */
+    void addImu(const ImuSample& sample) { slam_.addImu(sample); }
+
     /** Processes the next scan, which took `read_ms` to read. */
     RunRow process(const Scan& scan, double read_ms = 0);
 

@@ -11,6 +11,7 @@
 #include "delio/formats/trajectory.h"
 #include "delio/graph/pose_graph.h"
 #include "delio/map/map_builder.h"
+#include "delio/odometry/imu.h"
 #include "delio/places/localisation.h"
 #include "delio/places/loops.h"
 #include "delio/places/stored_map.h"
@@ -95,7 +96,8 @@ struct RunRecord {
     std::vector<places::LoopCandidate> loops;   //!< and what became of them
     double loop_search_ms = 0;                  //!< beside the drive, and after it
 
-    io::Calibration calibration;  //!< of the drive, where there is one
+    std::optional<ImuReport> imu;  //!< what was found out about the IMU, where there is one
+    io::Calibration calibration;   //!< of the drive, where there is one
     /** The final trajectory beside true poses, where they are known. */
     std::optional<evaluation::Comparison> metrics;
     /** The odometry's likewise, where the graph had something to optimise. */

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,12 @@ class Slam {
      *  continue, and the report names it. Where the odometry throws, or gives an increment that is
      *  not finite, which is an Error, trajectory and listeners are as they were before. */
     ScanReport process(const Scan& scan);
+
+    /** Takes a sample of the drive's IMU: see Odometry::addImu(). */
+    void addImu(const ImuSample& sample);
+
+    /** What the odometry found out about the IMU so far: see Odometry::imuReport(). */
+    std::optional<ImuReport> imuReport() const;
 
     /** Ends the drive and frees the odometry. process() is an Error from then on. */
     void close() { odometry_.reset(); }

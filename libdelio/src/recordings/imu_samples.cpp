@@ -1,0 +1,56 @@
+#include "imu_samples.h"
+
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "delio/core/error.h"
+
+namespace delio::io {
+namespace {
+double doubleIn(WireReader& in) {
+    const auto bits = in.number<std::uint64_t>();
+    double value = 0;
+    std::memcpy(&value, &bits, sizeof(value));
+    return value;
+}
+
+/** Three numbers and their covariance, whose first element is -1 where they were not measured. */
+Eigen::Vector3d measuredIn(WireReader& in) {
+    constexpr unsigned kCovariance = 9;
+    Eigen::Vector3d values;
+    for (double& value : values) value = doubleIn(in);
+    const bool isMeasured = doubleIn(in) != -1;
+    for (unsigned i = 1; i < kCovariance; ++i) doubleIn(in);
+    if (!isMeasured) values.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return values;
+}
+}  // namespace
+
+bool isImu(const Topic& topic) {
+    return topic.type == "sensor_msgs/Imu" || topic.type == "sensor_msgs/msg/Imu";
+}
+
+std::optional<ImuSample> sampleOf(const Message& message) {
+    constexpr unsigned kOrientation = 13;  // a quaternion and its covariance
+    try {
+        WireReader in(message);
+        ImuSample sample;
+        sample.stamp_s = in.header().stamp_s;
+        if (sample.stamp_s == 0) sample.stamp_s = message.log_s;
+        for (unsigned i = 0; i < kOrientation; ++i) doubleIn(in);
+        sample.rate_radps = measuredIn(in);
+        sample.acceleration_mps2 = measuredIn(in);
+        return sample;
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+void addSample(const ImuSample& sample, std::vector<ImuSample>& samples) {
+    constexpr std::size_t kMost = 200'000;
+    if (samples.size() >= kMost)
+        samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(kMost / 2));
+    samples.push_back(sample);
+}
+}  // namespace delio::io

@@ -1,0 +1,104 @@
+// A gyroscope beside the LiDAR: synth2rawlog records one, delio-slam finds how it is mounted and
+// uses it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "delio/run/run_folder.h"
+#include "test_data.h"
+
+namespace {
+using namespace delio;
+
+using Words = std::vector<std::string>;
+
+double figure(const run::Summary::Figures& figures, const std::string& name) {
+    const auto found = std::find_if(figures.begin(), figures.end(),
+                                    [&](const auto& each) { return each.first == name; });
+    return found == figures.end() ? std::nan("") : found->second;
+}
+
+/** A hand that swings, and an IMU. */
+std::string handWithImu(const test::TemporaryFolder& folder, const Words& imu,
+                        const std::string& scans = "60") {
+    const std::string rawlog = folder / "hand.rawlog";
+    Words words = {"-o",        rawlog,  "--scene", "urban",  "--sensor", "vlp16",
+                   "--scans",   scans,   "--seed",  "305",    "--motion", "handheld",
+                   "--distort", "--imu", "200",     "--force"};
+    words.insert(words.end(), imu.begin(), imu.end());
+    const auto made = test::runTool("synth2rawlog", words);
+    EXPECT_EQ(made.exitCode, 0) << made.err;
+    return rawlog;
+}
+
+run::Summary slam(const std::string& rawlog, const std::string& out, Words more = {}) {
+    Words words = {"-i", rawlog, "-o", out, "--no-map", "--no-graph", "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto run = test::runTool("delio-slam", words);
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    return run::RunFolder(out).summary();
+}
+
+TEST(Imu, OnTheLidarIsUsed) {
+    const test::TemporaryFolder folder;
+    const std::string rawlog = handWithImu(folder, {});
+    const auto summary = slam(rawlog, folder / "out");
+    EXPECT_EQ(summary.predicted, 0U);
+    EXPECT_GT(figure(summary.imu, "scans_used"), 40);
+    EXPECT_EQ(figure(summary.imu, "scans_without_samples"), 0);
+    EXPECT_LT(figure(summary.metrics, "end_error_percent"), 0.5);
+    const auto without = slam(rawlog, folder / "without", {"--no-imu"});
+    EXPECT_TRUE(without.imu.empty());
+    // The same scans without an IMU in the rawlog.
+    const auto copy = test::runTool("scans2rawlog", {"-i", rawlog, "-o", folder / "copy.rawlog"});
+    ASSERT_EQ(copy.exitCode, 0) << copy.err;
+    slam(folder / "copy.rawlog", folder / "of_copy");
+    const std::string trajectory = run::RunFolder::kTrajectory;
+    EXPECT_TRUE(test::readText(folder / "out" / trajectory) ==
+                test::readText(folder / "of_copy" / trajectory));
+    EXPECT_FALSE(test::readText(folder / "out" / trajectory) ==
+                 test::readText(folder / "without" / trajectory));
+}
+
+TEST(Imu, OfUnknownOrientationBiasAndOffsetIsCalibrated) {
+    const test::TemporaryFolder folder;
+    const std::string rawlog = handWithImu(
+        folder, {"--imu-mount", "10,-20,130", "--imu-bias", "2", "--imu-offset", "0.02"}, "100");
+    const auto summary = slam(rawlog, folder / "out");
+    EXPECT_GT(figure(summary.imu, "scans_used"), 60);
+    EXPECT_NEAR(figure(summary.imu, "roll_deg"), 10, 0.5);
+    EXPECT_NEAR(figure(summary.imu, "pitch_deg"), -20, 0.5);
+    EXPECT_NEAR(figure(summary.imu, "yaw_deg"), 130, 0.5);
+    EXPECT_NEAR(figure(summary.imu, "offset_ms"), 20, 2);
+    EXPECT_NEAR(std::abs(figure(summary.imu, "bias_z_deg_per_s")), 2, 0.2);
+    EXPECT_LT(figure(summary.metrics, "end_error_percent"), 0.5);
+}
+
+TEST(Imu, TheSameForAnyNumberOfThreads) {
+    const test::TemporaryFolder folder;
+    const std::string rawlog = handWithImu(folder, {"--imu-grade", "automotive"}, "30");
+    slam(rawlog, folder / "one", {"--threads", "1"});
+    slam(rawlog, folder / "four", {"--threads", "4"});
+    const std::string trajectory = run::RunFolder::kTrajectory;
+    EXPECT_TRUE(test::readText(folder / "one" / trajectory) ==
+                test::readText(folder / "four" / trajectory));
+}
+
+TEST(Imu, OptionsAreChecked) {
+    const test::TemporaryFolder folder;
+    for (const Words& wrong :
+         {Words{"--imu", "0"}, Words{"--imu", "200", "--imu-grade", "toy"},
+          Words{"--imu-bias", "1"}, Words{"--imu", "200", "--imu-mount", "1,2"},
+          Words{"--imu", "200", "--imu-offset", "7"}}) {
+        Words words = {"-o", folder / "d.rawlog", "--scene", "urban", "--scans", "1"};
+        words.insert(words.end(), wrong.begin(), wrong.end());
+        const auto made = test::runTool("synth2rawlog", words);
+        EXPECT_EQ(made.exitCode, 2) << wrong.back();
+        EXPECT_NE(made.err.find("imu"), std::string::npos) << made.err;
+    }
+}
+}  // namespace
