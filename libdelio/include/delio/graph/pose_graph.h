@@ -19,7 +19,7 @@ struct Edge {
 
 /** Where a node is. */
 struct NodePose {
-    std::size_t node = 0;
+    std::size_t node = 0;                                    //!< its number
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< node's frame to the graph's
 };
 
