@@ -1,11 +1,13 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "delio/mrpt/rawlog_writer.h"
 #include "drive.h"
 #include "faults.h"
+#include "gnss.h"
 #include "mount.h"
 #include "ray_caster.h"
 #include "scanner.h"
@@ -22,6 +24,7 @@ struct DriveRequest {
     Mount mount;
     std::size_t movers = 0;
     FaultRates faults;
+    std::optional<GnssRequest> gnss;  //!< a receiver on the vehicle
     bool distort = false;  //!< every column is fired on the way: OUT_Images/NNNNNN.time says when
     bool labels = false;   //!< OUT_Images/NNNNNN.label says which points move
     bool embed = false, force = false;
@@ -56,6 +59,7 @@ class DriveWriter {
     TileWindow window_;
     Scanner scanner_;
     io::RawlogWriter writer_;
+    std::optional<GnssReceiver> gnss_;
     ScanPoints last_;  //!< what a repeated scan repeats
     std::string times_, poses_, faults_;
 };

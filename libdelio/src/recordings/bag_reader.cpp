@@ -7,6 +7,7 @@
 #include "delio/core/error.h"
 #include "delio/recordings/scan_reader.h"
 #include "files/input_file.h"
+#include "gnss.h"
 #include "message_source.h"
 #include "ouster.h"
 #include "scan_maker.h"
@@ -99,7 +100,7 @@ SideFile ousterDescription(const ScanSource& source, const std::string& topic,
 class BagReader : public ScanReader {
  public:
     BagReader(std::string container, const ScanSource& source, const OpenSource& open)
-        : container_(std::move(container)), bag_(open()) {
+        : container_(std::move(container)), open_(open), bag_(open()) {
         const auto [label, frame] = topicAndFrame(source.label);
         topic_ = chooseTopic(bag_->topics(), label);
         type_ = scanTypeOf(topic_);
@@ -135,6 +136,12 @@ class BagReader : public ScanReader {
                    return true;
                })
             .has_value();
+    }
+
+    /** From a second pass over the bag, once. */
+    earth::Fixes takeFixes() override {
+        const auto open = std::exchange(open_, {});
+        return open ? fixesOfBag(open) : earth::Fixes{};
     }
 
     const std::string& label() const override { return topic_.name; }
@@ -235,6 +242,7 @@ class BagReader : public ScanReader {
     }
 
     std::string container_;
+    OpenSource open_;  //!< until the fixes were read
     std::unique_ptr<MessageSource> bag_;
     Topic topic_;
     ScanType type_ = ScanType::kNone;
@@ -249,7 +257,7 @@ class BagReader : public ScanReader {
 std::unique_ptr<ScanReader> openBag(
     const std::string& container, const ScanSource& source,
     std::unique_ptr<MessageSource> (*openPath)(const std::string&)) {
-    const OpenSource open = [&] { return openPath(source.path); };
+    const OpenSource open = [path = source.path, openPath] { return openPath(path); };
     try {
         return std::make_unique<BagReader>(container, source, open);
     } catch (const std::exception& e) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "decode_observation.h"
@@ -17,6 +18,7 @@
 #include "delio/odometry/scan.h"
 #include "files/gz.h"
 #include "files/input_file.h"
+#include "gnss.h"
 #include "mrpt/clock.h"
 #include "mrpt/external_files.h"
 #include "mrpt/object_archive.h"
@@ -88,6 +90,8 @@ Recording RawlogReader::recording() const {
     }
     return recording;
 }
+
+earth::Fixes RawlogReader::takeFixes() { return std::exchange(fixes_, {}); }
 
 SideFile RawlogReader::calibration() const { return sideFile(sidecarPath(path_, ".calib.txt")); }
 
@@ -172,6 +176,9 @@ bool RawlogReader::readEntry() {
     }
     const auto accept = [&](const CObservation::Ptr& observation) {
         if (observation && isScan(*observation)) pending_.push_back(observation);
+        const auto gnss = std::dynamic_pointer_cast<mrpt::obs::CObservationGPS>(observation);
+        if (!gnss) return;
+        if (const auto fix = fixOf(*gnss, meta_ ? meta_->epoch_s : 0)) fixes_.push_back(*fix);
     };
     accept(std::dynamic_pointer_cast<CObservation>(object));
     if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object))

@@ -44,6 +44,7 @@ class RawlogReader : public ScanReader {
     std::optional<double> fraction() const override;
     const std::optional<DriveMeta>& meta() const override { return meta_; }
     Recording recording() const override;
+    earth::Fixes takeFixes() override;
     SideFile calibration() const override;
     SideFile truth() const override;
 
@@ -72,5 +73,6 @@ class RawlogReader : public ScanReader {
     std::unique_ptr<GzInput> in_;
     std::deque<mrpt::obs::CObservation::Ptr> pending_;
     std::set<std::string> otherLabels_;
+    earth::Fixes fixes_;  //!< read, and not taken yet
 };
 }  // namespace delio::io
