@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "delio/earth/georeference.h"
 #include "delio/evaluation/comparison.h"
 #include "delio/formats/trajectory.h"
 #include "delio/graph/pose_graph.h"
@@ -95,6 +96,9 @@ struct RunRecord {
     std::vector<places::LoopCandidate> loops;   //!< and what became of them
     double loop_search_ms = 0;                  //!< beside the drive, and after it
 
+    std::optional<earth::Georeference> georeference;  //!< of the final poses, where it is known
+    earth::GnssFigures gnss;                          //!< of the drive's fixes
+
     io::Calibration calibration;  //!< of the drive, where there is one
     /** The final trajectory beside true poses, where they are known. */
     std::optional<evaluation::Comparison> metrics;
@@ -103,8 +107,11 @@ struct RunRecord {
     /** True poses in the frame of `final`, for pictures. */
     std::vector<Eigen::Isometry3d> truth;
 
-    /** The chain alone is what the odometry's poses were made of: then nothing is optimised. */
-    bool optimised() const { return graph.edges().size() + 1 > graph.poses().size(); }
+    /** Loop closures or GNSS fixes moved the poses: without them, the graph is the chain that the
+     *  odometry's poses were made of. */
+    bool optimised() const {
+        return graph.edges().size() + 1 > graph.poses().size() || gnss.inGraph > 0;
+    }
     std::size_t predicted() const;  //!< scans that were not registered
     bool isLocalised() const;       //!< it was found in the stored map
     /** Pairs of nodes, the earlier first. */

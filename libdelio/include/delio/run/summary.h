@@ -42,6 +42,7 @@ struct Summary {
     std::size_t in_map = 0;                              //!< scans in the stored map
     std::size_t outside_map = 0;                         //!< scans after it was left
     std::size_t not_found_in_map = 0;                    //!< scans before it was found
+    Figures georeference;                                //!< empty: not georeferenced
     double path_m = 0;                                   //!< length of the final way
     double vertical_correction_deg = 0;    //!< that was added to each point's vertical angle
     double ms_per_scan = 0;                //!< reading, odometry, the graph's window, submaps
