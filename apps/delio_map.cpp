@@ -3,11 +3,13 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
+#include "delio/earth/georeference.h"
 #include "delio/files/output_folder.h"
 #include "delio/map/frames.h"
 #include "delio/map/map_point.h"
@@ -93,7 +95,7 @@ struct Arguments {
     Metres spacings{0}, lengths{1e-3};
     std::vector<std::string> valueNames = map::colourByNames();
     std::vector<std::string> colormapNames = map::colormapNames();
-    std::vector<std::string> frameNames{"map", "ground"};
+    std::vector<std::string> frameNames{"map", "ground", "enu", "utm"};
     Words values{valueNames}, colormaps{colormapNames}, frames{frameNames};
 
     Text input, output, crop;
@@ -107,9 +109,9 @@ struct Arguments {
 Arguments::Arguments()
     : cmd("converts, crops and georeferences maps", ' ', kVersion),
       input("i", "input", "Map: the result folder of a delio-slam run, or a file", true, "",
-            "FOLDER|FILE.delio|FILE.ply|FILE.pcd|FILE.simplemap", cmd),
+            "FOLDER|FILE.delio|FILE.ply|FILE.pcd|FILE.las|FILE.simplemap", cmd),
       output("o", "output", "File to write; a .yaml for ROS's map_server comes with a .pgm image",
-             true, "", "OUT.ply|.pcd|.3Dscene|.html|.gridmap|.yaml", cmd),
+             true, "", "OUT.ply|.pcd|.las|.3Dscene|.html|.gridmap|.yaml", cmd),
       crop("", "crop", "Keep the points in this box (metres, in the output frame)", false, "",
            &boxes, cmd),
       spacing("", "spacing", "Minimum distance between points, metres; 0: keep all", false, 0,
@@ -123,7 +125,8 @@ Arguments::Arguments()
              false, 2, &lengths, cmd),
       frame("", "frame",
             "Output frame. map: unchanged; ground: levelled, z = 0 on the ground below the first "
-            "pose",
+            "pose; enu, utm: of a georeferenced map, east-north-up or UTM. A .las of a "
+            "georeferenced map is in UTM unless you set this",
             false, "map", &frames, cmd),
       georeference("", "georeference",
                    "Write east-north-up coordinates, metres from the first pose; give its latitude "
@@ -134,8 +137,8 @@ Arguments::Arguments()
       verbose("", "verbose", "Print progress and full error texts", cmd) {}
 
 std::string Arguments::fault() {
-    if (frame.isSet() && georeference.isSet())
-        return "--georeference and --frame exclude each other";
+    if (georeference.isSet() && frame.isSet() && frame.getValue() != "utm")
+        return "--georeference gives east-north-up or, with --frame utm, UTM: no other --frame";
     const MapOutput& kind = mapOutputFor(output.getValue());
     if (kind.isGrid && (colourBy.isSet() || colormap.isSet()))
         return "--color-by and --colormap have no effect on a grid";
@@ -174,12 +177,26 @@ void checkFiles(const std::string& input, const std::string& output, bool force)
         throw Error("cannot write '" + output + "': no such folder: '" + folder.string() + "'");
 }
 
-/** From the map's frame to OUT's; none: it stays as it is. */
-std::optional<Eigen::Isometry3d> frameFor(const MapInput& map, const std::string& frame,
-                                          const std::optional<map::GeoReference>& place) {
-    if (place) return map::enuFrame(map.points, map.firstPose(), place->heading_deg);
-    if (frame == "ground") return map::groundFrame(map.points, map.firstPose());
-    return {};
+/** Where the map lies on the earth: as it says itself, or as --georeference says. */
+std::optional<earth::Georeference> earthOf(const MapInput& map,
+                                           const std::optional<map::GeoReference>& place) {
+    if (!place) return map.earth;
+    earth::Georeference known;
+    known.origin = {place->latitude_deg, place->longitude_deg, place->altitude_m};
+    known.enuFromMap = map::enuFrame(map.points, map.firstPose(), place->heading_deg);
+    return known;
+}
+
+/** The frame to write the map in. */
+std::string frameOf(Arguments& asked, bool isGeoreferenced) {
+    const bool las = fs::path(asked.output.getValue()).extension() == ".las";
+    std::string frame = asked.frame.getValue();
+    if (!asked.frame.isSet() && isGeoreferenced && las) return "utm";
+    if (!asked.frame.isSet() && asked.georeference.isSet()) return "enu";
+    if ((frame == "enu" || frame == "utm") && !isGeoreferenced)
+        throw Error("'" + asked.input.getValue() + "' is not georeferenced: --frame " + frame +
+                    " needs --georeference, or a map of a drive with GNSS fixes");
+    return frame;
 }
 
 void move(MapInput& map, const Eigen::Isometry3d& outFromMap) {
@@ -191,15 +208,64 @@ void move(MapInput& map, const Eigen::Isometry3d& outFromMap) {
     for (auto& pose : map.sensor.poses) pose = outFromMap * pose;
 }
 
+/** Into UTM less an offset, which the file of the frame names. */
+void moveToUtm(MapInput& map, const earth::MapToUtm& utm) {
+    const auto movePose = [&](Eigen::Isometry3d& pose) {
+        const Eigen::Vector3d position = utm(pose.translation());
+        pose.linear() = utm.rotation() * pose.linear();
+        pose.translation() = position;
+    };
+    for (auto* points : {&map.points, &map.dynamic})
+        for (auto& point : *points) {
+            point.position = utm(point.position.cast<double>()).cast<float>();
+            point.normal = utm.rotation().cast<float>() * point.normal;
+        }
+    for (auto& way : map.ways)
+        for (auto& pose : way) movePose(pose);
+    for (auto& pose : map.keyframes) movePose(pose);
+    for (auto& pose : map.sensor.poses) movePose(pose);
+    map.offset = utm.offset();
+    map.wkt = earth::wktOf(utm.zone());
+}
+
+/** Writes the file that says which frame a map is in. */
+using SaveFrame = std::function<void(const std::string& path)>;
+
+/** Brings the map into the frame that was asked for. */
+SaveFrame changeFrame(MapInput& map, Arguments& asked) {
+    const auto place = placeIn(asked.georeference.getValue());
+    const auto earth = earthOf(map, place);
+    const std::string frame = frameOf(asked, earth.has_value());
+    if (frame == "ground") {
+        const Eigen::Isometry3d level = map::groundFrame(map.points, map.firstPose());
+        move(map, level);
+        return [=](const std::string& path) { map::saveFrame(level, {}, path); };
+    }
+    if (frame == "enu") {
+        move(map, earth->enuFromMap);
+        map::GeoReference origin = place.value_or(
+            map::GeoReference{earth->origin.latitude_deg, earth->origin.longitude_deg,
+                              earth->origin.height_m, earth::heading_deg(earth->enuFromMap)});
+        return [=](const std::string& path) { map::saveFrame(earth->enuFromMap, origin, path); };
+    }
+    if (frame == "utm") {
+        moveToUtm(map, earth::MapToUtm(*earth));
+        return [=](const std::string& path) { map::saveUtmFrame(*earth, path); };
+    }
+    if (map.offset.isZero() || fs::path(asked.output.getValue()).extension() == ".las") return {};
+    return [offset = map.offset](const std::string& path) {
+        map::saveFrame(Eigen::Isometry3d(Eigen::Translation3d(-offset)), {}, path);
+    };
+}
+
 /** All of the files or, where one cannot be written, none. */
 void write(const MapInput& map, const std::string& path, const MapOutputOptions& options,
-           const std::optional<Eigen::Isometry3d>& outFromMap,
-           const std::optional<map::GeoReference>& place) {
+           const SaveFrame& saveFrame) {
     io::PartialFolder partial(io::folderOf(path), path);
     const std::string temporary = partial.path() / fs::path(path).filename();
     try {
         mapOutputFor(path).write(map, temporary, options);
-        if (outFromMap) map::saveFrame(*outFromMap, place, frameFileOf(temporary));
+        if (saveFrame) saveFrame(frameFileOf(temporary));
     } catch (const Error& e) {
         throw Error(partial.asInPlace(e.what()));
     }
@@ -218,9 +284,7 @@ void convert(Arguments& asked) {
     MapInput map = readMap(input, 0);
     say("read " + std::to_string(map.points.size()) + " points of '" + mapFileIn(input) + "'");
 
-    const auto place = placeIn(asked.georeference.getValue());
-    const auto outFromMap = frameFor(map, asked.frame.getValue(), place);
-    if (outFromMap) move(map, *outFromMap);
+    const auto saveFrame = changeFrame(map, asked);
     if (const auto box = boxIn(asked.crop.getValue())) {
         map::crop(map.points, *box);
         map::crop(map.dynamic, *box);
@@ -228,7 +292,7 @@ void convert(Arguments& asked) {
     if (map.points.empty()) throw Error("no map point lies within --crop");
     map::thinOut(map.points, asked.spacing.getValue());
     map::thinOut(map.dynamic, asked.spacing.getValue());
-    write(map, output, asked.options(), outFromMap, place);
+    write(map, output, asked.options(), saveFrame);
     say("wrote " + std::to_string(map.points.size()) + " points as '" + output + "'");
 }
 
@@ -236,10 +300,12 @@ cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
         {"OUT",
-         "the map as points (.ply, .pcd), MRPT scene (.3Dscene), page for a browser (.html), MRPT "
+         "the map as points (.ply, .pcd, .las), MRPT scene (.3Dscene), page for a browser (.html), "
+         "MRPT "
          "grid (.gridmap) or ROS grid (.yaml and .pgm)"},
         {"OUT.frame.yaml",
-         "with --frame ground or --georeference: the transformation from the map's frame"}};
+         "with another frame than the map's: the transformation from the map's frame, or the "
+         "offset and zone of UTM"}};
     help.examples = {{{"delio-map -i 07-results -o 07.pcd --frame ground --spacing 0.5",
                        "Levelled and thinned to 0.5 m"},
                       {"delio-map -i 07-results -o 07.yaml --resolution 0.2",

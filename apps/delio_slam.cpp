@@ -14,6 +14,7 @@
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
+#include "delio/formats/fixes.h"
 #include "delio/formats/g2o.h"
 #include "delio/picture/figures.h"
 #include "delio/recordings/scan_reader.h"
@@ -53,6 +54,23 @@ void warnOfOthers(const io::ScanReader& reader,
              "' are ignored; choose a sensor with --sensor-label");
 }
 
+/** Adds the fixes of --gnss or of the recording. Those of a recording may be missing or damaged. */
+void addFixes(SlamCommandLine& line, io::ScanReader& reader, run::Run& run) {
+    if (line.noGnss.getValue()) return;
+    try {
+        auto fixes = reader.takeFixes();
+        if (line.gnss.isSet()) fixes = io::readFixes(line.gnss.getValue());
+        const double epoch_s = reader.meta() ? reader.meta()->epoch_s : 0;
+        if (line.gnss.isSet()) io::countFrom(epoch_s, fixes);
+        if (line.antenna.isSet())
+            for (auto& fix : fixes) fix.antenna = antennaIn(line.antenna.getValue());
+        run.add(fixes);
+    } catch (const Error& e) {
+        const std::string what = "the GNSS fixes cannot be used: " + std::string(e.what());
+        line.gnss.isSet() ? run.fail(what) : run.warn(what);
+    }
+}
+
 /** Processes scans until the end, --count, an interrupt or a fault in the recording. With several
  *  threads the next scan is read while this one is registered; `read_ms` is the waiting time. */
 void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double read_ms,
@@ -80,6 +98,7 @@ void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double 
         if (!cli::interrupted()) run.fail(plainMessage(e));
     }
     warnOfOthers(reader, [&](const std::string& text) { run.warn(text); });
+    addFixes(line, reader, run);
     const auto recording = reader.recording();
     for (const auto& finding : recording.findings) run.warn(finding);
     if (const auto scan = recording.compensatedAfterAll)
@@ -184,7 +203,7 @@ void checkFolders(SlamCommandLine& line) {
     auto written = run::RunFolder(line.output.getValue()).files();
     const std::string map = line.map.isSet() ? run::storedMapIn(line.map.getValue()) : "";
     if (read.size() > 1) written = filesOfSeveral(read, map, line.output.getValue());
-    for (auto* file : {&line.truth, &line.sensorInfo}) read.push_back(file->getValue());
+    for (auto* file : {&line.truth, &line.sensorInfo, &line.gnss}) read.push_back(file->getValue());
     cli::refuseOverlap(read, written);
     if (map.empty()) return;
     std::error_code ignored;
@@ -197,6 +216,7 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
     try {
         optionsFor(line, {});
         if (line.initialPose.isSet()) initialPoseIn(line.initialPose.getValue());
+        if (line.antenna.isSet()) antennaIn(line.antenna.getValue());
         const std::string contradiction = contradictionIn(line);
         if (!contradiction.empty()) throw Error(contradiction);
         if (line.printConfig.getValue()) {

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "delio/core/error.h"
+#include "delio/formats/georeference.h"
+#include "delio/map/las.h"
 #include "delio/map/pcd.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
@@ -24,6 +26,7 @@ MapInput readStored(const std::string& path, double spacing_m) {
     input.points.resize(static_cast<std::size_t>(cloud.cols()));
     for (std::size_t i = 0; i < input.points.size(); ++i)
         input.points[i].position = cloud.col(static_cast<Eigen::Index>(i));
+    input.earth = stored.georeference();
     for (const auto& drive : stored.drives()) input.ways.push_back(stored.trajectory(drive).poses);
     return input;
 }
@@ -31,6 +34,14 @@ MapInput readStored(const std::string& path, double spacing_m) {
 MapInput ofPoints(map::MapPoints points) {
     MapInput input;
     input.points = std::move(points);
+    return input;
+}
+
+MapInput readLas(const std::string& path) {
+    auto las = map::loadLas(path);
+    MapInput input = ofPoints(std::move(las.points));
+    input.offset = las.offset;
+    input.wkt = las.wkt;
     return input;
 }
 
@@ -43,8 +54,7 @@ MapInput readSimplemap(const std::string& path) {
 }
 
 /** The poses of the scans in the map. Its points count their times from the first of these. */
-io::Trajectory sensorOf(const RunFolder& folder) {
-    const auto table = folder.scans();
+io::Trajectory sensorOf(const RunFolder& folder, const io::ScanTable& table) {
     const auto poses = folder.trajectory().poses;
     io::Trajectory sensor;
     std::optional<double> first_s;
@@ -64,7 +74,15 @@ MapInput readFolder(const std::string& path) {
         input.dynamic = map::loadPly(folder.path(RunFolder::kDynamicPly));
     if (!folder.has(RunFolder::kTrajectory)) return input;
     input.ways.push_back(folder.trajectory().poses);
-    if (folder.has(RunFolder::kScans)) input.sensor = sensorOf(folder);
+    if (folder.has(RunFolder::kGeoreference))
+        input.earth = io::readGeoreference(folder.path(RunFolder::kGeoreference));
+    if (folder.has(RunFolder::kScans)) {
+        const auto table = folder.scans();
+        input.sensor = sensorOf(folder, table);
+        constexpr double kFirstUnix_s = 5e8;  // smaller stamps count from the start of the drive
+        if (!table.stamps_s.empty() && table.stamps_s.front() > kFirstUnix_s)
+            input.firstScan_unix_s = table.stamps_s.front();
+    }
     if (folder.has(RunFolder::kLoops))
         for (const auto& loop : folder.loops())
             if (loop.accepted) input.loops.emplace_back(loop.fromNode, loop.toNode);
@@ -78,9 +96,10 @@ MapInput readAny(const std::string& path, double storedSpacing_m) {
     if (kind == ".delio") return readStored(path, storedSpacing_m);
     if (kind == ".ply") return ofPoints(map::loadPly(path));
     if (kind == ".pcd") return ofPoints(map::loadPcd(path));
+    if (kind == ".las") return readLas(path);
     throw Error(
         "cannot read '" + path +
-        "': give the folder of a delio-slam run, or a .ply, .pcd, .simplemap or .delio file");
+        "': give the folder of a delio-slam run, or a .ply, .pcd, .las, .simplemap or .delio file");
 }
 }  // namespace
 

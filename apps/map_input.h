@@ -1,8 +1,10 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "delio/earth/georeference.h"
 #include "delio/formats/trajectory.h"
 #include "delio/map/map_point.h"
 #include "delio/picture/scene.h"
@@ -19,6 +21,11 @@ struct MapInput {
     io::Trajectory sensor;
     /** Poses of the first way between which a loop was closed. */
     std::vector<std::pair<std::size_t, std::size_t>> loops;
+    std::optional<double> firstScan_unix_s;    //!< time of the first scan, where it is known
+    std::optional<earth::Georeference> earth;  //!< where the map lies on the earth, if known
+    /** Coordinates of the points' zero in the coordinate system `wkt` (of a .las, or as UTM). */
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+    std::string wkt;  //!< coordinate system of the points plus `offset`; empty: the map's own
 
     /** The vehicle's; where there is no way, the origin: a map begins there. */
     Eigen::Isometry3d firstPose() const;
@@ -34,7 +41,7 @@ std::string mapFileIn(const std::string& path);
 /** All files that reading `path` may look into. */
 std::vector<std::string> mapFilesIn(const std::string& path);
 
-/** Reads the folder of a run, a .ply, .pcd, .simplemap or .delio.
+/** Reads the folder of a run, a .ply, .pcd, .las, .simplemap or .delio.
  *  @param storedSpacing_m of a .delio one point in so many metres is taken; 0: all
  *  Throws Error for another kind of file, where it cannot be read, and for a map without points. */
 MapInput readMap(const std::string& path, double storedSpacing_m);

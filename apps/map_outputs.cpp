@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "delio/core/error.h"
+#include "delio/map/las.h"
 #include "delio/map/page.h"
 #include "delio/map/pcd.h"
 #include "delio/map/ply.h"
@@ -18,6 +19,14 @@ void writePly(const MapInput& input, const std::string& path, const Options& opt
 
 void writePcd(const MapInput& input, const std::string& path, const Options& options) {
     map::savePcd(input.points, path, options.colouring);
+}
+
+void writeLas(const MapInput& input, const std::string& path, const Options&) {
+    map::LasPlace place;
+    place.coordinatesOf = [&](const Eigen::Vector3d& p) { return p + input.offset; };
+    place.wkt = input.wkt;
+    place.firstScan_unix_s = input.firstScan_unix_s;
+    map::saveLas(input.points, path, place);
 }
 
 void writeScene(const MapInput& input, const std::string& path, const Options& options) {
@@ -50,9 +59,10 @@ void writeMapServer(const MapInput& input, const std::string& path, const Option
 
 const std::vector<MapOutput>& mapOutputs() {
     static const std::vector<MapOutput> outputs = {
-        {".ply", false, writePly},        {".pcd", false, writePcd},
-        {".3Dscene", false, writeScene},  {".html", false, writePage},
-        {".gridmap", true, writeGridmap}, {".yaml", true, writeMapServer},
+        {".ply", false, writePly},       {".pcd", false, writePcd},
+        {".las", false, writeLas},       {".3Dscene", false, writeScene},
+        {".html", false, writePage},     {".gridmap", true, writeGridmap},
+        {".yaml", true, writeMapServer},
     };
     return outputs;
 }

@@ -44,6 +44,17 @@ Rows rowsOf(const Comparison& found) {
                       format("%.4f deg median, %.4f deg p95", rotation.median, rotation.p95));
     return rows;
 }
+std::string georeferenceOf(const run::RunRecord& record) {
+    const auto& place = *record.georeference;
+    std::string text = format("%.7f, %.7f, %.2f m, heading %.2f deg", place.origin.latitude_deg,
+                              place.origin.longitude_deg, place.origin.height_m,
+                              earth::heading_deg(place.enuFromMap));
+    const auto& gnss = record.gnss;
+    if (gnss.used > 0)
+        text += format(" +- %.2f; %zu of %zu fixes, RMS %.2f m", gnss.headingSigma_deg,
+                       gnss.used - gnss.rejected, gnss.fixes, gnss.rms_m);
+    return text;
+}
 }  // namespace
 
 void printTable(const run::RunRecord& record, const std::string& folder, std::ostream& out) {
@@ -72,6 +83,7 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
                        record.rows[static_cast<std::size_t>(found - record.fixes.begin())].scan);
         row("in the stored map", text);
     }
+    if (record.georeference) row("georeference", georeferenceOf(record));
     if (record.extended)
         row("stored map extended", format("%zu edges of %zu candidates, %zu submaps added",
                                           static_cast<std::size_t>(std::count_if(

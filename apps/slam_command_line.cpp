@@ -45,6 +45,10 @@ cli::HelpText slamHelp() {
         {both(Folder::kOdometry, Folder::kOdometryCam0), "poses before pose-graph optimisation"},
         {Folder::kCam0, "final poses in KITTI's cam0 frame"},
         {Folder::kTum, "final poses, TUM format (t x y z qx qy qz qw)"},
+        {both(Folder::kGeoreference, Folder::kGeoTrajectory),
+         "with GNSS fixes: place on the earth; poses as latitude, longitude, height and UTM"},
+        {both(Folder::kEnuTum, Folder::kGeoJson),
+         "with GNSS fixes: poses in east-north-up, TUM format; line for a map viewer"},
         {both(Folder::kGraph, Folder::kMrptGraph), "pose graph"},
         {both(Folder::kPly, Folder::kScene), "map points; scene for SceneViewer3D"},
         {Folder::kMapPage, "the map as an interactive page for a browser"},
@@ -99,6 +103,7 @@ run::RunSettings settingsFor(SlamCommandLine& line, int argc, char** argv) {
     settings.graph = !line.noGraph.getValue();
     settings.map = !line.noMap.getValue();
     settings.keepDynamic = line.keepDynamic.getValue();
+    settings.gnss = !line.noGnss.getValue();
     settings.loops = !line.noLoops.getValue();
     settings.storedMap = line.map.getValue();
     settings.extend = line.extend.getValue();
@@ -120,6 +125,8 @@ std::string contradictionIn(SlamCommandLine& line) {
         return "--threads must be " + std::to_string(cli::kMostThreads) + " or less (0: all)";
     if (line.initialPose.isSet() && !line.map.isSet())
         return "--initial-pose needs --map: it is a pose in the stored map";
+    if (line.noGnss.isSet() && (line.gnss.isSet() || line.antenna.isSet()))
+        return "--no-gnss excludes --gnss and --antenna";
     if (line.extend.isSet() && !line.map.isSet())
         return "--extend needs --map: it adds to the stored map";
     if (line.noMap.isSet() && line.keepDynamic.isSet())
@@ -130,9 +137,9 @@ std::string contradictionIn(SlamCommandLine& line) {
     if (line.map.isSet() && !line.extend.isSet())
         return "several drives with --map also need --extend";
     if (line.truth.isSet() || line.images.isSet() || line.sensorInfo.isSet() ||
-        line.initialPose.isSet())
-        return "--ground-truth, --images, --sensor-info and --initial-pose cannot be used with "
-               "several drives";
+        line.initialPose.isSet() || line.gnss.isSet())
+        return "--ground-truth, --images, --sensor-info, --initial-pose and --gnss cannot be used "
+               "with several drives";
     for (const auto& input : inputs)
         if (isGraph(input)) return "a pose graph must be the only input";
     for (const auto& input : inputs)

@@ -97,6 +97,19 @@ struct SlamCommandLine {
                        cmd};
     Switch noImu{"", "no-imu", "Do not use the recording's IMU", cmd};
     Switch noMap{"", "no-map", "Do not build a map", cmd};
+    Switch noGnss{"", "no-gnss", "Do not use GNSS fixes", cmd};
+    Text gnss{"",
+              "gnss",
+              "GNSS fixes of the drive: .csv (time, latitude, longitude, height, ...) or NMEA; "
+              "default: those in the recording, or gnss.csv or gnss.nmea beside a folder of scans",
+              false,
+              "",
+              "FILE",
+              cmd};
+    Text antenna{
+        "",    "antenna", "GNSS antenna in the vehicle frame, metres; overrides the recording",
+        false, "",        "X,Y,Z",
+        cmd};
     Switch noLoops{"", "no-loops", "Do not search for loop closures", cmd};
     Switch noGraph{"", "no-graph", "Skip pose-graph optimisation and loop closures", cmd};
     Switch gui{"", "gui", "Show progress in a window", cmd};

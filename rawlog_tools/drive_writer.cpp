@@ -46,6 +46,10 @@ DriveWriter::DriveWriter(const DriveRequest& request, const Scene& scene, const 
       writer_(request.output, kLabel, request.embed, request.force),
       faults_(kFaultsHeader) {
     if (request.imu) imu_.emplace(*request.imu, drive, request.scanner.seed);
+    if (request.gnss)
+        gnss_.emplace(
+            *request.gnss, [this](double time_s) { return drive_.lidarPoseAt(time_s); },
+            request.mount.pose().inverse());
 }
 
 int DriveWriter::write() {
@@ -90,7 +94,12 @@ void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
     writer_.addExtra(".ring", points.ring);
     if (request_.distort) writer_.addExtra(".time", points.time_s);
     if (request_.labels) writer_.addExtra(".label", points.label);
-    writer_.add(kScanPeriod_s * static_cast<double>(scan), io::kDriveEpoch_s, points.xyzi);
+    const double stamp_s = kScanPeriod_s * static_cast<double>(scan);
+    if (gnss_)
+        gnss_->upTo(stamp_s, [&](const earth::Fix& fix) {
+            writer_.add(fix, gnss_->quality(), io::kDriveEpoch_s);
+        });
+    writer_.add(stamp_s, io::kDriveEpoch_s, points.xyzi);
     times_ += timeRow(scan);
     poses_ += poseRow(scan);
 }
@@ -130,7 +139,7 @@ void DriveWriter::finish() {
     meta.epoch_s = io::kDriveEpoch_s;
     meta.generator = std::string("synth2rawlog 2 (delio ") + kVersion + ")";
     writer_.finish(meta, times_, calibration(), poses_, faults_, origin(),
-                   imu_ ? imu_->truth() : "");
+                   imu_ ? imu_->truth() : "", gnss_ ? gnss_->truth() : "");
     cli::inform("wrote " + std::to_string(writer_.scans()) + " scans, " +
                 std::to_string(
                     std::lround(std::abs(drive_.station(drive_.scans() - 1) - drive_.station(0)))) +

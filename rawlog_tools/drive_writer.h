@@ -7,6 +7,7 @@
 #include "delio/mrpt/rawlog_writer.h"
 #include "drive.h"
 #include "faults.h"
+#include "gnss.h"
 #include "imu.h"
 #include "mount.h"
 #include "ray_caster.h"
@@ -24,6 +25,7 @@ struct DriveRequest {
     Mount mount;
     std::size_t movers = 0;
     FaultRates faults;
+    std::optional<GnssRequest> gnss;  //!< a receiver on the vehicle
     bool distort = false;  //!< every column is fired on the way: OUT_Images/NNNNNN.time says when
     bool labels = false;   //!< OUT_Images/NNNNNN.label says which points move
     std::optional<ImuModel> imu;  //!< recorded beside the scans
@@ -61,6 +63,7 @@ class DriveWriter {
     Scanner scanner_;
     io::RawlogWriter writer_;
     std::optional<Imu> imu_;
+    std::optional<GnssReceiver> gnss_;
     ScanPoints last_;  //!< what a repeated scan repeats
     std::string times_, poses_, faults_;
 };

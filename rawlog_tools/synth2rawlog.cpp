@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cli.h"
+#include "delio/core/numbers.h"
 #include "delio/version.h"
 #include "drive.h"
 #include "drive_writer.h"
@@ -191,6 +192,23 @@ struct Arguments {
                                    cmd};
     TCLAP::ValueArg<double> empty{"",  "empty-rate", "Fraction of scans without points", false, 0,
                                   "R", cmd};
+    TCLAP::ValueArg<double> gnss{"",
+                                 "gnss",
+                                 "Add GNSS fixes, 5 per second, with this standard deviation (m; "
+                                 "twice of it in height); OUT.gnss.csv holds the truth",
+                                 false,
+                                 0,
+                                 "M",
+                                 cmd};
+    TCLAP::ValueArg<double> gnssJumps{
+        "",  "gnss-jumps", "Fraction of fixes that are wrong by 20 m, for 3 s at a time", false, 0,
+        "R", cmd};
+    TCLAP::ValueArg<std::string> gnssGap{
+        "", "gnss-gap", "Times without fixes, seconds", false, "", "FROM,TO", cmd};
+    TCLAP::ValueArg<std::string> antenna{
+        "",    "antenna",      "GNSS antenna in the frame of the upright LiDAR, metres",
+        false, "-0.8,0.3,0.5", "X,Y,Z",
+        cmd};
     TCLAP::SwitchArg embed{"", "embed", "Store the points in the rawlog instead of OUT_Images/",
                            cmd};
     TCLAP::ValueArg<int> threads{"",  "threads", "Number of threads; 0: all cores", false, 0,
@@ -203,6 +221,48 @@ struct Arguments {
 bool isMetres(double value) { return value >= 0 && std::isfinite(value); }
 
 bool isRate(double value) { return value >= 0 && value < 1; }
+
+/** `count` finite numbers with commas between; else empty. */
+std::vector<double> numbersIn(std::string text, std::size_t count) {
+    std::vector<double> numbers;
+    std::istringstream in(text + ",");
+    for (std::string word; std::getline(in, word, ',');) {
+        const auto number = numberIn<double>(word);
+        if (!number || !std::isfinite(*number)) return {};
+        numbers.push_back(*number);
+    }
+    return numbers.size() == count ? numbers : std::vector<double>{};
+}
+
+/** The receiver asked for. */
+std::optional<GnssRequest> gnssOf(Arguments& args) {
+    if (!args.gnss.isSet()) return std::nullopt;
+    GnssRequest gnss;
+    gnss.sigma_m = args.gnss.getValue();
+    gnss.jumps = args.gnssJumps.getValue();
+    gnss.antenna = Eigen::Vector3d(numbersIn(args.antenna.getValue(), 3).data());
+    if (args.gnssGap.isSet()) {
+        const auto gap = numbersIn(args.gnssGap.getValue(), 2);
+        gnss.gapFirst_s = gap[0];
+        gnss.gapLast_s = gap[1];
+    }
+    gnss.seed = static_cast<std::uint64_t>(args.driveSeed.isSet() ? args.driveSeed.getValue()
+                                                                  : args.seed.getValue());
+    return gnss;
+}
+
+std::string faultInGnss(Arguments& args) {
+    if (!args.gnss.isSet() &&
+        (args.gnssJumps.isSet() || args.gnssGap.isSet() || args.antenna.isSet()))
+        return "--gnss-jumps, --gnss-gap and --antenna need --gnss";
+    if (!isMetres(args.gnss.getValue())) return "--gnss must be at least 0 m";
+    if (!isRate(args.gnssJumps.getValue()))
+        return "--gnss-jumps must be at least 0 and less than 1";
+    if (numbersIn(args.antenna.getValue(), 3).empty()) return "--antenna needs X,Y,Z in metres";
+    if (args.gnssGap.isSet() && numbersIn(args.gnssGap.getValue(), 2).empty())
+        return "--gnss-gap needs FROM,TO in seconds";
+    return "";
+}
 
 /** Message about invalid arguments of a scene; empty if they are valid. */
 std::string faultInScene(Arguments& args) {
@@ -306,6 +366,7 @@ DriveRequest requestOf(Arguments& args) {
     request.faults = {args.drop.getValue(), args.repeat.getValue(), args.empty.getValue()};
     if (args.gap.isSet())
         std::tie(request.faults.gapFirst, request.faults.gapScans) = *gapIn(args.gap.getValue());
+    request.gnss = gnssOf(args);
     request.distort = args.distort.getValue();
     request.labels = args.labels.getValue();
     request.imu = imuOf(args);
@@ -325,6 +386,7 @@ int makeDrive(Arguments& args) {
     if (fault.empty()) fault = faultInMotion(args);
     if (fault.empty()) fault = faultInDrive(args);
     if (fault.empty()) fault = faultInImu(args);
+    if (fault.empty()) fault = faultInGnss(args);
     if (!fault.empty()) {
         cli::inform(fault + "; see --help");
         return cli::kExitBadCommandLine;
@@ -349,12 +411,13 @@ int makeDrive(Arguments& args) {
 cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
-        {"OUT.rawlog", "one CObservationPointCloud per scan"},
+        {"OUT.rawlog", "one CObservationPointCloud per scan; with --gnss also CObservationGPS"},
         {"OUT_Images/",
          "their points, x y z intensity as float32 (not with --embed); .ring, .time, .label: one "
          "value per point"},
         {"OUT.times.txt, OUT.calib.txt, OUT.poses.txt", "in KITTI's formats; the poses are exact"},
         {"OUT.origin.txt", "pose of cam0 in the world at the first scan"},
+        {"OUT.gnss.csv", "with --gnss: true places of the antenna and errors of the fixes"},
         {"OUT.faults.tsv", "lost, repeated and empty scans"},
         {"OUT.imu.yaml", "with --imu: its true orientation, offset and bias"},
         {"OUT.meta.yaml", "sensor model and processing of the points"}};

@@ -274,7 +274,7 @@ TEST_F(MapTool, RefusesWhatCannotBeDone) {
     const std::string in = at("map.ply");
     for (const char* name : {"out.xyz", "out", "out.simplemap", "out.PLY"}) {
         expectRefusal({"-i", in, "-o", at(name)}, 1,
-                      ".ply, .pcd, .3Dscene, .html, .gridmap, .yaml");
+                      ".ply, .pcd, .las, .3Dscene, .html, .gridmap, .yaml");
     }
     expectRefusal({"-i", in, "-o", at("no/such/out.ply")}, 1, "no/such");
     expectRefusal({"-i", in, "-o", at("out.ply"), "--crop", "900,900,0,901,901,1"}, 1, "--crop");

@@ -5,8 +5,8 @@
 /** A folder with a scan a file, or its list of times. */
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace delio::fuzz;
-    static const std::array<const char*, 6> kNames{"a.pcd", "a.ply", "a.bin",
-                                                   "a.txt", "a.csv", "times.txt"};
+    static const std::array<const char*, 7> kNames{"a.pcd", "a.ply",     "a.bin", "a.txt",
+                                                   "a.csv", "times.txt", "a.las"};
     Input input(data, size);
     const std::string name = kNames[input.pick(kNames.size())];
     if (name == "times.txt") fileOf(std::string(16, '\0'), "drive/a.bin");

@@ -1,16 +1,16 @@
+#include "delio/map/las.h"
 #include "delio/map/pcd.h"
 #include "delio/map/ply.h"
 #include "target.h"
 
-/** Maps of points: .ply and .pcd. */
+/** Maps of points: .ply, .pcd and .las. */
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace delio;
     fuzz::Input input(data, size);
-    const bool pcd = input.pick(2) == 1;
+    const auto kind = input.pick(3);
     return fuzz::mayRefuse([&] {
-        if (pcd)
-            map::loadPcd(fuzz::fileOf(input.rest(), "map.pcd"));
-        else
-            map::loadPly(fuzz::fileOf(input.rest(), "map.ply"));
+        if (kind == 2) map::loadLas(fuzz::fileOf(input.rest(), "map.las"));
+        if (kind == 1) map::loadPcd(fuzz::fileOf(input.rest(), "map.pcd"));
+        if (kind == 0) map::loadPly(fuzz::fileOf(input.rest(), "map.ply"));
     });
 }

@@ -177,4 +177,19 @@ void saveFrame(const Isometry3d& otherFromMap, const std::optional<GeoReference>
             << "ecef_from_enu:" << rowsOf(ecefFromEnu(*place));
     });
 }
+
+void saveUtmFrame(const earth::Georeference& place, const std::string& path) {
+    const earth::MapToUtm utm(place);
+    io::replaceTextFile(path, [&](std::ostream& out) {
+        out << "# easting, northing, height (above the WGS84 ellipsoid) = p_out + offset, metres\n"
+            << "crs: EPSG:" << utm.zone().epsg() << "\nutm_zone: " << utm.zone().name()
+            << "\noffset: [" << fixed(utm.offset().x(), 0) << ", " << fixed(utm.offset().y(), 0)
+            << ", 0]\n"
+            << "# p_enu = enu_from_map * p_map, metres; x east, y north, z up from here (WGS84)\n"
+            << "origin:\n  latitude_deg: " << rounded(place.origin.latitude_deg, 17)
+            << "\n  longitude_deg: " << rounded(place.origin.longitude_deg, 17)
+            << "\n  altitude_m: " << rounded(place.origin.height_m, 17)
+            << "\nenu_from_map:" << rowsOf(place.enuFromMap);
+    });
+}
 }  // namespace delio::map

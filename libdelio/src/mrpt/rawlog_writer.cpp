@@ -1,8 +1,10 @@
 #include "delio/mrpt/rawlog_writer.h"
 
+#include <mrpt/obs/CObservationGPS.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -20,7 +22,7 @@ using mrpt::obs::CObservationPointCloud;
 namespace {
 constexpr const char* kImages = "_Images";
 constexpr const char* kSideFiles[] = {".meta.yaml",  ".times.txt",  ".calib.txt", ".poses.txt",
-                                      ".faults.tsv", ".origin.txt", ".imu.yaml"};
+                                      ".faults.tsv", ".origin.txt", ".imu.yaml",  ".gnss.csv"};
 
 /** `path`, if it can be a drive's. */
 const std::string& checked(const std::string& path) {
@@ -166,6 +168,34 @@ void RawlogWriter::put(const mrpt::obs::CObservation& observation) {
     }
 }
 
+void RawlogWriter::add(const earth::Fix& fix, int quality, double epoch_s) {
+    mrpt::obs::CObservationGPS observation;
+    observation.sensorLabel = "gnss";
+    observation.timestamp = timeOf(fix.stamp_s, epoch_s);
+    observation.originalReceivedTimestamp = observation.timestamp;
+    const Eigen::Vector3d antenna = fix.antenna.value_or(Eigen::Vector3d::Zero());
+    observation.sensorPose = toMrpt(isometry(Eigen::Matrix3d::Identity(), antenna));
+    mrpt::obs::gnss::Message_NMEA_GGA gga;
+    const double time_s = std::fmod(epoch_s + fix.stamp_s, 86400);
+    gga.fields.UTCTime.hour = static_cast<std::uint8_t>(time_s / 3600);
+    gga.fields.UTCTime.minute = static_cast<std::uint8_t>(std::fmod(time_s, 3600) / 60);
+    gga.fields.UTCTime.sec = std::fmod(time_s, 60);
+    gga.fields.latitude_degrees = fix.place.latitude_deg;
+    gga.fields.longitude_degrees = fix.place.longitude_deg;
+    gga.fields.altitude_meters = fix.place.height_m;
+    gga.fields.orthometric_altitude = fix.place.height_m;
+    gga.fields.fix_quality = static_cast<std::uint8_t>(quality);
+    gga.fields.thereis_HDOP = true;
+    gga.fields.HDOP =
+        static_cast<float>(std::sqrt(fix.covariance(0, 0) / earth::covarianceOf(quality, 1)(0, 0)));
+    observation.setMsg(gga);
+    try {
+        mrpt::serialization::archiveFrom(out_) << observation;
+    } catch (const std::exception&) {
+        giveUp();
+    }
+}
+
 std::string RawlogWriter::extraFile(const std::string& extension) const {
     char name[32];
     std::snprintf(name, sizeof(name), "%06zu", count_);
@@ -175,7 +205,7 @@ std::string RawlogWriter::extraFile(const std::string& extension) const {
 void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
                           const std::string& calibText, const std::string& posesText,
                           const std::string& faultsText, const std::string& originText,
-                          const std::string& imuText) {
+                          const std::string& imuText, const std::string& gnssText) {
     // A full disk may show only now: everything that was handed over has to be in the file.
     const auto written = out_.getPosition();
     out_.close();
@@ -190,6 +220,7 @@ void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,
     writeText(".faults.tsv", faultsText);
     writeText(".origin.txt", originText);
     writeText(".imu.yaml", imuText);
+    writeText(".gnss.csv", gnssText);
     writeText(".meta.yaml", textOf(meta));
     std::vector<std::string> names;  // the rawlog's first: it marks the whole
     for (const auto& output : outputsOf(path_)) names.push_back(fs::path(output).filename());

@@ -81,6 +81,8 @@ class ByteReader {
         return pose;
     }
 
+    bool atEnd() const { return at_ == bytes_.size(); }
+
  private:
     template <class Value>
     static void check(const Value* values, std::size_t count) {

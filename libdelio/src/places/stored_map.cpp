@@ -89,6 +89,24 @@ places::Submap getSubmap(ByteReader& bytes, std::size_t nodes) {
     return submap;
 }
 
+void put(ByteWriter& bytes, const earth::Georeference& place) {
+    for (const double value :
+         {place.origin.latitude_deg, place.origin.longitude_deg, place.origin.height_m})
+        bytes.put(value);
+    bytes.put(place.enuFromMap);
+    put(bytes, place.covariance);
+}
+earth::Georeference getGeoreference(ByteReader& bytes) {
+    earth::Georeference place;
+    for (auto* value :
+         {&place.origin.latitude_deg, &place.origin.longitude_deg, &place.origin.height_m})
+        *value = bytes.get<double>();
+    if (!earth::isPlausible(place.origin)) throw std::out_of_range("origin");
+    place.enuFromMap = bytes.getPose();
+    place.covariance = getSymmetric(bytes);
+    return place;
+}
+
 /** Centres of cells, as whole numbers of half a cell. */
 void putCentres(ByteWriter& bytes, const Eigen::Matrix2Xd& centres) {
     std::vector<std::int16_t> halves;
@@ -196,6 +214,7 @@ void StoredMap::save(const MapContent& content, const std::string& path) {
             Writer::put(index, writer.add(descriptor));
             Writer::put(index, writer.add(points));
         }
+        if (content.georeference) put(index, *content.georeference);
         const Part part = writer.add(index);
         ByteWriter head;
         for (const char letter : kMagic) head.put(letter);
@@ -288,6 +307,8 @@ void StoredMap::readIndex(const Part& index) {
             descriptors_.push_back(Writer::get(reader));
             clouds_.push_back(Writer::get(reader));
         }
+        // A map without a georeference ends here.
+        if (!reader.atEnd()) georeference_ = getGeoreference(reader);
     } catch (const std::exception&) {
         damaged("invalid index");
     }
@@ -336,7 +357,11 @@ Eigen::Matrix3Xf StoredMap::cloud(double spacing) const {
 }
 
 MapContent StoredMap::content() const {
-    return {graph_, drives_, submaps_, [this](std::size_t i) { return descriptor(i); },
-            [this](std::size_t i) { return points(i); }};
+    return {graph_,
+            drives_,
+            submaps_,
+            [this](std::size_t i) { return descriptor(i); },
+            [this](std::size_t i) { return points(i); },
+            georeference_};
 }
 }  // namespace delio

@@ -7,6 +7,7 @@
 #include "delio/core/error.h"
 #include "delio/recordings/scan_reader.h"
 #include "files/input_file.h"
+#include "gnss.h"
 #include "imu_samples.h"
 #include "message_source.h"
 #include "ouster.h"
@@ -110,7 +111,7 @@ std::string imuTopicFor(const std::vector<Topic>& topics, const std::string& top
 class BagReader : public ScanReader {
  public:
     BagReader(std::string container, const ScanSource& source, const OpenSource& open)
-        : container_(std::move(container)), bag_(open()) {
+        : container_(std::move(container)), open_(open), bag_(open()) {
         const auto [label, frame] = topicAndFrame(source.label);
         topic_ = chooseTopic(bag_->topics(), label);
         type_ = scanTypeOf(topic_);
@@ -153,6 +154,12 @@ class BagReader : public ScanReader {
     }
 
     std::vector<ImuSample> takeImu() override { return std::exchange(imu_, {}); }
+    /** From a second pass over the bag, once. */
+    earth::Fixes takeFixes() override {
+        const auto open = std::exchange(open_, {});
+        return open ? fixesOfBag(open) : earth::Fixes{};
+    }
+
     const std::string& label() const override { return topic_.name; }
     const std::set<std::string>& otherLabels() const override { return otherLabels_; }
     std::optional<double> fraction() const override { return ended_ ? 1 : bag_->fraction(); }
@@ -261,6 +268,7 @@ class BagReader : public ScanReader {
     }
 
     std::string container_;
+    OpenSource open_;  //!< until the fixes were read
     std::unique_ptr<MessageSource> bag_;
     Topic topic_;
     ScanType type_ = ScanType::kNone;
@@ -277,7 +285,7 @@ class BagReader : public ScanReader {
 std::unique_ptr<ScanReader> openBag(
     const std::string& container, const ScanSource& source,
     std::unique_ptr<MessageSource> (*openPath)(const std::string&)) {
-    const OpenSource open = [&] { return openPath(source.path); };
+    const OpenSource open = [path = source.path, openPath] { return openPath(path); };
     try {
         return std::make_unique<BagReader>(container, source, open);
     } catch (const std::exception& e) {

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <utility>
 
 #include "delio/core/error.h"
+#include "delio/formats/fixes.h"
 #include "files/names.h"
 #include "formats/bin_cloud.h"
+#include "formats/las.h"
 #include "formats/pcd.h"
 #include "formats/ply.h"
 #include "formats/text_cloud.h"
@@ -23,6 +26,7 @@ using ReadRecords = std::function<CloudRecords(const fs::path&)>;
 ReadRecords recordsReader(const std::string& extension) {
     if (extension == ".pcd") return [](const fs::path& file) { return readPcdScan(file.string()); };
     if (extension == ".ply") return [](const fs::path& file) { return readPlyScan(file.string()); };
+    if (extension == ".las") return [](const fs::path& file) { return readLasScan(file.string()); };
     if (extension == ".bin")
         return [scans = BinScans()](const fs::path& file) mutable { return scans.read(file); };
     if (extension == ".txt" || extension == ".csv") return readTextScan;
@@ -37,7 +41,7 @@ std::string lowerCase(std::string text) {
 
 /** Texts that often lie beside scans. */
 bool isSideText(const fs::path& file) {
-    if (isTimesFile(file)) return true;
+    if (isTimesFile(file) || isFixesFile(file)) return true;
     const std::string stem = lowerCase(file.stem().string());
     const std::string extension = lowerCase(file.extension().string());
     if (extension != ".txt" && extension != ".csv") return false;
@@ -87,7 +91,7 @@ FilesByExtension::value_type onlyKindOf(const FilesByExtension& files, const fs:
     if (files.empty()) {
         const fs::path drive = kittiFolderIn(folder);
         throw Error("'" + folder.string() +
-                    "' contains no .pcd, .ply, .bin, .txt or .csv: no scans" +
+                    "' contains no .pcd, .ply, .las, .bin, .txt or .csv: no scans" +
                     (drive.empty() ? ""
                                    : ", only folders of KITTI drives; give one of them, such as '" +
                                          drive.string() + "'"));
@@ -108,6 +112,7 @@ CloudFolder::CloudFolder(const fs::path& folder) : FilesReader("lidar") {
     });
     times_ = timesOf(folder, files);
     setImu(imuBeside(folder));
+    fixes_ = fixesBeside(folder);
     files_ = std::move(files);
     readRecords_ = recordsReader(extension);
     extension_ = extension;
@@ -155,6 +160,11 @@ Scan CloudFolder::read(std::size_t index) {
     scan.stamp_s = stamp_s;
     scan.time = timeOf(stamp_s, times_.epoch_s);
     return scan;
+}
+
+earth::Fixes CloudFolder::takeFixes() {
+    const auto file = std::exchange(fixes_, {});
+    return file ? readFixes(*file) : earth::Fixes{};
 }
 
 std::unique_ptr<ScanReader> openCloudFolder(const ScanSource& source) {

@@ -18,6 +18,7 @@ class CloudFolder : public FilesReader {
 
     const std::optional<DriveMeta>& meta() const override { return meta_; }
     Recording recording() const override;
+    earth::Fixes takeFixes() override;
 
  protected:
     const std::vector<std::filesystem::path>& files() const override { return files_; }
@@ -33,5 +34,6 @@ class CloudFolder : public FilesReader {
     PointTable table_;
     bool pointTimes_ = false;
     std::optional<DriveMeta> meta_;
+    std::optional<std::filesystem::path> fixes_;  //!< file with them, until it was read
 };
 }  // namespace delio::io

@@ -10,10 +10,12 @@
 #include <map>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/core/numbers.h"
+#include "delio/formats/fixes.h"
 #include "delio/formats/trajectory.h"
 #include "delio/mrpt/rawlog_writer.h"
 #include "delio/recordings/kitti_drive.h"
@@ -218,6 +220,29 @@ void readOxts(const fs::path& folder, const CPose3D& imuToCam0, KittiDrive& driv
     }
 }
 
+/** The positions of the OXTS unit, which lies at `imu` in the LiDAR's frame. */
+void readOxtsFixes(const fs::path& folder, const CPose3D& imu, KittiDrive& drive) {
+    const fs::path times = folder / "oxts" / "timestamps.txt";
+    const auto lines = fs::exists(times) ? linesOf(times) : std::vector<std::string>{};
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+        const fs::path file = folder / "oxts" / "data" / (drive.scans[i].stem().string() + ".txt");
+        if (!fs::exists(file)) continue;
+        const auto row = delio::numbersIn(textOf(file));
+        constexpr std::size_t kAccuracy = 23;  // m
+        if (row.size() < 3) continue;
+        earth::Fix fix;
+        const std::size_t number = numberOf(drive.scans[i]);
+        const auto date =
+            number < lines.size() ? unixTimeOfDate(lines[number]) : std::optional<double>{};
+        fix.stamp_s = date ? *date - drive.meta.epoch_s : drive.times_s[i];
+        fix.place = {row[0], row[1], row[2]};
+        const double sigma_m = row.size() > kAccuracy && row[kAccuracy] > 0 ? row[kAccuracy] : 1;
+        fix.covariance *= sigma_m * sigma_m;
+        fix.antenna = fromMrpt(imu).translation();
+        drive.fixes.push_back(fix);
+    }
+}
+
 void readRawDrive(const fs::path& folder, KittiDrive& drive) {
     drive.meta.source = "kitti-raw";
     takeKittisSensor(drive.meta);
@@ -247,7 +272,9 @@ void readRawDrive(const fs::path& folder, KittiDrive& drive) {
                        rigid(readRawCalibration(veloToCam), "R", "T", veloToCam);
     drive.calibText = "Tr: " + kittiRow(fromMrpt(Tr));
     if (!fs::exists(folder / "oxts") || !fs::exists(imuToVelo)) return;
-    readOxts(folder, Tr + rigid(readRawCalibration(imuToVelo), "R", "T", imuToVelo), drive);
+    const CPose3D imu = rigid(readRawCalibration(imuToVelo), "R", "T", imuToVelo);
+    readOxts(folder, Tr + imu, drive);
+    readOxtsFixes(folder, imu, drive);
 }
 }  // namespace
 
@@ -313,7 +340,8 @@ mrpt::maps::CPointsMap::Ptr readPoints(const fs::path& file) {
 KittiReader::KittiReader(const fs::path& folder)
     : FilesReader("velodyne"),
       drive_(openKittiDrive(kittiFolderOf(folder), 0, 0)),
-      meta_(drive_.meta) {
+      meta_(drive_.meta),
+      fixesFile_(fixesBeside(kittiFolderOf(folder))) {
     setImu(imuBeside(kittiFolderOf(folder)));
 }
 
@@ -335,6 +363,15 @@ SideFile KittiReader::truth() const {
     SideFile truth{drive_.posesName, ""};
     for (const auto& row : drive_.poseRows) truth.text += row + "\n";
     return truth;
+}
+
+earth::Fixes KittiReader::takeFixes() {
+    auto fixes = std::exchange(drive_.fixes, {});
+    const auto file = std::exchange(fixesFile_, {});
+    if (!file) return fixes;
+    fixes = readFixes(*file);
+    countFrom(meta_->epoch_s, fixes);
+    return fixes;
 }
 
 Scan KittiReader::read(std::size_t index) {

@@ -22,6 +22,7 @@ class KittiReader : public FilesReader {
     Recording recording() const override;
     SideFile calibration() const override { return {drive_.calibName, drive_.calibText}; }
     SideFile truth() const override;
+    earth::Fixes takeFixes() override;
 
  protected:
     const std::vector<std::filesystem::path>& files() const override { return drive_.scans; }
@@ -31,5 +32,6 @@ class KittiReader : public FilesReader {
  private:
     KittiDrive drive_;
     std::optional<DriveMeta> meta_;
+    std::optional<std::filesystem::path> fixesFile_;  //!< instead of OXTS, until it was read
 };
 }  // namespace delio::io

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "decode_observation.h"
@@ -18,6 +19,7 @@
 #include "delio/odometry/scan.h"
 #include "files/gz.h"
 #include "files/input_file.h"
+#include "gnss.h"
 #include "imu_samples.h"
 #include "mrpt/clock.h"
 #include "mrpt/external_files.h"
@@ -92,6 +94,8 @@ Recording RawlogReader::recording() const {
     }
     return recording;
 }
+
+earth::Fixes RawlogReader::takeFixes() { return std::exchange(fixes_, {}); }
 
 SideFile RawlogReader::calibration() const { return sideFile(sidecarPath(path_, ".calib.txt")); }
 
@@ -180,14 +184,18 @@ bool RawlogReader::readEntry() {
     return true;
 }
 
-/** Scans, and the samples of the first IMU; what else there is may be null. */
+/** Scans, the samples of the first IMU, and GNSS fixes; what else there is may be null. */
 void RawlogReader::accept(const CObservation::Ptr& observation) {
-    if (observation && isScan(*observation)) pending_.push_back(observation);
-    const auto imu = std::dynamic_pointer_cast<mrpt::obs::CObservationIMU>(observation);
+    if (!observation) return;
+    const double epoch_s = meta_ ? meta_->epoch_s : 0;
+    if (isScan(*observation)) pending_.push_back(observation);
+    if (const auto* gnss = dynamic_cast<const mrpt::obs::CObservationGPS*>(observation.get()))
+        if (const auto fix = fixOf(*gnss, epoch_s)) fixes_.push_back(*fix);
+    const auto* imu = dynamic_cast<const mrpt::obs::CObservationIMU*>(observation.get());
     if (!imu) return;
     if (!imuLabel_) imuLabel_ = imu->sensorLabel;
     if (imu->sensorLabel == *imuLabel_)
-        addSample(sampleOf(*imu, secondsSince(meta_ ? meta_->epoch_s : 0, imu->timestamp)), imu_);
+        addSample(sampleOf(*imu, secondsSince(epoch_s, imu->timestamp)), imu_);
 }
 
 std::vector<std::string> RawlogReader::imagesFolders() const {

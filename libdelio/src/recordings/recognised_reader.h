@@ -24,6 +24,7 @@ class RecognisedReader : public ScanReader {
     std::optional<double> fraction() const override { return fraction_; }
     const std::optional<DriveMeta>& meta() const override { return meta_; }
     Recording recording() const override;
+    earth::Fixes takeFixes() override { return source_->takeFixes(); }
     SideFile calibration() const override { return source_->calibration(); }
     SideFile truth() const override { return source_->truth(); }
 

@@ -125,13 +125,13 @@ FileKind kindOf(const std::string& path) {
     if (begins(bytes, "SQLite format 3")) return FileKind::kRos2Database;
     if (begins(bytes, "\x89MCAP")) return FileKind::kMcap;
     const std::string extension = fs::path(path).extension().string();
-    for (const char* cloud : {".pcd", ".ply", ".bin", ".txt", ".csv"})
+    for (const char* cloud : {".pcd", ".ply", ".las", ".bin", ".txt", ".csv"})
         if (extension == cloud)
             throw Error("'" + path + "' is a single scan; give the folder that contains all scans");
     if (begins(bytes, "#ROSBAG"))
         throw Error("'" + path +
                     "' is a ROS bag of a version other than 2.0; convert it with rosbag fix");
-    for (const char* other : {".osf", ".zstd", ".las", ".laz"})
+    for (const char* other : {".osf", ".zstd", ".laz"})
         if (extension == other)
             throw Error("'" + path + "': " + other +
                         " files are not supported; inputs.md in DeLiO's documentation lists the "

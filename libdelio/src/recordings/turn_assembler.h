@@ -31,6 +31,7 @@ class TurnAssembler : public ScanReader {
     std::optional<double> fraction() const override;
     const std::optional<DriveMeta>& meta() const override { return source_->meta(); }
     Recording recording() const override;
+    earth::Fixes takeFixes() override { return source_->takeFixes(); }
     SideFile calibration() const override { return source_->calibration(); }
     /** None for turns: its rows are those of the parts. */
     SideFile truth() const override { return areParts_ ? SideFile{} : source_->truth(); }

@@ -12,6 +12,7 @@
 #include "odometry/preprocess.h"
 #include "places/join_maps.h"
 #include "run/tables.h"
+#include "slam/georeferencing.h"
 #include "slam/place_listeners.h"
 
 namespace delio::run {
@@ -194,6 +195,33 @@ void Run::optimiseGraph() {
     }
 }
 
+void Run::add(const earth::Fixes& fixes) {
+    gnssFixes_.insert(gnssFixes_.end(), fixes.begin(), fixes.end());
+}
+
+/** Fixes move the poses, but those in a stored map. Fixes that do not determine the place of the
+ *  map are a warning. */
+void Run::georeference() {
+    const bool moves = settings_.graph && graph_ && !record_.isLocalised();
+    earth::Track track{record_.graph.poses(), record_.odometry.stamps_s, {}};
+    for (const auto& row : record_.rows) track.usable.push_back(!row.predicted && !row.lost);
+    try {
+        auto found = georeferenced(record_.graph, track, gnssFixes_,
+                                   moves ? &record_.options.graph : nullptr);
+        record_.gnss = found.figures;
+        if (!found.figures.refusal.empty())
+            return warn("the map is not georeferenced: " + found.figures.refusal);
+        record_.georeference = found.place;
+        record_.graph = std::move(found.graph);
+        if (found.figures.inGraph > 0 && truth_)
+            warn(
+                "the final poses use GNSS fixes: ground truth of the same receiver flatters them; "
+                "--no-gnss leaves the fixes out");
+    } catch (const std::exception& e) {
+        warn("the map is not georeferenced: " + plainMessage(e));
+    }
+}
+
 void Run::optimise() {
     Stopwatch watch;
     record_.odometry = slam_.trajectory();
@@ -201,6 +229,8 @@ void Run::optimise() {
         optimiseGraph();
     else  // it failed: nodes without edges
         for (const auto& pose : record_.odometry.poses) record_.graph.addNode(pose);
+    if (follower_ && record_.isLocalised()) record_.georeference = follower_->map().georeference();
+    if (settings_.gnss && !gnssFixes_.empty() && !record_.georeference) georeference();
     record_.optimise_ms = watch.lap_ms();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
     if (!record_.stampsRise) record_.final.stamps_s.clear();
@@ -213,7 +243,8 @@ void Run::store() {
                       {{settings_.drive, 0, record_.odometry.stamps_s}},
                       submaps.submaps(),
                       [&](std::size_t i) { return submaps.descriptor(i); },
-                      [&](std::size_t i) { return submaps.points(i); }};
+                      [&](std::size_t i) { return submaps.points(i); },
+                      record_.georeference};
     stored_ = own_;
     try {
         if (settings_.extend && follower_ && record_.isLocalised()) extend();
@@ -232,6 +263,7 @@ void Run::extend() {
     record_.extended = true;
     record_.addedSubmaps = both.added;
     stored_ = std::move(both.content);
+    stored_->georeference = record_.georeference;
 }
 
 evaluation::Comparison Run::compared(const io::Trajectory& vehicle) const {

@@ -10,6 +10,7 @@
 #include "delio/files/output_file.h"
 #include "delio/files/output_folder.h"
 #include "delio/formats/g2o.h"
+#include "delio/formats/georeference.h"
 #include "delio/map/page.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
@@ -27,6 +28,10 @@ constexpr const char* kAll[] = {RunFolder::kSummary,
                                 RunFolder::kCam0,
                                 RunFolder::kOdometryCam0,
                                 RunFolder::kTum,
+                                RunFolder::kGeoreference,
+                                RunFolder::kGeoTrajectory,
+                                RunFolder::kEnuTum,
+                                RunFolder::kGeoJson,
                                 RunFolder::kGraph,
                                 RunFolder::kMrptGraph,
                                 RunFolder::kScans,
@@ -59,6 +64,16 @@ map::PageContent pageOf(const RunRecord& record, const map::BuiltMap& map) {
     page.truth = record.truth;
     if (record.optimised()) page.odometry = record.odometry.poses;
     return page;
+}
+void writeOnEarth(const RunRecord& record, const RunFolder& folder) {
+    const auto& place = *record.georeference;
+    io::writeGeoreference(place, record.gnss, folder.path(RunFolder::kGeoreference));
+    io::writeGeoTrajectory(record.final, place, folder.path(RunFolder::kGeoTrajectory));
+    io::writeGeoJson(record.final, place, record.drive, folder.path(RunFolder::kGeoJson));
+    if (record.final.stamps_s.empty()) return;
+    auto enu = record.final;
+    for (auto& pose : enu.poses) pose = place.enuFromMap * pose;
+    io::writeTum(enu, folder.path(RunFolder::kEnuTum));
 }
 }  // namespace
 
@@ -129,6 +144,7 @@ void RunFolder::writeMaps(const RunRecord& record, const RunMaps& maps,
 
 void RunFolder::writeTables(const RunRecord& record) const {
     writeTrajectories(record);
+    if (record.georeference) writeOnEarth(record, *this);
     io::saveG2o(record.graph, path(kGraph));
     io::saveMrptText(record.graph, path(kMrptGraph), record.closedLoops());
     if (!record.rows.empty()) writeScans(record.rows, path(kScans));

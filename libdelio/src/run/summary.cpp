@@ -37,6 +37,29 @@ Summary::Figures figuresOf(const evaluation::Comparison& comparison) {
     return figures;
 }
 
+Summary::Figures georeferenceOf(const RunRecord& record) {
+    if (!record.georeference) return {};
+    const auto& place = *record.georeference;
+    const auto& gnss = record.gnss;
+    Summary::Figures figures{{"latitude_deg", place.origin.latitude_deg},
+                             {"longitude_deg", place.origin.longitude_deg},
+                             {"height_m", place.origin.height_m},
+                             {"heading_deg", earth::heading_deg(place.enuFromMap)}};
+    if (gnss.fixes == 0) return figures;  // that of a stored map
+    const Summary::Figures ofFixes{{"heading_sigma_deg", gnss.headingSigma_deg},
+                                   {"origin_sigma_east_m", gnss.originSigma_m.x()},
+                                   {"origin_sigma_north_m", gnss.originSigma_m.y()},
+                                   {"origin_sigma_up_m", gnss.originSigma_m.z()},
+                                   {"fixes", static_cast<double>(gnss.fixes)},
+                                   {"fixes_used", static_cast<double>(gnss.used)},
+                                   {"fixes_rejected", static_cast<double>(gnss.rejected)},
+                                   {"fixes_in_graph", static_cast<double>(gnss.inGraph)},
+                                   {"rms_m", gnss.rms_m},
+                                   {"rms_up_m", gnss.rmsUp_m}};
+    figures.insert(figures.end(), ofFixes.begin(), ofFixes.end());
+    return figures;
+}
+
 /** Sums of the times of all rows, each under its name, in the order of the first row. */
 void add(const std::vector<Named>& times, Summary::Figures& sums) {
     for (const auto& [name, ms] : times) {
@@ -200,6 +223,8 @@ void forEachField(Record& s, const Field& field) {
         field("not_found_in_map", s.not_found_in_map);
     }
     if (field.hasGroup("imu", !s.imu.empty())) field("imu", s.imu);
+    if (field.hasGroup("georeference", !s.georeference.empty()))
+        field("georeference", s.georeference);
     field("path_m", s.path_m);
     field("vertical_correction_deg", s.vertical_correction_deg);
     field("deskewed", s.deskewed);
@@ -270,6 +295,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
                                                 : summary.not_found_in_map);
     if (record.imu) summary.imu = figuresOf(*record.imu);
     summary.deskewed = countOf(record, &RunRow::deskewed);
+    summary.georeference = georeferenceOf(record);
     summary.path_m = record.path_m();
     summary.vertical_correction_deg = record.options.scan().vertical_correction_deg;
     summary.ms_per_scan = record.msPerScan();

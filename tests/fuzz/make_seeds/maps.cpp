@@ -3,6 +3,7 @@
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <zlib.h>
 
+#include "delio/map/las.h"
 #include "delio/map/pcd.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
@@ -25,6 +26,10 @@ void maps() {
            [](const fs::path& file) { map::savePly(mapPoints(), file.string()); });
     behind("1", seed("points", "map.pcd"),
            [](const fs::path& file) { map::savePcd(mapPoints(), file.string()); });
+    behind("2", seed("points", "map.las"),
+           [](const fs::path& file) { map::saveLas(mapPoints(), file.string()); });
+    behind("6", seed("clouds", "map.las"),
+           [](const fs::path& file) { map::saveLas(mapPoints(), file.string()); });
     behind("0", seed("clouds", "map.pcd"),
            [](const fs::path& file) { map::savePcd(mapPoints(), file.string()); });
     behind("1", seed("clouds", "map.ply"),

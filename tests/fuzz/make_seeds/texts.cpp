@@ -2,6 +2,7 @@
 
 #include "delio/formats/drive_meta.h"
 #include "delio/formats/g2o.h"
+#include "delio/formats/georeference.h"
 #include "delio/formats/scan_table.h"
 #include "delio/run/summary.h"
 #include "delio/slam/options.h"
@@ -14,6 +15,12 @@ void texts() {
     io::saveG2o(smallGraph(), seed("g2o", "graph").string());
     const std::string row = "1 0 0 0 0 1 0 0 0 0 1 0\n", tum = "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n";
     writeText(seed("poses", "kitti"), "0" + row + "1 0 0 2 0 1 0 0 0 0 1 0\n");
+    writeText(seed("fixes", "csv"), "0time,lat,lon,height,sigma_east\n1616513421.5,49,8,1,2\n");
+    writeText(seed("fixes", "nmea"),
+              "1$GPGGA,123519.5,4807.038,N,01131.0,E,4,08,0.9,545.4,M,46.9,M,,\n"
+              "$GNRMC,123520,A,4807.038,N,01131.000,E,,,230394,,\n$GPZDA,1,2,3,2024,,\n");
+    behind("2", seed("fixes", "georeference"),
+           [](const fs::path& file) { io::writeGeoreference({}, {}, file.string()); });
     writeText(seed("poses", "tum"), "0# t x y z\n" + tum);
     writeText(seed("poses", "times"), "10\n0.1\n2e-1\n");
     writeText(seed("poses", "calib"), "2P0: " + row + "Tr: " + row);

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "delio/earth/georeference.h"
 #include "delio/map/map_point.h"
 
 namespace delio::map {
@@ -35,4 +36,8 @@ Eigen::Isometry3d ecefFromEnu(const GeoReference& place);
  *  Error if that fails. */
 void saveFrame(const Eigen::Isometry3d& otherFromMap, const std::optional<GeoReference>& place,
                const std::string& path);
+
+/** Writes a YAML with the zone (EPSG code) and offset of a map that earth::MapToUtm brought into
+ *  UTM, and its georeference. Throws Error if that fails. */
+void saveUtmFrame(const earth::Georeference& place, const std::string& path);
 }  // namespace delio::map

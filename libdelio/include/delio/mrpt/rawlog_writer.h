@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "delio/earth/fix.h"
 #include "delio/files/output_folder.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/odometry/imu.h"
@@ -51,6 +52,9 @@ class RawlogWriter {
     /** Appends a sample of an IMU as a CObservationIMU with the label `imu`; `stamp_s` counts from
      *  `epoch_s`. */
     void add(const ImuSample& sample, double epoch_s);
+    /** Appends a GNSS fix as a CObservationGPS with GGA; its stamp counts from `epoch_s`, an
+     * antenna that is not known is at 0. `quality`: as GGA numbers it. */
+    void add(const earth::Fix& fix, int quality, double epoch_s);
 
     /** Writes one value per point of the next scan into `OUT_Images/NNNNNN` + extension. Throws
      *  Error where that fails. */
@@ -62,11 +66,13 @@ class RawlogWriter {
 
     /** Writes OUT.meta.yaml and, where the text is not empty, OUT.times.txt, OUT.calib.txt,
      *  OUT.poses.txt, OUT.faults.tsv, OUT.origin.txt (origin of a synthetic drive in its world),
-     * OUT.imu.yaml (truth of its IMU), byte for byte as given; then puts the drive in place of the
-     * old one. Throws Error where that fails; then the old one is still there. */
+     * OUT.imu.yaml (truth of its IMU), OUT.gnss.csv (truth of fixes), byte for byte as given; then
+     * puts the drive in place of the old one. Throws Error where that fails; then the old one is
+     * still there. */
     void finish(const DriveMeta& meta, const std::string& timesText, const std::string& calibText,
                 const std::string& posesText, const std::string& faultsText = "",
-                const std::string& originText = "", const std::string& imuText = "");
+                const std::string& originText = "", const std::string& imuText = "",
+                const std::string& gnssText = "");
 
     std::size_t scans() const { return count_; }  //!< that were added
 

@@ -2,9 +2,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "delio/earth/georeference.h"
 #include "delio/formats/trajectory.h"
 #include "delio/graph/pose_graph.h"
 #include "delio/places/submap.h"
@@ -31,6 +33,7 @@ struct MapContent {
     std::function<places::Descriptor(std::size_t)> descriptor;
     /** Points of each of them: metres, its level frame. */
     std::function<Eigen::Matrix3Xf(std::size_t)> points;
+    std::optional<earth::Georeference> georeference;  //!< where the map lies on the earth
 };
 
 /** A map for localisation: the drives' submaps with their descriptors, and the pose graph. A file,
@@ -48,6 +51,8 @@ class StoredMap {
 
     const std::string& path() const { return path_; }         //!< of the file
     const graph::PoseGraph& graph() const { return graph_; }  //!< one node per scan, of all drives
+    /** Where the map lies on the earth; nothing: not known. */
+    const std::optional<earth::Georeference>& georeference() const { return georeference_; }
     /** In the order of their nodes. */
     const std::vector<StoredDrive>& drives() const { return drives_; }
     /** Without their points. */
@@ -87,6 +92,7 @@ class StoredMap {
     int file_ = -1;
     std::uint64_t size_ = 0;
     graph::PoseGraph graph_;
+    std::optional<earth::Georeference> georeference_;
     std::vector<StoredDrive> drives_;
     std::vector<places::Submap> submaps_;
     std::vector<Eigen::Isometry3d> level_;

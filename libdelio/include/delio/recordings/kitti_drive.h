@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "delio/earth/fix.h"
 #include "delio/formats/drive_meta.h"
 
 namespace delio::io {
@@ -13,6 +14,7 @@ struct KittiDrive {
     std::vector<double> times_s;               //!< one per scan, since meta.epoch_s
     std::vector<std::string> timeRows;  //!< one per scan, as written in times.txt; may be empty
     std::vector<std::string> poseRows;  //!< one per scan, in the cam0 frame; may be empty
+    earth::Fixes fixes;                 //!< one per scan, of OXTS; may be empty
     std::string calibText;              //!< of calib.txt; empty without calibration
     std::string posesName;              //!< file name of the poses, even if it does not exist
     std::string calibName;              //!< file of the calibration, likewise

@@ -47,6 +47,7 @@ class RawlogReader : public ScanReader {
     const std::optional<DriveMeta>& meta() const override { return meta_; }
     std::vector<ImuSample> takeImu() override { return std::exchange(imu_, {}); }
     Recording recording() const override;
+    earth::Fixes takeFixes() override;
     SideFile calibration() const override;
     SideFile truth() const override;
 
@@ -78,5 +79,6 @@ class RawlogReader : public ScanReader {
     std::vector<ImuSample> imu_;
     std::optional<std::string> imuLabel_;  //!< of the first one
     std::set<std::string> otherLabels_;
+    earth::Fixes fixes_;  //!< read, and not taken yet
 };
 }  // namespace delio::io

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "delio/earth/fix.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
@@ -73,6 +74,10 @@ class ScanReader {
 
     /** Properties recognised so far; complete once the first scan was read. */
     virtual Recording recording() const = 0;
+
+    /** GNSS fixes read since the last call, with stamps as those of the scans. They may lie ahead
+     * of the scans, and are complete after the last one. */
+    virtual earth::Fixes takeFixes() { return {}; }
 
     /** KITTI's calib.txt: `Tr`. */
     virtual SideFile calibration() const { return {}; }

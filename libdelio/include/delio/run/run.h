@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "delio/earth/fix.h"
 #include "delio/recordings/scan_reader.h"
 #include "delio/run/run_record.h"
 #include "delio/slam/listeners.h"
@@ -40,6 +41,7 @@ struct RunSettings {
     bool extend = false;  //!< extend that map by this drive
     /** A drive that is not in the map keeps its own frame, which is no fault. */
     bool mayBeElsewhere = false;
+    bool gnss = true;   //!< use GNSS fixes
     bool loops = true;  //!< search for loop closures; needs `graph`
     /** Called with every warning. */
     std::function<void(const std::string&)> onWarning;
@@ -73,6 +75,9 @@ class Run {
     /** Processes the next scan, which took `read_ms` to read. */
     RunRow process(const Scan& scan, double read_ms = 0);
 
+    /** Takes GNSS fixes of the drive, with stamps as its scans have them; before finish(). */
+    void add(const earth::Fixes& fixes);
+
     /** Records a warning for the summary and calls RunSettings::onWarning. */
     void warn(const std::string& text);
     /** Records the reason why the run ended early or is incomplete; only the first one is kept. */
@@ -98,6 +103,7 @@ class Run {
     void optimise();
     void optimiseGraph();
     void closeLoops();
+    void georeference();
     void anchor();
     void store();
     void extend();
@@ -113,6 +119,7 @@ class Run {
     std::shared_ptr<MapFollower> follower_;
     std::shared_ptr<LoopCloser> loops_;       //!< keeps the submaps, too
     std::optional<MapContent> own_, stored_;  //!< of the drive; and what is written
+    earth::Fixes gnssFixes_;
     std::optional<io::Trajectory> truth_;
     bool truthIsCam0_ = true, truthWasAskedFor_ = false;
 };

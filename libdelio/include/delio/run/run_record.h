@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "delio/earth/georeference.h"
 #include "delio/evaluation/comparison.h"
 #include "delio/formats/trajectory.h"
 #include "delio/graph/pose_graph.h"
@@ -97,7 +98,10 @@ struct RunRecord {
     double loop_search_ms = 0;                  //!< beside the drive, and after it
 
     std::optional<ImuReport> imu;  //!< what was found out about the IMU, where there is one
-    io::Calibration calibration;   //!< of the drive, where there is one
+    std::optional<earth::Georeference> georeference;  //!< of the final poses, where it is known
+    earth::GnssFigures gnss;                          //!< of the drive's fixes
+
+    io::Calibration calibration;  //!< of the drive, where there is one
     /** The final trajectory beside true poses, where they are known. */
     std::optional<evaluation::Comparison> metrics;
     /** The odometry's likewise, where the graph had something to optimise. */
@@ -105,8 +109,11 @@ struct RunRecord {
     /** True poses in the frame of `final`, for pictures. */
     std::vector<Eigen::Isometry3d> truth;
 
-    /** The chain alone is what the odometry's poses were made of: then nothing is optimised. */
-    bool optimised() const { return graph.edges().size() + 1 > graph.poses().size(); }
+    /** Loop closures or GNSS fixes moved the poses: without them, the graph is the chain that the
+     *  odometry's poses were made of. */
+    bool optimised() const {
+        return graph.edges().size() + 1 > graph.poses().size() || gnss.inGraph > 0;
+    }
     std::size_t predicted() const;  //!< scans that were not registered
     bool isLocalised() const;       //!< it was found in the stored map
     /** Pairs of nodes, the earlier first. */

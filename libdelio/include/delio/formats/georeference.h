@@ -1,0 +1,27 @@
+#pragma once
+#include <string>
+
+#include "delio/earth/georeference.h"
+#include "delio/formats/trajectory.h"
+
+namespace delio::io {
+/** Writes a YAML: origin, transformation from the map to east, north, up (17 digits), covariance,
+ *  UTM zone and the figures of the fixes. Throws Error if that fails. */
+void writeGeoreference(const earth::Georeference& place, const earth::GnssFigures& figures,
+                       const std::string& path);
+
+/** Origin, transformation and covariance of such a file. Throws Error for one that is missing or
+ *  malformed. */
+earth::Georeference readGeoreference(const std::string& path);
+
+/** Writes a row per pose: stamp_s (where there are stamps), latitude, longitude (deg), height (m
+ *  above the ellipsoid), east, north, up (m), UTM easting, northing (m), and heading of the
+ *  vehicle's x axis (deg clockwise from true north). Throws Error if that fails. */
+void writeGeoTrajectory(const Trajectory& trajectory, const earth::Georeference& place,
+                        const std::string& path);
+
+/** Writes the trajectory as a LineString of GeoJSON, one place in a metre. Throws Error if that
+ *  fails. */
+void writeGeoJson(const Trajectory& trajectory, const earth::Georeference& place,
+                  const std::string& name, const std::string& path);
+}  // namespace delio::io

@@ -1,0 +1,155 @@
+// From GNSS fixes in a recording to a map and a trajectory on the earth.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "delio/core/numbers.h"
+#include "delio/formats/georeference.h"
+#include "delio/map/las.h"
+#include "delio/places/stored_map.h"
+#include "delio/run/run_folder.h"
+#include "test_data.h"
+
+namespace {
+using namespace delio;
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+/** The truth that synth2rawlog writes: the georeference of the map. */
+earth::Georeference truthIn(const std::string& file) {
+    std::istringstream text(test::readText(file));
+    std::string line;
+    earth::Georeference truth;
+    std::getline(text, line);
+    auto numbers = numbersIn(line.substr(line.rfind("height") + 6));
+    truth.origin = {numbers.at(0), numbers.at(1), numbers.at(2)};
+    std::getline(text, line);
+    numbers = numbersIn(line.substr(line.rfind("map") + 3));
+    for (int i = 0; i < 12; ++i)
+        truth.enuFromMap.matrix()(i / 4, i % 4) = numbers.at(static_cast<std::size_t>(i));
+    return truth;
+}
+
+class OnEarth : public testing::Test {
+ protected:
+    std::string at(const std::string& name) const { return folder_ / name; }
+
+    void drive(const Words& more = {}) const {
+        Words words{"-o",      at("d.rawlog"), "--scene", "urban", "--sensor", "vlp16",
+                    "--scans", "60",           "--seed",  "11",    "--start",  "moving"};
+        words.insert(words.end(), more.begin(), more.end());
+        const auto made = test::runTool("synth2rawlog", words);
+        ASSERT_EQ(made.exitCode, 0) << made.err;
+    }
+
+    test::CommandResult slam(const std::string& out, const Words& more = {}) const {
+        Words words{"-i", at("d.rawlog"), "-o", at(out)};
+        words.insert(words.end(), more.begin(), more.end());
+        return test::runTool("delio-slam", words);
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(OnEarth, ADriveWithFixesIsGeoreferenced) {
+    drive({"--gnss", "0.02", "--gnss-jumps", "0.2"});
+    const auto result = slam("out");
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_NE(result.out.find("georeference"), std::string::npos);
+    const run::RunFolder out(at("out"));
+    const auto place = io::readGeoreference(out.path(run::RunFolder::kGeoreference));
+    const auto truth = truthIn(at("d.gnss.csv"));
+    const earth::EnuFrame enu(truth.origin);
+    for (const auto& pose : out.trajectory().poses) {
+        const auto there = enu.enuOf(place.geodeticOf(pose.translation()));
+        EXPECT_LT((there - truth.enuFromMap * pose.translation()).norm(), 0.2);
+    }
+    EXPECT_LT(
+        std::abs(std::remainder(
+            earth::heading_deg(place.enuFromMap) - earth::heading_deg(truth.enuFromMap), 360)),
+        0.3);
+    const auto summary = out.summary();
+    const auto figure = [&](const std::string& name) {
+        for (const auto& [key, value] : summary.georeference)
+            if (key == name) return value;
+        return std::nan("");
+    };
+    EXPECT_GT(figure("fixes"), 20);
+    EXPECT_LT(figure("heading_sigma_deg"), 1);
+    EXPECT_EQ(figure("latitude_deg"), place.origin.latitude_deg);
+    const std::string csv = test::readText(out.path(run::RunFolder::kGeoTrajectory));
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 61);
+    EXPECT_EQ(csv.substr(0, 16), "stamp_s,latitude");
+    EXPECT_TRUE(out.has(run::RunFolder::kEnuTum));
+    EXPECT_NE(test::readText(out.path(run::RunFolder::kGeoJson)).find("LineString"),
+              std::string::npos);
+}
+
+TEST_F(OnEarth, TheMapIsInUtm) {
+    drive({"--gnss", "0.02"});
+    const auto result = slam("out");
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const run::RunFolder out(at("out"));
+    const auto place = io::readGeoreference(out.path(run::RunFolder::kGeoreference));
+    const auto las = test::runTool("delio-map", {"-i", at("out"), "-o", at("map.las")});
+    ASSERT_EQ(las.exitCode, 0) << las.err;
+    const auto map = map::loadLas(at("map.las"));
+    earth::UtmZone zone;
+    ASSERT_TRUE(earth::zoneIn(map.wkt, zone));
+    EXPECT_EQ(zone.name(), "32N");
+    const auto first = earth::utmOf(place.origin, zone);
+    Eigen::AlignedBox3d box;
+    for (const auto& point : map.points)
+        box.extend(Eigen::Vector3d(point.position.cast<double>() + map.offset));
+    EXPECT_TRUE(box.contains(first - Eigen::Vector3d(0, 0, 1)));
+    EXPECT_LT(box.sizes().x(), 500);
+    EXPECT_TRUE(fs::exists(at("map.las.frame.yaml")));
+    const auto enuMap =
+        test::runTool("delio-map", {"-i", at("out"), "-o", at("enu.ply"), "--frame", "enu"});
+    EXPECT_EQ(enuMap.exitCode, 0) << enuMap.err;
+    const auto again = test::runTool("delio-map", {"-i", at("map.las"), "-o", at("again.las")});
+    EXPECT_EQ(again.exitCode, 0) << again.err;
+    const auto same = map::loadLas(at("again.las"));
+    ASSERT_EQ(same.points.size(), map.points.size());
+    EXPECT_EQ(same.wkt, map.wkt);
+    EXPECT_LT((same.points[5].position - map.points[5].position).norm(), 1e-3);
+
+    // The stored map keeps it, and a drive that is localised there has it, too.
+    const StoredMap stored(out.path(run::RunFolder::kStoredMap));
+    ASSERT_TRUE(stored.georeference());
+    EXPECT_TRUE(stored.georeference()->enuFromMap.matrix() == place.enuFromMap.matrix());
+    const auto local = slam("local", {"--map", at("out"), "--no-gnss"});
+    ASSERT_EQ(local.exitCode, 0) << local.err;
+    EXPECT_TRUE(run::RunFolder(at("local")).has(run::RunFolder::kGeoTrajectory));
+}
+
+TEST_F(OnEarth, WithoutFixesNothingChanges) {
+    drive({"--gnss", "2"});
+    ASSERT_EQ(slam("without", {"--no-gnss"}).exitCode, 0);
+    EXPECT_FALSE(fs::exists(at("without/georeference.yaml")));
+    EXPECT_EQ(
+        test::runTool("delio-map", {"-i", at("without"), "-o", at("map.ply"), "--frame", "utm"})
+            .exitCode,
+        1);
+    // Their times say nothing: the drive is as good as without them.
+    test::writeText(at("other.csv"), "time,latitude,longitude,height\n100,49,8.4,115\n");
+    const auto other = slam("other", {"--gnss", at("other.csv")});
+    EXPECT_EQ(other.exitCode, 0);
+    EXPECT_NE(other.err.find("not georeferenced"), std::string::npos);
+    EXPECT_NE(other.err.find("another clock"), std::string::npos);
+    for (const char* name : {run::RunFolder::kTrajectory, run::RunFolder::kPly,
+                             run::RunFolder::kStoredMap, run::RunFolder::kGraph})
+        EXPECT_TRUE(test::readText(at("other/" + std::string(name))) ==
+                    test::readText(at("without/" + std::string(name))))
+            << name;
+    test::writeText(at("bad.csv"), "time,latitude\n");
+    EXPECT_EQ(slam("bad", {"--gnss", at("bad.csv")}).exitCode, 1);
+    EXPECT_EQ(slam("bad", {"--no-gnss", "--gnss", at("bad.csv")}).exitCode, 2);
+    EXPECT_EQ(slam("bad", {"--antenna", "1,2"}).exitCode, 2);
+}
+}  // namespace
