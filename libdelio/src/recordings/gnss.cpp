@@ -70,7 +70,7 @@ earth::Fixes fixesOfBag(const OpenSource& open) {
         for (const auto& each : bag->topics())
             if (isFixType(each.type) && (!topic || each.name < *topic)) topic = each.name;
         if (!topic) return fixes;
-        bag->only(*topic);
+        bag->only({*topic});
         while (const auto message = bag->next())
             if (const auto fix = fixOf(*message)) fixes.push_back(*fix);
     } catch (const std::exception&) {
