@@ -26,8 +26,8 @@ PointEstimate searchOnward(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& latest, const Eigen::Isometry3d& increment,
                            const PointRegistrationOptions& options);
 
-/** Registration where the rotation of `guess` may be off by up to `reach_rad` about any axis: by the
- * hand that carries the sensor, or a bump. Where a share of `enough` fits, no more is tried. */
+/** Registration where the rotation of `guess` may be off by up to `reach_rad` about any axis: by
+ * the hand that carries the sensor, or a bump. Where a share of `enough` fits, no more is tried. */
 PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
                           const Eigen::Isometry3d& guess, double reach_rad, double enough,
                           const PointRegistrationOptions& options);

@@ -102,8 +102,10 @@ TEST(Slam, CovariancesMoveFromTheSensorToTheVehicle) {
         const Matrix6 expected = J * before.covariance * J.transpose();
         const Matrix6& found = edges[i].increment.covariance;
         // Skip edges start from poses that differ by rounding.
-        EXPECT_LT((found - expected).norm(), 1e-4 * expected.norm()) << found << "\n\n" << expected;
-        EXPECT_GT((found - before.covariance).norm(), 0.1 * expected.norm());
+        constexpr double kSame = 1e-4;
+        EXPECT_LT((found - expected).norm(), kSame * expected.norm()) << found << "\n\n"
+                                                                      << expected;
+        EXPECT_GT((found - before.covariance).norm(), 100 * kSame * expected.norm());
     }
 }
 
