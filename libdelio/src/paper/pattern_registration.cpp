@@ -207,8 +207,12 @@ void settle(const Pattern& to, const Eigen::Matrix3d& predicted,
     const auto axes = axesOf(to);
     estimate.observability = axes.eigenvalues();
     const double residual = std::max(estimate.residual_rad, kLeastResidual_rad);
-    const double noise =
-        residual * residual / (options.independent_share * static_cast<double>(to.normals));
+    // A kernel that is narrower than the spread of normals on a surface cuts the residual.
+    constexpr double kSpread_deg = 0.7;
+    const double cut =
+        options.kernel_deg > 0 ? std::min(1.0, options.last_kernel_deg / kSpread_deg) : 1;
+    const double share = cut * cut * options.independent_share;
+    const double noise = residual * residual / (share * static_cast<double>(to.normals));
 
     Eigen::Vector3d correction = rotationLog(predicted.transpose() * estimate.rotation);
     for (int k = 0; k < 3; ++k) {
