@@ -6,18 +6,16 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <functional>
-#include <future>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/core/stopwatch.h"
-#include "delio/formats/fixes.h"
 #include "delio/formats/g2o.h"
 #include "delio/picture/figures.h"
 #include "delio/recordings/scan_reader.h"
+#include "delio/run/playback.h"
 #include "delio/run/run_folder.h"
 #include "initial_pose.h"
 #include "live_view.h"
@@ -31,80 +29,19 @@ namespace {
 using namespace delio;
 namespace fs = std::filesystem;
 
-struct Reading {
-    std::optional<Scan> scan;    //!< nothing at the end
-    std::vector<ImuSample> imu;  //!< that were read with it
-    std::optional<double> fraction;
-};
-
-/** The next scan after some that are passed over; nothing at the end, and after Ctrl-C. */
-Reading read(io::ScanReader& reader, std::size_t passedOver) {
-    for (std::size_t i = 0; i < passedOver; ++i) {
-        if (cli::interrupted()) return {};
-        if (!reader.skip()) break;
-    }
-    auto scan = reader.next();
-    return {std::move(scan), reader.takeImu(), reader.fraction()};
-}
-
-void warnOfOthers(const io::ScanReader& reader,
-                  const std::function<void(const std::string&)>& warn) {
-    for (const auto& other : reader.otherLabels())
-        warn("scans of the sensor '" + other +
-             "' are ignored; choose a sensor with --sensor-label");
-}
-
-/** Adds the fixes of --gnss or of the recording. Those of a recording may be missing or damaged. */
-void addFixes(SlamCommandLine& line, io::ScanReader& reader, run::Run& run) {
-    if (line.noGnss.getValue()) return;
-    try {
-        auto fixes = reader.takeFixes();
-        if (line.gnss.isSet()) fixes = io::readFixes(line.gnss.getValue());
-        const double epoch_s = reader.meta() ? reader.meta()->epoch_s : 0;
-        if (line.gnss.isSet()) io::countFrom(epoch_s, fixes);
-        if (line.antenna.isSet())
-            for (auto& fix : fixes) fix.antenna = antennaIn(line.antenna.getValue());
-        run.add(fixes);
-    } catch (const Error& e) {
-        const std::string what = "the GNSS fixes cannot be used: " + std::string(e.what());
-        line.gnss.isSet() ? run.fail(what) : run.warn(what);
-    }
-}
-
-/** Processes scans until the end, --count, an interrupt or a fault in the recording. With several
- *  threads the next scan is read while this one is registered; `read_ms` is the waiting time. */
-void process(SlamCommandLine& line, Reading now, io::ScanReader& reader, double read_ms,
-             run::Run& run) {
-    const unsigned count = line.count.getValue(), passedOver = line.every.getValue() - 1;
-    const auto policy = line.threads.getValue() == 1 ? std::launch::deferred : std::launch::async;
-    cli::Progress progress("scans", count);
-    try {
-        for (std::size_t done = 1; now.scan; ++done) {
-            // Do not read beyond the last scan: a fault there does not matter.
-            std::future<Reading> next;
-            if (done != count) next = std::async(policy, [&] { return read(reader, passedOver); });
-            if (!line.noImu.getValue())
-                for (const auto& sample : now.imu) run.addImu(sample);
-            const auto row = run.process(*now.scan, read_ms);
-            if (line.verbose.getValue()) cli::inform(describe(row));
-            progress.update(done, now.fraction);
-            if (cli::interrupted() || done == count) break;
-            Stopwatch watch;
-            now = next.get();
-            read_ms = watch.lap_ms();
-        }
-    } catch (const std::exception& e) {
-        // Ctrl-C ends standard input anywhere within a scan.
-        if (!cli::interrupted()) run.fail(plainMessage(e));
-    }
-    warnOfOthers(reader, [&](const std::string& text) { run.warn(text); });
-    addFixes(line, reader, run);
-    const auto recording = reader.recording();
-    for (const auto& finding : recording.findings) run.warn(finding);
-    if (const auto scan = recording.compensatedAfterAll)
-        run.warn("from scan " + std::to_string(*scan) +
-                 " on, the points look de-skewed by the recorder, unlike before; run again with "
-                 "--set scan.deskew=false");
+/** What is used of the recording. */
+run::PlaybackSettings playbackOf(SlamCommandLine& line) {
+    run::PlaybackSettings settings;
+    settings.start = line.start.getValue();
+    settings.count = line.count.getValue();
+    settings.every = line.every.getValue();
+    settings.imu = !line.noImu.getValue();
+    settings.gnss = !line.noGnss.getValue();
+    settings.fixes = line.gnss.getValue();
+    if (line.antenna.isSet()) settings.antenna = antennaIn(line.antenna.getValue());
+    settings.readAhead = line.threads.getValue() != 1;
+    settings.isInterrupted = [] { return cli::interrupted(); };
+    return settings;
 }
 
 std::shared_ptr<LiveView> liveViewFor(SlamCommandLine& line, const Options& options,
@@ -115,24 +52,23 @@ std::shared_ptr<LiveView> liveViewFor(SlamCommandLine& line, const Options& opti
     return view;
 }
 
-/** The first scan to use. Throws Error if there is no such scan. */
-Reading firstOf(SlamCommandLine& line, const std::string& input, io::ScanReader& reader) {
+[[noreturn]] void failWithoutScans(SlamCommandLine& line, const std::string& input,
+                                   const io::ScanReader& reader) {
+    for (const auto& warning : run::warningsOfOthers(reader)) cli::warn(warning);
     const unsigned start = line.start.getValue();
-    auto first = read(reader, start);
-    if (first.scan || cli::interrupted()) return first;
-    warnOfOthers(reader, cli::warn);
     const std::string label = line.label.getValue();
     throw Error("'" + input + "' contains no LiDAR scans" +
                 (label.empty() ? "" : " of sensor '" + label + "'") +
                 (start > 0 ? " after --start " + std::to_string(start) : ""));
 }
 
-void warnOfRecording(const io::ScanReader& reader, run::Run& run) {
-    for (const auto& warning : reader.recording().warnings) run.warn(warning);
-    if (!reader.meta())
-        run.warn(
-            "unknown sensor model: no vertical correction is applied (normal unless this is KITTI "
-            "data; see meta.md)");
+void play(SlamCommandLine& line, run::Playback& playback, run::Run& run) {
+    cli::Progress progress("scans", line.count.getValue());
+    std::size_t done = 0;
+    playback.play(run, [&](const run::RunRow& row, std::optional<double> fraction) {
+        if (line.verbose.getValue()) cli::inform(describe(row));
+        progress.update(++done, fraction);
+    });
 }
 
 /** Finishes a run after its last scan and writes its results to `folder`, which is moved to `place`
@@ -154,23 +90,25 @@ std::string finish(const std::string& input, const std::string& folder, const st
 /** One drive, from `input` to the folder `settings.folder`; see SlamDrive. */
 DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunSettings settings,
                       const std::string& place) {
-    Stopwatch watch;
     const std::string name = io::nameOfDrive(input);
     const auto reader = io::openScans(sourceFor(line, input));
     const Options options = optionsFor(line, reader->meta());
-    auto first = firstOf(line, input, *reader);
-    const double read_ms = watch.lap_ms();
+    run::Playback playback(*reader, playbackOf(line));
+    if (playback.isEmpty() && !cli::interrupted()) failWithoutScans(line, input, *reader);
     cli::catchInterrupts();  // from here on there is something to write
     if (cli::interrupted()) return {cli::kExitInterrupted};
     settings.sensorLabel = reader->label();
     settings.drive = name;
     cli::inform("reading " + describe(reader->recording()));
     run::Run run(options, settings);
-    warnOfRecording(*reader, run);
+    if (!reader->meta())
+        run.warn(
+            "unknown sensor model: no vertical correction is applied (normal unless this is KITTI "
+            "data; see meta.md)");
     run.readSideFiles(reader->calibration(), reader->truth(), line.truth.getValue(),
                       line.truthFrame.getValue() == "cam0");
     const auto view = liveViewFor(line, options, run);
-    process(line, std::move(first), *reader, read_ms, run);
+    play(line, playback, run);
     // Not even the first one: there is nothing to write.
     if (run.record().rows.empty()) throw Error(run.record().fault);
     const std::string fault = finish(input, settings.folder, place, run);

@@ -61,6 +61,15 @@ Eigen::Isometry3d poseIn(const py::handle& object, const std::string& name) {
     return pose;
 }
 
+Eigen::Vector3d vectorIn(const py::handle& object, const std::string& name) {
+    const auto array =
+        py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(object);
+    if (!array) PyErr_Clear();
+    if (!array || array.ndim() != 1 || array.shape(0) != 3)
+        throw Error("'" + name + "' must be an array of shape (3,), not " + describe(object));
+    return Eigen::Vector3d(array.data());
+}
+
 namespace {
 constexpr int kDense = py::array::c_style | py::array::forcecast;
 

@@ -14,6 +14,7 @@
 
 #include "delio/core/error.h"
 #include "delio/formats/trajectory.h"
+#include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
 #include "delio/odometry/step.h"
 #include "delio/recordings/scan_reader.h"
@@ -41,6 +42,9 @@ py::array_t<Number> arrayOf(const std::vector<Number>& numbers) {
 /** The pose in a (4, 4) array. Error, which calls it `name`, for another shape and where it is no
  *  rigid motion. */
 Eigen::Isometry3d poseIn(const py::handle& object, const std::string& name);
+
+/** The three numbers of an array of shape (3,) or of a sequence. Error likewise. */
+Eigen::Vector3d vectorIn(const py::handle& object, const std::string& name);
 
 /** Fills `cloud` with the points of a float32 or float64 array of shape (N, 3). Error likewise. */
 mrpt::maps::CPointsMap::Ptr cloudIn(const py::handle& object, const std::string& name,
@@ -127,7 +131,21 @@ Raises delio.Error for wrong shapes and types. Other Python threads run meanwhil
         py::arg("sensor_pose") = py::none(), text.c_str());
 }
 
+/** Adds add_imu(sample) and imu_report, which call Object::addImu() and Object::imuReport(). */
+template <class Object>
+void defImu(py::class_<Object>& to) {
+    to.def("add_imu", &Object::addImu, py::arg("sample"),
+           R"(Takes an ImuSample of the drive.
+
+Samples up to 0.1 s after a scan's last point have to be added before process() gets the scan, in
+any order; later ones wait. The paper's profiles ignore them.)")
+        .def_property_readonly(
+            "imu_report", &Object::imuReport,
+            "ImuReport: what was found out about the IMU so far; None without samples.");
+}
+
 void bindScans(py::module_& module);         //!< Scan, Scans, open_scans
+void bindImu(py::module_& module);           //!< ImuSample, ImuReport
 void bindSteps(py::module_& module);         //!< Step
 void bindOdometry(py::module_& module);      //!< Odometry
 void bindSlam(py::module_& module);          //!< Slam

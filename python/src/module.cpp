@@ -60,6 +60,7 @@ PYBIND11_MODULE(_delio, module) {
     module.doc() = "DeLiO: LiDAR odometry and mapping. Import the package `delio`.";
     bindModule(module);
     bindScans(module);
+    bindImu(module);
     bindSteps(module);
     bindOdometry(module);
     bindTrajectories(module);

@@ -175,6 +175,16 @@ class PythonOdometry {
         return {std::move(report.step), slam_.trajectory().poses.back(), scan.points->size()};
     }
 
+    void addImu(const ImuSample& sample) {
+        const InUse inUse(mutex_);
+        slam_.addImu(sample);
+    }
+
+    std::optional<ImuReport> imuReport() {
+        const InUse inUse(mutex_);
+        return slam_.imuReport();
+    }
+
  private:
     Slam slam_;
     std::size_t scans_ = 0;
@@ -198,5 +208,6 @@ Raises delio.Error for an unknown profile or option. Memory does not grow with t
             }),
         py::arg("profile") = "accurate", py::kw_only(), py::arg("recording") = py::none());
     defProcess(odometry, "Registers the next scan and returns its Step.");
+    defImu(odometry);
 }
 }  // namespace delio::python

@@ -1,12 +1,12 @@
 #include "delio/run/run.h"
 
-#include <future>
+#include <exception>
 #include <utility>
 
 #include "bindings.h"
 #include "delio/core/geometry.h"
-#include "delio/core/stopwatch.h"
 #include "delio/picture/figures.h"
+#include "delio/run/playback.h"
 #include "delio/run/run_folder.h"
 #include "overlap.h"
 
@@ -17,21 +17,12 @@ namespace {
 /** Arguments of run() besides the profile and its options. */
 struct RunArguments {
     fs::path input, output;
-    std::size_t start = 0, count = 0, every = 1;
+    run::PlaybackSettings playback;
     std::string truthFrame;
     std::string truth;
     bool pictures = true, force = false;
     py::object progress;
 };
-
-using Reading = std::optional<Scan>;
-
-/** The next scan after some that are passed over; nothing at the end. */
-Reading read(io::ScanReader& reader, std::size_t passedOver) {
-    for (std::size_t i = 0; i < passedOver; ++i)
-        if (!reader.skip()) break;
-    return reader.next();
-}
 
 /** Calls `progress`, and sees to Ctrl-C. Throws what Python raises. */
 void report(const py::object& progress, std::size_t done) {
@@ -40,34 +31,7 @@ void report(const py::object& progress, std::size_t done) {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
-/** Processes scans as delio-slam does: the next one is read while this one is registered. Returns
- *  what Python raised meanwhile. */
-std::exception_ptr process(const RunArguments& arguments, io::ScanReader& reader, Reading now,
-                           double read_ms, run::Run& run) {
-    try {
-        for (std::size_t done = 1; now; ++done) {
-            std::future<Reading> next;
-            if (done != arguments.count)
-                next = std::async(std::launch::async,
-                                  [&] { return read(reader, arguments.every - 1); });
-            run.process(*now, read_ms);
-            report(arguments.progress, done);
-            if (done == arguments.count) break;
-            Stopwatch watch;
-            now = next.get();
-            read_ms = watch.lap_ms();
-        }
-    } catch (const py::error_already_set&) {
-        return std::current_exception();
-    } catch (const std::exception& e) {
-        run.fail(plainMessage(e));
-    }
-    for (const auto& finding : reader.recording().findings) run.warn(finding);
-    return nullptr;
-}
-
 void checkOutput(const RunArguments& arguments, const run::RunSettings& settings) {
-    if (arguments.every == 0) throw Error("'every' must be at least 1");
     if (arguments.truthFrame != "cam0" && arguments.truthFrame != "vehicle")
         throw Error("'ground_truth_frame' must be 'cam0' or 'vehicle'");
     const run::RunFolder folder(settings.folder);
@@ -82,20 +46,28 @@ void checkOutput(const RunArguments& arguments, const run::RunSettings& settings
 
 /** The record of a drive whose results are written. */
 run::RunRecord runDrive(const RunArguments& arguments, io::ScanReader& reader,
-                        const Options& options, const run::RunSettings& settings) {
-    Stopwatch watch;
-    auto first = read(reader, arguments.start);
-    const double read_ms = watch.lap_ms();
-    if (!first) throw Error("'" + arguments.input.string() + "' contains no LiDAR scans there");
-    run::Run run(options, settings);
-    for (const auto& warning : reader.recording().warnings) run.warn(warning);
+                        const Options& options, const run::RunSettings& runSettings) {
+    std::exception_ptr raised;  // by Python
+    auto settings = arguments.playback;
+    settings.isInterrupted = [&] { return raised != nullptr; };
+    run::Playback playback(reader, settings);
+    if (playback.isEmpty())
+        throw Error("'" + arguments.input.string() + "' contains no LiDAR scans there");
+    run::Run run(options, runSettings);
     run.readSideFiles(reader.calibration(), reader.truth(), arguments.truth,
                       arguments.truthFrame == "cam0");
-    const auto raised = process(arguments, reader, std::move(first), read_ms, run);
+    std::size_t done = 0;
+    playback.play(run, [&](const run::RunRow& /*row*/, std::optional<double> /*fraction*/) {
+        try {
+            report(arguments.progress, ++done);
+        } catch (const py::error_already_set&) {
+            raised = std::current_exception();
+        }
+    });
     if (run.record().rows.empty()) throw Error(run.record().fault);
     run.finish(!raised && run.record().fault.empty());
     const std::string fault =
-        run::RunFolder(settings.folder)
+        run::RunFolder(runSettings.folder)
             .write(run.record(), run.maps(),
                    arguments.pictures ? picture::illustrate : run::Illustrate{});
     if (raised) std::rethrow_exception(raised);
@@ -147,6 +119,9 @@ map: a stored map in which the drive is localised; initial_pose: (4, 4) of the v
 loops, graph, build_map: False leaves them out. keep_dynamic: write map_dynamic.ply.
 pictures: False leaves them out.
 force: overwrite existing files.
+imu, gnss: False leaves the recording's IMU or GNSS fixes out. fixes: a file (csv or NMEA) that
+    replaces the recording's fixes; antenna: (3,), position of the GNSS antenna in the vehicle,
+    metres.
 progress: called with the number of processed scans. Ctrl-C, and what it raises, end the run; the
     results up to there are written.
 options: section__key=value, as of Odometry.
@@ -181,7 +156,16 @@ void bindRun(py::module_& module) {
            const OptionalPath& sensorFile, const OptionalPath& images, const OptionalPath& truth,
            const std::string& truthFrame, const OptionalPath& map, const py::object& initialPose,
            bool extend, bool loops, bool graph, bool buildMap, bool keepDynamic, bool pictures,
-           bool force, const py::object& progress, const py::kwargs& options) {
+           bool force, bool imu, bool gnss, const OptionalPath& fixes, const py::object& antenna,
+           const py::object& progress, const py::kwargs& options) {
+            run::PlaybackSettings playback;
+            playback.start = start;
+            playback.count = count;
+            playback.every = every;
+            playback.imu = imu;
+            playback.gnss = gnss;
+            playback.fixes = textOf(fixes);
+            if (!antenna.is_none()) playback.antenna = vectorIn(antenna, "antenna");
             run::RunSettings settings;
             settings.storedMap = textOf(map);
             settings.extend = extend;
@@ -189,10 +173,11 @@ void bindRun(py::module_& module) {
             settings.graph = graph;
             settings.map = buildMap;
             settings.keepDynamic = keepDynamic;
-            return runOf({input, output, start, count, every, truthFrame, textOf(truth), pictures,
-                          force, progress},
-                         profile, {input.string(), label, textOf(images), textOf(sensorFile)},
-                         settings, initialPose, options);
+            settings.gnss = gnss;
+            return runOf(
+                {input, output, playback, truthFrame, textOf(truth), pictures, force, progress},
+                profile, {input.string(), label, textOf(images), textOf(sensorFile)}, settings,
+                initialPose, options);
         },
         py::arg("input"), py::arg("output"), py::arg("profile") = "accurate", py::kw_only(),
         py::arg("start") = 0, py::arg("count") = 0, py::arg("every") = 1,
@@ -201,7 +186,8 @@ void bindRun(py::module_& module) {
         py::arg("ground_truth_frame") = "cam0", py::arg("map") = py::none(),
         py::arg("initial_pose") = py::none(), py::arg("extend") = false, py::arg("loops") = true,
         py::arg("graph") = true, py::arg("build_map") = true, py::arg("keep_dynamic") = false,
-        py::arg("pictures") = true, py::arg("force") = false, py::arg("progress") = py::none(),
-        kRunText);
+        py::arg("pictures") = true, py::arg("force") = false, py::arg("imu") = true,
+        py::arg("gnss") = true, py::arg("fixes") = py::none(), py::arg("antenna") = py::none(),
+        py::arg("progress") = py::none(), kRunText);
 }
 }  // namespace delio::python

@@ -163,6 +163,14 @@ void bindScans(py::module_& module) {
             "One line for each missing part, and for each kind of scan or point that was ignored "
             "or "
             "corrected so far.")
+        .def(
+            "take_imu",
+            [](Scans& scans) {
+                const InUse inUse(scans.mutex);
+                return scans.in->takeImu();
+            },
+            "list of ImuSample: samples of the recording's IMU that were read since the last call, "
+            "in their order.")
         .def_property_readonly(
             "calibration",
             [](const Scans& scans) -> py::object {

@@ -40,6 +40,16 @@ class PythonSlam {
         return std::move(last_->last);
     }
 
+    void addImu(const ImuSample& sample) {
+        const InUse inUse(mutex_);
+        run_.addImu(sample);
+    }
+
+    std::optional<ImuReport> imuReport() {
+        const InUse inUse(mutex_);
+        return run_.imuReport();
+    }
+
     void finish() {
         const py::gil_scoped_release release;
         const InUse inUse(mutex_);
@@ -123,6 +133,7 @@ void bindSlam(py::module_& module) {
         py::arg("initial_pose") = py::none(), py::arg("extend") = false, py::arg("loops") = true,
         py::arg("graph") = true, py::arg("build_map") = true);
     defProcess(slam, "Processes the next scan and returns its Step, by the odometry alone.");
+    defImu(slam);
     slam.def("finish", &PythonSlam::result, py::return_value_policy::copy,
              "Closes loops, optimises the pose graph and returns a RunResult. No scan is accepted "
              "afterwards.")

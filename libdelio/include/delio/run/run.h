@@ -71,6 +71,8 @@ class Run {
 
     /** Takes a sample of the drive's IMU: see Odometry::addImu(). */
     void addImu(const ImuSample& sample) { slam_.addImu(sample); }
+    /** See Odometry::imuReport(). */
+    std::optional<ImuReport> imuReport() const { return slam_.imuReport(); }
 
     /** Processes the next scan, which took `read_ms` to read. */
     RunRow process(const Scan& scan, double read_ms = 0);

@@ -1,0 +1,64 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "delio/odometry/imu.h"
+#include "delio/odometry/scan.h"
+#include "delio/recordings/scan_reader.h"
+#include "delio/run/run.h"
+
+namespace delio::run {
+/** What is used of a recording, and how it is read. */
+struct PlaybackSettings {
+    std::size_t start = 0;  //!< first scan, counted from 0
+    std::size_t count = 0;  //!< number of scans; 0: all
+    std::size_t every = 1;  //!< every n-th scan, at least 1
+    bool imu = true;        //!< use its IMU
+    bool gnss = true;       //!< use GNSS fixes
+    std::string fixes;      //!< file with fixes that replace the recording's; empty: none
+    /** Position of the GNSS antenna in the vehicle, in place of the recording's; metres. */
+    std::optional<Eigen::Vector3d> antenna;
+    bool readAhead = true;  //!< another thread reads the next scan while one is registered
+    /** Asked between scans: true ends the playback. Null: it never ends early. */
+    std::function<bool()> isInterrupted;
+};
+
+/** Plays a recording to a run: scans, IMU samples, GNSS fixes. */
+class Playback {
+ public:
+    /** Reads the first scan. Throws Error as ScanReader::next(). The reader has to stay. */
+    Playback(io::ScanReader& reader, PlaybackSettings settings);
+
+    /** There is no scan after `start`, or reading it was interrupted. */
+    bool isEmpty() const { return !now_.scan; }
+
+    /** Processes all scans of the settings. `onScan` (null: none) gets each result and the part of
+     *  the recording that was read (0-1, where it is known). A fault in the recording ends the
+     *  playback and becomes the run's fault; findings become warnings. Call it once. */
+    using OnScan = std::function<void(const RunRow&, std::optional<double>)>;
+    void play(Run& run, const OnScan& onScan = {});
+
+ private:
+    struct Reading {
+        std::optional<Scan> scan;    //!< nothing at the end
+        std::vector<ImuSample> imu;  //!< that were read with it
+        std::optional<double> fraction;
+    };
+    bool isInterrupted() const { return settings_.isInterrupted && settings_.isInterrupted(); }
+    Reading read(std::size_t passedOver);
+    void processAll(Run& run, const OnScan& onScan);
+    void addFixes(Run& run);
+
+    io::ScanReader& reader_;
+    PlaybackSettings settings_;
+    Reading now_;
+    double read_ms_ = 0;
+};
+
+/** A warning for each sensor of the recording that is not read. */
+std::vector<std::string> warningsOfOthers(const io::ScanReader& reader);
+}  // namespace delio::run

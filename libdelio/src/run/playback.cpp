@@ -1,0 +1,91 @@
+#include "delio/run/playback.h"
+
+#include <future>
+#include <utility>
+
+#include "delio/core/error.h"
+#include "delio/core/stopwatch.h"
+#include "delio/formats/fixes.h"
+
+namespace delio::run {
+Playback::Playback(io::ScanReader& reader, PlaybackSettings settings)
+    : reader_(reader), settings_(std::move(settings)) {
+    if (settings_.every == 0) throw Error("'every' must be at least 1");
+    Stopwatch watch;
+    now_ = read(settings_.start);
+    read_ms_ = watch.lap_ms();
+}
+
+Playback::Reading Playback::read(std::size_t passedOver) {
+    for (std::size_t i = 0; i < passedOver; ++i) {
+        if (isInterrupted()) return {};
+        if (!reader_.skip()) break;
+    }
+    auto scan = reader_.next();
+    return {std::move(scan), reader_.takeImu(), reader_.fraction()};
+}
+
+/** The next scan is read while this one is registered; `read_ms_` is the waiting time. */
+void Playback::processAll(Run& run, const OnScan& onScan) {
+    const auto policy = settings_.readAhead ? std::launch::async : std::launch::deferred;
+    for (std::size_t done = 1; now_.scan; ++done) {
+        // Do not read beyond the last scan: a fault there does not matter.
+        const bool isLast = done == settings_.count;
+        std::future<Reading> next;
+        if (!isLast) next = std::async(policy, [&] { return read(settings_.every - 1); });
+        if (settings_.imu)
+            for (const auto& sample : now_.imu) run.addImu(sample);
+        const RunRow row = run.process(*now_.scan, read_ms_);
+        if (onScan) onScan(row, now_.fraction);
+        if (isLast || isInterrupted()) break;
+        Stopwatch watch;
+        now_ = next.get();
+        read_ms_ = watch.lap_ms();
+    }
+}
+
+/** Fixes of a recording may be missing or damaged; those that the user gives may not. */
+void Playback::addFixes(Run& run) {
+    if (!settings_.gnss) return;
+    const bool areGiven = !settings_.fixes.empty();
+    try {
+        auto fixes = reader_.takeFixes();
+        if (areGiven) {
+            fixes = io::readFixes(settings_.fixes);
+            io::countFrom(reader_.meta() ? reader_.meta()->epoch_s : 0, fixes);
+        }
+        if (settings_.antenna)
+            for (auto& fix : fixes) fix.antenna = *settings_.antenna;
+        run.add(fixes);
+    } catch (const Error& e) {
+        const std::string what = "the GNSS fixes cannot be used: " + std::string(e.what());
+        areGiven ? run.fail(what) : run.warn(what);
+    }
+}
+
+void Playback::play(Run& run, const OnScan& onScan) {
+    for (const auto& warning : reader_.recording().warnings) run.warn(warning);
+    try {
+        processAll(run, onScan);
+    } catch (const std::exception& e) {
+        // An interrupt ends standard input anywhere within a scan.
+        if (!isInterrupted()) run.fail(plainMessage(e));
+    }
+    for (const auto& warning : warningsOfOthers(reader_)) run.warn(warning);
+    addFixes(run);
+    const auto recording = reader_.recording();
+    for (const auto& finding : recording.findings) run.warn(finding);
+    if (const auto scan = recording.compensatedAfterAll)
+        run.warn("from scan " + std::to_string(*scan) +
+                 " on, the points look de-skewed by the recorder, unlike before; run again with "
+                 "--set scan.deskew=false");
+}
+
+std::vector<std::string> warningsOfOthers(const io::ScanReader& reader) {
+    std::vector<std::string> warnings;
+    for (const auto& other : reader.otherLabels())
+        warnings.push_back("scans of the sensor '" + other +
+                           "' are ignored; choose a sensor with --sensor-label");
+    return warnings;
+}
+}  // namespace delio::run
