@@ -32,6 +32,7 @@ void report(const py::object& progress, std::size_t done) {
 }
 
 void checkOutput(const RunArguments& arguments, const run::RunSettings& settings) {
+    if (arguments.playback.every == 0) throw Error("'every' must be at least 1");
     if (arguments.truthFrame != "cam0" && arguments.truthFrame != "vehicle")
         throw Error("'ground_truth_frame' must be 'cam0' or 'vehicle'");
     const run::RunFolder folder(settings.folder);

@@ -47,7 +47,7 @@ class PythonSlam {
 
     std::optional<ImuReport> imuReport() {
         const InUse inUse(mutex_);
-        return run_.imuReport();
+        return finished_ ? run_.record().imu : run_.imuReport();
     }
 
     void finish() {

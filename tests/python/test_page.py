@@ -11,7 +11,7 @@ def test_code_of_the_page(drive, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     names = {}
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    assert len(blocks) == 7
+    assert len(blocks) == 8
     for block in blocks:
         exec(compile(block, PAGE.name, "exec"), names)
     assert capsys.readouterr().out.count("\n") > 15

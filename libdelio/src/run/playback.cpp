@@ -10,7 +10,6 @@
 namespace delio::run {
 Playback::Playback(io::ScanReader& reader, PlaybackSettings settings)
     : reader_(reader), settings_(std::move(settings)) {
-    if (settings_.every == 0) throw Error("'every' must be at least 1");
     Stopwatch watch;
     now_ = read(settings_.start);
     read_ms_ = watch.lap_ms();

@@ -36,10 +36,12 @@ class Playback {
     /** There is no scan after `start`, or reading it was interrupted. */
     bool isEmpty() const { return !now_.scan; }
 
-    /** Processes all scans of the settings. `onScan` (null: none) gets each result and the part of
-     *  the recording that was read (0-1, where it is known). A fault in the recording ends the
-     *  playback and becomes the run's fault; findings become warnings. Call it once. */
+    /** Gets the result of each scan, and the part of the recording that was read (0-1, where it is
+     *  known). */
     using OnScan = std::function<void(const RunRow&, std::optional<double>)>;
+
+    /** Processes all scans of the settings. A fault in the recording ends the playback and becomes
+     *  the run's fault; findings become warnings. Call it once. */
     void play(Run& run, const OnScan& onScan = {});
 
  private:
