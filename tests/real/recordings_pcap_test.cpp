@@ -94,6 +94,30 @@ TEST(RecordingsPcap, Ouster) {
     for (const Known& known : all) check((test::dataFolder() / known.file).string(), known);
 }
 
+/** Both sensors hardly move. */
+TEST(RecordingsPcap, ImuOfAnOuster) {
+    DELIO_NEED_DATA("ouster");
+    for (const char* const name :
+         {"OS-0-32-U1_v2.2.0_1024x10.pcap", "OS-1-128_v2.3.0_1024x10_lb_n3.pcap"}) {
+        const auto reader = io::openScans({(test::dataFolder() / "ouster" / name).string()});
+        std::vector<ImuSample> samples;
+        std::vector<double> stamps_s;
+        while (const auto scan = reader->next()) {
+            stamps_s.push_back(scan->stamp_s);
+            for (const auto& sample : reader->takeImu()) samples.push_back(sample);
+        }
+        ASSERT_GE(samples.size(), 9 * stamps_s.size()) << name;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            EXPECT_NEAR(samples[i].acceleration_mps2.norm(), 9.81, 1.5) << name;
+            EXPECT_LT(samples[i].rate_radps.norm(), 0.1) << name;
+            if (i > 0) EXPECT_NEAR(samples[i].stamp_s - samples[i - 1].stamp_s, 0.01, 0.002);
+            EXPECT_GT(samples[i].stamp_s, stamps_s.front() - 0.05) << name;
+            EXPECT_LT(samples[i].stamp_s, stamps_s.back() + 0.15) << name;
+        }
+        EXPECT_EQ(reader->recording().imu, "at port 7503");
+    }
+}
+
 TEST(RecordingsPcap, AnotherOustersDescriptionIsRefused) {
     DELIO_NEED_DATA("ouster");
     io::ScanSource source;  // packets of both have 8448 bytes

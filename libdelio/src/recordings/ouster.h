@@ -43,6 +43,7 @@ struct OusterInfo {
     std::vector<double> elevations, azimuths;  //!< one a row
     double beamOut_m = 0, beamUp_m = 0;        //!< beam's origin from that of the lidar frame
     Eigen::Matrix4d lidarToSensor = Eigen::Matrix4d::Identity();
+    Eigen::Matrix4d imuToSensor = Eigen::Matrix4d::Identity();
     OusterLayout layout;
 
     std::size_t columnBytes() const {
@@ -57,6 +58,15 @@ struct OusterInfo {
  *  old firmware have its defaults; a gen-1 sensor's beams begin 12.163 mm out. Throws Error, which
  *  names `name` and the key, where one is missing or not what it should be. */
 OusterInfo readOusterInfo(const std::string& json, const std::string& name);
+
+/** A sample of an Ouster's IMU as it was sent. */
+struct OusterImu {
+    std::uint64_t time_ns = 0;     //!< of the angular velocity, by the sensor's clock
+    Eigen::Vector3d acceleration;  //!< m/s^2
+    Eigen::Vector3d rate;          //!< rad/s
+};
+/** Nothing where the packet is not one of an IMU (48 bytes). */
+std::optional<OusterImu> ousterImuOf(const std::uint8_t* payload, std::size_t bytes);
 
 /** True if packets of this size can come from an Ouster. */
 bool isOusterPacketSize(std::size_t bytes);

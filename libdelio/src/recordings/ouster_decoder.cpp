@@ -29,6 +29,8 @@ class OusterDecoder : public PacketDecoder {
     bool add(const std::uint8_t* payload, std::size_t bytes, double received_s) override;
     void finish() override;
     std::optional<Scan> take() override;
+    bool addImu(const std::uint8_t* payload, std::size_t bytes) override;
+    std::vector<ImuSample> takeImu() override;
     std::string sensor() const override {
         return info_.product.empty() ? "Ouster" : "Ouster " + info_.product;
     }
@@ -53,6 +55,7 @@ class OusterDecoder : public PacketDecoder {
     OusterIds foreignIds_;                 //!< of the first packet of another sensor
     Happened foreign_, mended_, untimed_;
     std::deque<Scan> scans_;
+    std::vector<OusterImu> imu_;  //!< that nobody took yet
 };
 
 std::string textOf(const OusterIds& ids) {
@@ -121,6 +124,25 @@ bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double r
         packet.copyTo(*frame_, column);
     }
     return true;
+}
+
+bool OusterDecoder::addImu(const std::uint8_t* payload, std::size_t bytes) {
+    const auto sample = ousterImuOf(payload, bytes);
+    if (sample) imu_.push_back(*sample);
+    return sample.has_value();
+}
+
+/** The first scan shows how the sensor's clock is to be read. */
+std::vector<ImuSample> OusterDecoder::takeImu() {
+    std::vector<ImuSample> samples;
+    if (made_ == 0) return samples;
+    Eigen::Isometry3d pose;
+    pose.matrix() = info_.imuToSensor;
+    for (const OusterImu& own : imu_)
+        samples.push_back({1e-9 * static_cast<double>(own.time_ns) + clockOffset_s_.value_or(0),
+                           own.rate, own.acceleration, pose});
+    imu_.clear();
+    return samples;
 }
 
 void OusterDecoder::finish() {
@@ -207,7 +229,24 @@ Number numberAt(const std::uint8_t* bytes) {
     std::memcpy(&number, bytes, sizeof(number));
     return number;
 }
+
+Eigen::Vector3d vectorAt(const std::uint8_t* bytes) {
+    return Eigen::Vector3f(numberAt<float>(bytes), numberAt<float>(bytes + 4),
+                           numberAt<float>(bytes + 8))
+        .cast<double>();
+}
 }  // namespace
+
+/** Times of the system, the accelerometer and the gyroscope (ns); acceleration (g); angular
+ * velocity (deg/s). */
+std::optional<OusterImu> ousterImuOf(const std::uint8_t* payload, std::size_t bytes) {
+    constexpr std::size_t kBytes = 48, kGyroscopeTime = 16, kAcceleration = 24, kRate = 36;
+    constexpr double kG_mps2 = 9.80665;
+    if (bytes != kBytes) return {};
+    return OusterImu{numberAt<std::uint64_t>(payload + kGyroscopeTime),
+                     kG_mps2 * vectorAt(payload + kAcceleration),
+                     M_PI / 180 * vectorAt(payload + kRate)};
+}
 
 std::optional<OusterTimes> timesOf(const OusterFrame& frame) {
     constexpr double kTolerance = 0.02;  // real columns are within 0.0005 turns of an even course

@@ -145,6 +145,9 @@ void readBeams(const Reader& reader, OusterInfo& info) {
     usual(0, 0) = usual(1, 1) = -1;
     usual(2, 3) = 36.18 * kMetresPerMm;
     info.lidarToSensor = matrixOf(reader, "lidar_to_sensor_transform").value_or(usual);
+    usual = Eigen::Matrix4d::Identity();
+    usual.topRightCorner<3, 1>() = kMetresPerMm * Eigen::Vector3d(6.253, -11.775, 7.645);
+    info.imuToSensor = matrixOf(reader, "imu_to_sensor_transform").value_or(usual);
 }
 
 void readColumns(const Reader& reader, OusterInfo& info) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
 
 namespace delio::io {
@@ -32,6 +33,13 @@ class PacketDecoder {
     /** The next complete scan, if there is one: points, rings, times, stamp_s and time (Unix
      *  seconds); the index is the caller's. */
     virtual std::optional<Scan> take() = 0;
+
+    /** A payload of the sensor's address that is no data packet; false where it holds no sample of
+     *  the sensor's IMU. */
+    virtual bool addImu(const std::uint8_t* /*payload*/, std::size_t /*bytes*/) { return false; }
+
+    /** IMU samples since the last call, in their order; stamps as those of the scans. */
+    virtual std::vector<ImuSample> takeImu() { return {}; }
 
     /** e.g. "Velodyne VLP-16"; empty until it is known. */
     virtual std::string sensor() const = 0;

@@ -56,6 +56,7 @@ class PcapReader : public ScanReader {
 
     std::optional<Scan> next() override;
     bool skip() override { return next().has_value(); }
+    std::vector<ImuSample> takeImu() override { return decoder_->takeImu(); }
     const std::string& label() const override { return label_; }
     const std::set<std::string>& otherLabels() const override { return others_; }
     std::optional<double> fraction() const override { return stream_.fraction(); }
@@ -73,6 +74,7 @@ class PcapReader : public ScanReader {
     /** Reads on until the decoder was given a packet of its sensor; false at the end. */
     bool feed();
     bool give(const UdpPacket& packet);
+    bool takeImuOf(const UdpPacket& packet);
     void finish();
 
     ScanSource source_;
@@ -82,7 +84,8 @@ class PcapReader : public ScanReader {
     std::string label_;
     std::set<std::string> others_;
     std::optional<DriveMeta> meta_;
-    std::string foundJson_;  //!< beside the recording, under another name
+    std::string foundJson_;      //!< beside the recording, under another name
+    std::uint16_t imuPort_ = 0;  //!< 0: no packet of an IMU was met
     std::size_t count_ = 0;
     bool pointTimes_ = false, ended_ = false;
     std::string fault_;  //!< fault that ended the recording, reported after the scans before it
@@ -156,11 +159,20 @@ bool PcapReader::give(const UdpPacket& packet) {
     return taken;
 }
 
+/** True for a packet of the sensor's IMU, from the same address. */
+bool PcapReader::takeImuOf(const UdpPacket& packet) {
+    if (!sender_ || packet.from != sender_->address) return false;
+    if (!decoder_->addImu(packet.payload, packet.bytes)) return false;
+    imuPort_ = packet.toPort;
+    return true;
+}
+
 bool PcapReader::feed() {
     while (!ended_) {
         std::optional<UdpPacket> packet;
         try {
             packet = stream_.next();
+            if (packet && takeImuOf(*packet)) continue;
             const auto sender = packet ? senderOf(*packet) : std::nullopt;
             if (packet && !sender) continue;
             const bool wanted =
@@ -213,6 +225,7 @@ Recording PcapReader::recording() const {
     recording.pointTimes = pointTimes_;
     recording.motionCompensated = false;
     recording.findings = decoder_->findings();
+    if (imuPort_ != 0) recording.imu = "at port " + std::to_string(imuPort_);
     return recording;
 }
 }  // namespace

@@ -331,4 +331,37 @@ TEST(PacketsOuster, WrongDescriptionsNameTheKey) {
     json.erase("lidar_to_sensor_transform");
     EXPECT_NE(faultOf(json.dump()).find("lidar_mode"), std::string::npos);
 }
+/** 1 g upwards and 90 deg/s about z. */
+Bytes imuPacket(std::uint64_t time_ns) {
+    Bytes packet(48);
+    putAt<std::uint64_t>(packet, 16, time_ns);
+    putAt<float>(packet, 32, 1);
+    putAt<float>(packet, 44, 90);
+    return packet;
+}
+
+TEST(PacketsOuster, SamplesOfItsImuHaveTheClockOfTheScans) {
+    const OusterToy toy;
+    const auto decoder = decoderOf(toy);
+    addTurn(*decoder, toy, 1);
+    const Bytes early = imuPacket(0);
+    EXPECT_TRUE(decoder->addImu(early.data(), early.size()));
+    EXPECT_TRUE(decoder->takeImu().empty());  // no scan shows the clock yet
+    addTurn(*decoder, toy, 2);
+    const auto scans = finish(*decoder);
+    const auto first = decoder->takeImu();
+    ASSERT_EQ(first.size(), 1U);
+    const Bytes late = imuPacket(50'000'000);
+    EXPECT_TRUE(decoder->addImu(late.data(), late.size()));
+    EXPECT_FALSE(decoder->addImu(late.data(), 47));
+    const auto second = decoder->takeImu();
+    ASSERT_EQ(second.size(), 1U);
+    EXPECT_NEAR(second[0].stamp_s - first[0].stamp_s, 0.05, 1e-6);
+    EXPECT_LT(std::abs(first[0].stamp_s - scans[0].stamp_s), 10);
+    EXPECT_TRUE(second[0].acceleration_mps2.isApprox(Eigen::Vector3d(0, 0, 9.80665), 1e-6));
+    EXPECT_TRUE(second[0].rate_radps.isApprox(Eigen::Vector3d(0, 0, M_PI / 2), 1e-6));
+    ASSERT_TRUE(second[0].sensorPose);
+    EXPECT_TRUE(second[0].sensorPose->translation().isApprox(
+        Eigen::Vector3d(6.253e-3, -11.775e-3, 7.645e-3)));
+}
 }  // namespace
