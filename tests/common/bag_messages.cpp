@@ -73,6 +73,24 @@ BagBytes pointsOf(const CloudSpec& spec) {
 }
 }  // namespace
 
+WireWriter& WireWriter::real(double value) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof(bits));
+    return number(bits);
+}
+
+BagBytes transformsMessage(const std::vector<std::pair<std::string, Eigen::Vector3d>>& frames,
+                           WireWriter::Kind kind) {
+    WireWriter out(kind);
+    out.number(static_cast<std::uint32_t>(frames.size()));
+    for (const auto& [name, place] : frames) {
+        out.header(0, "base").text(name);
+        for (const double value : place) out.real(value);
+        for (const double value : {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}) out.real(value);
+    }
+    return out.message();
+}
+
 BagBytes cloudMessage(const CloudSpec& spec, WireWriter::Kind kind) {
     struct Field {
         const char* name;

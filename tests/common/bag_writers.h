@@ -1,7 +1,9 @@
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 /** Bags as recorders write them, for tests. */
@@ -25,6 +27,8 @@ class WireWriter {
     /** std_msgs/Header. */
     WireWriter& header(double stamp_s, const std::string& frame = "velodyne");
     WireWriter& time(double seconds);
+    /** A number of 8 bytes. */
+    WireWriter& real(double value);
     const BagBytes& message() const { return bytes_; }
 
  private:
@@ -47,6 +51,10 @@ struct CloudSpec {
      *  and without rings and times. */
     const std::vector<float>* xyzi = nullptr;
 };
+/** A tf2_msgs/TFMessage with the poses of frames in "base", which are turned by 90 deg about z. */
+BagBytes transformsMessage(const std::vector<std::pair<std::string, Eigen::Vector3d>>& frames,
+                           WireWriter::Kind kind);
+
 BagBytes cloudMessage(const CloudSpec& spec, WireWriter::Kind kind = WireWriter::Kind::kRos1);
 
 struct BagTopic {

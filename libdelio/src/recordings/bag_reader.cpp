@@ -13,6 +13,7 @@
 #include "ouster.h"
 #include "scan_maker.h"
 #include "sources.h"
+#include "static_transforms.h"
 
 namespace delio::io {
 namespace {
@@ -97,6 +98,15 @@ SideFile ousterDescription(const ScanSource& source, const std::string& topic,
     return ousterJsonBeside(source.path, nullptr, 0);
 }
 
+/** frame_id of a message that begins with a std_msgs/Header; empty where it cannot be decoded. */
+std::string frameOf(const Message& message) {
+    try {
+        return WireReader(message).header().frame;
+    } catch (const Error&) {
+        return "";
+    }
+}
+
 /** The topic of the IMU that belongs to the LiDAR of `topic`: with the longest common prefix. Empty
  *  without an IMU. */
 std::string imuTopicFor(const std::vector<Topic>& topics, const std::string& topic) {
@@ -153,11 +163,16 @@ class BagReader : public ScanReader {
             .has_value();
     }
 
-    std::vector<ImuSample> takeImu() override { return std::exchange(imu_, {}); }
+    std::vector<ImuSample> takeImu() override {
+        if (!imu_.empty())
+            for (ImuSample& sample : imu_) sample.sensorPose = transforms().pose(imuFrame_, frame_);
+        return std::exchange(imu_, {});
+    }
     /** From a second pass over the bag, once. */
     earth::Fixes takeFixes() override {
-        const auto open = std::exchange(open_, {});
-        return open ? fixesOfBag(open) : earth::Fixes{};
+        if (std::exchange(fixesAreTaken_, true)) return {};
+        return fixesOfBag(
+            open_, [this](const std::string& frame) { return transforms().pose(frame, frame_); });
     }
 
     const std::string& label() const override { return topic_.name; }
@@ -193,12 +208,24 @@ class BagReader : public ScanReader {
         }
     }
 
+    const StaticTransforms& transforms() {
+        if (!transforms_) transforms_ = transformsOfBag(open_);
+        return *transforms_;
+    }
+
+    /** A std_msgs/Header comes first in it. */
+    bool hasHeader() const { return type_ != ScanType::kOuster; }
+
     /** The next message with scans; samples of the IMU before it are kept. */
     std::optional<Message> nextMessage() {
         while (true) {
             auto message = bag_->next();
-            if (!message || message->topic == topic_.name) return message;
-            if (const auto sample = sampleOf(*message)) addSample(*sample, imu_);
+            if (!message) return message;
+            if (message->topic == topic_.name) {
+                if (frame_.empty() && hasHeader()) frame_ = frameOf(*message);
+                return message;
+            }
+            if (const auto sample = sampleOf(*message, imuFrame_)) addSample(*sample, imu_);
         }
     }
 
@@ -268,12 +295,15 @@ class BagReader : public ScanReader {
     }
 
     std::string container_;
-    OpenSource open_;  //!< until the fixes were read
+    OpenSource open_;
     std::unique_ptr<MessageSource> bag_;
     Topic topic_;
     ScanType type_ = ScanType::kNone;
     std::string imuTopic_;  //!< empty: the bag has no IMU
     std::vector<ImuSample> imu_;
+    std::string frame_, imuFrame_;                //!< of the LiDAR and the IMU; empty: not known
+    std::optional<StaticTransforms> transforms_;  //!< once they are asked for
+    bool fixesAreTaken_ = false;
     bool picksFrame_ = false;  //!< only messages of one frame_id are taken
     std::unique_ptr<ScanMaker> maker_;
     std::optional<DriveMeta> meta_;

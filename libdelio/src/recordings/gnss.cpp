@@ -7,15 +7,6 @@
 #include "mrpt/clock.h"
 
 namespace delio::io {
-namespace {
-double realNumber(WireReader& reader) {
-    const auto bits = reader.number<std::uint64_t>();
-    double value = 0;
-    std::memcpy(&value, &bits, sizeof(value));
-    return value;
-}
-}  // namespace
-
 std::optional<earth::Fix> fixOf(const mrpt::obs::CObservationGPS& observation, double epoch_s) {
     using Gga = mrpt::obs::gnss::Message_NMEA_GGA;
     if (!observation.hasMsgClass<Gga>()) return {};
@@ -37,12 +28,12 @@ std::optional<earth::Fix> fixOf(const Message& message) {
     fix.stamp_s = reader.header().stamp_s;
     const auto status = static_cast<std::int8_t>(reader.number<std::uint8_t>());
     reader.number<std::uint16_t>();  // the satellites' service
-    fix.place.latitude_deg = realNumber(reader);
-    fix.place.longitude_deg = realNumber(reader);
-    fix.place.height_m = realNumber(reader);
+    fix.place.latitude_deg = reader.real();
+    fix.place.longitude_deg = reader.real();
+    fix.place.height_m = reader.real();
     Eigen::Matrix3d covariance;
     for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) covariance(row, column) = realNumber(reader);
+        for (int column = 0; column < 3; ++column) covariance(row, column) = reader.real();
     const auto kind = reader.number<std::uint8_t>();
     if (status < 0) return {};
     // STATUS_SBAS_FIX and STATUS_GBAS_FIX are differential.
@@ -62,7 +53,9 @@ bool isFixType(const std::string& type) {
     return type == "sensor_msgs/NavSatFix" || type == "sensor_msgs/msg/NavSatFix";
 }
 
-earth::Fixes fixesOfBag(const OpenSource& open) {
+earth::Fixes fixesOfBag(
+    const OpenSource& open,
+    const std::function<std::optional<Eigen::Isometry3d>(const std::string&)>& poseOf) {
     earth::Fixes fixes;
     try {
         const auto bag = open();
@@ -71,8 +64,13 @@ earth::Fixes fixesOfBag(const OpenSource& open) {
             if (isFixType(each.type) && (!topic || each.name < *topic)) topic = each.name;
         if (!topic) return fixes;
         bag->only({*topic});
-        while (const auto message = bag->next())
-            if (const auto fix = fixOf(*message)) fixes.push_back(*fix);
+        while (const auto message = bag->next()) {
+            auto fix = fixOf(*message);
+            if (!fix) continue;
+            const auto antenna = poseOf(WireReader(*message).header().frame);
+            if (antenna) fix->antenna = antenna->translation();
+            fixes.push_back(*fix);
+        }
     } catch (const std::exception&) {
         // The reader of the scans says what is damaged.
     }

@@ -1,6 +1,7 @@
 #pragma once
 #include <mrpt/obs/CObservationGPS.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,6 +21,9 @@ std::optional<earth::Fix> fixOf(const Message& navSatFix);
 bool isFixType(const std::string& type);
 
 /** The fixes of the topic with NavSatFix in a bag, the first by name where there are several; none
- *  after what is damaged. */
-earth::Fixes fixesOfBag(const OpenSource& open);
+ *  after what is damaged. `poseOf`: of the frame with a name in the LiDAR's, where it is known; the
+ *  antenna is there. */
+earth::Fixes fixesOfBag(
+    const OpenSource& open,
+    const std::function<std::optional<Eigen::Isometry3d>(const std::string&)>& poseOf);
 }  // namespace delio::io

@@ -1,27 +1,18 @@
 #include "imu_samples.h"
 
-#include <cstdint>
-#include <cstring>
 #include <limits>
 
 #include "delio/core/error.h"
 
 namespace delio::io {
 namespace {
-double doubleIn(WireReader& in) {
-    const auto bits = in.number<std::uint64_t>();
-    double value = 0;
-    std::memcpy(&value, &bits, sizeof(value));
-    return value;
-}
-
 /** Three numbers and their covariance, whose first element is -1 where they were not measured. */
 Eigen::Vector3d measuredIn(WireReader& in) {
     constexpr unsigned kCovariance = 9;
     Eigen::Vector3d values;
-    for (double& value : values) value = doubleIn(in);
-    const bool isMeasured = doubleIn(in) != -1;
-    for (unsigned i = 1; i < kCovariance; ++i) doubleIn(in);
+    for (double& value : values) value = in.real();
+    const bool isMeasured = in.real() != -1;
+    for (unsigned i = 1; i < kCovariance; ++i) in.real();
     if (!isMeasured) values.setConstant(std::numeric_limits<double>::quiet_NaN());
     return values;
 }
@@ -31,14 +22,16 @@ bool isImu(const Topic& topic) {
     return topic.type == "sensor_msgs/Imu" || topic.type == "sensor_msgs/msg/Imu";
 }
 
-std::optional<ImuSample> sampleOf(const Message& message) {
+std::optional<ImuSample> sampleOf(const Message& message, std::string& frame) {
     constexpr unsigned kOrientation = 13;  // a quaternion and its covariance
     try {
         WireReader in(message);
         ImuSample sample;
-        sample.stamp_s = in.header().stamp_s;
+        const auto header = in.header();
+        frame = header.frame;
+        sample.stamp_s = header.stamp_s;
         if (sample.stamp_s == 0) sample.stamp_s = message.log_s;
-        for (unsigned i = 0; i < kOrientation; ++i) doubleIn(in);
+        for (unsigned i = 0; i < kOrientation; ++i) in.real();
         sample.rate_radps = measuredIn(in);
         sample.acceleration_mps2 = measuredIn(in);
         return sample;

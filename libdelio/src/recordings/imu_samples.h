@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "delio/odometry/imu.h"
@@ -10,8 +11,9 @@ namespace delio::io {
 bool isImu(const Topic& topic);
 
 /** The sample of a sensor_msgs/Imu, stamped in Unix seconds as its header says, or with the time at
- *  which it was recorded where that is zero. Nothing where the message cannot be decoded. */
-std::optional<ImuSample> sampleOf(const Message& message);
+ *  which it was recorded where that is zero, and its frame_id. Nothing where the message cannot be
+ * decoded. */
+std::optional<ImuSample> sampleOf(const Message& message, std::string& frame);
 
 /** Appends a sample. Where nobody takes them, the oldest of 200 000 are dropped. */
 void addSample(const ImuSample& sample, std::vector<ImuSample>& samples);

@@ -122,6 +122,13 @@ class WireReader {
     Bytes byteArray() { return bytes(number<std::uint32_t>()); }
     /** A length of records that have at least `least` bytes each. */
     std::size_t length(std::size_t least);
+    /** A floating-point number of 8 bytes. */
+    double real() {
+        const auto bits = number<std::uint64_t>();
+        double value = 0;
+        std::memcpy(&value, &bits, sizeof(value));
+        return value;
+    }
     /** Seconds of a time. */
     double time();
     /** std_msgs/Header. */

@@ -84,6 +84,13 @@ TEST(Gnss, OfABagIsNavSatFix) {
         bag.encoding = ros2 ? "cdr" : "ros1";
         bag.topics = {{"/points", ros2 ? "sensor_msgs/msg/PointCloud2" : "sensor_msgs/PointCloud2"},
                       {"/fix", ros2 ? "sensor_msgs/msg/NavSatFix" : "sensor_msgs/NavSatFix"}};
+        if (ros2) {
+            bag.topics.push_back({"/tf_static", "tf2_msgs/msg/TFMessage"});
+            const auto poses = {std::make_pair("gps", Eigen::Vector3d(0, 1, 3)),
+                                std::make_pair("velodyne", Eigen::Vector3d(0, 0, 2))};
+            bag.messages.push_back(
+                {2, 1e9, test::transformsMessage({poses.begin(), poses.end()}, kind)});
+        }
         const auto xyzi = ring();
         for (int i = 0; i < 4; ++i) {
             test::CloudSpec cloud;
@@ -112,7 +119,8 @@ TEST(Gnss, OfABagIsNavSatFix) {
         EXPECT_EQ(fixes[1].covariance.diagonal(), Eigen::Vector3d(4, 9, 16));
         EXPECT_EQ(fixes[2].covariance(2, 2), 1e6);  // no height
         EXPECT_TRUE(earth::isUsable(fixes[2]));
-        EXPECT_FALSE(fixes[1].antenna);
+        EXPECT_EQ(fixes[1].antenna.has_value(), ros2);
+        if (ros2) EXPECT_TRUE(fixes[1].antenna->isApprox(Eigen::Vector3d(1, 0, 1)));
         EXPECT_TRUE(reader->takeFixes().empty());
     }
 }

@@ -1,27 +1,21 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "bag_files.h"
 #include "delio/mrpt/rawlog_writer.h"
 #include "delio/odometry/imu.h"
 #include "delio/recordings/scan_reader.h"
+#include "recordings/static_transforms.h"
 
 namespace delio::bag_test {
 namespace {
-std::uint64_t bitsOf(double value) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof(bits));
-    return bits;
-}
-
 /** sensor_msgs/Imu with a rate of (stamp - kBegin_s, 2, 3) rad/s. */
 std::string imuMessage(double stamp_s, Kind kind, bool hasRate = true) {
     test::WireWriter message(kind);
     message.header(stamp_s, "imu");
     const auto put = [&](std::initializer_list<double> values) {
-        for (const double value : values) message.number(bitsOf(value));
+        for (const double value : values) message.real(value);
     };
     const auto covariance = [&](double first) { put({first, 0, 0, 0, 0, 0, 0, 0, 0}); };
     put({0, 0, 0, 1});
@@ -79,6 +73,45 @@ TEST(ImuSamples, OfABagAreThoseOfTheNearestTopic) {
             EXPECT_FALSE(samples[i].sensorPose);
         }
     }
+}
+
+TEST(ImuSamples, OfABagHaveThePoseInTfStatic) {
+    for (const Container& container : containers()) {
+        BagContents bag = driveWithImu(3, container.kind);
+        bag.topics.push_back({"/tf_static", container.kind == Kind::kRos1
+                                                ? "tf2_msgs/TFMessage"
+                                                : "tf2_msgs/msg/TFMessage"});
+        const auto message =
+            transformsMessage({{"/velodyne", {1, 0, 2}}, {"imu", {1, 3, 2.5}}}, container.kind);
+        bag.messages.push_back({4, kBegin_s + 1, message});
+        const test::TemporaryFolder folder;
+        const auto file = folder / container.file;
+        container.write(file, bag);
+        const auto reader = container.open({file.string(), "", "", ""});
+        while (reader->next()) continue;
+        const auto samples = reader->takeImu();
+        ASSERT_EQ(samples.size(), 6U) << container.name;
+        // The LiDAR's x axis is the vehicle's y axis.
+        ASSERT_TRUE(samples[0].sensorPose) << container.name;
+        EXPECT_TRUE(samples[0].sensorPose->translation().isApprox(Eigen::Vector3d(3, 0, 0.5)));
+        EXPECT_TRUE(samples[0].sensorPose->linear().isIdentity(1e-9));
+    }
+}
+
+TEST(StaticTransforms, ConnectFramesThroughTheirTree) {
+    io::StaticTransforms transforms;
+    const auto shifted = [](double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); };
+    transforms.add("base", "mast", shifted(1));
+    transforms.add("mast", "/lidar", shifted(10));
+    transforms.add("/base", "imu", shifted(100));
+    transforms.add("one", "other", shifted(1));
+    transforms.add("other", "one", shifted(1));
+    ASSERT_TRUE(transforms.pose("imu", "lidar"));
+    EXPECT_EQ(transforms.pose("imu", "lidar")->translation().x(), 89);
+    EXPECT_EQ(transforms.pose("/lidar", "base")->translation().x(), 11);
+    EXPECT_TRUE(transforms.pose("alone", "alone"));
+    EXPECT_FALSE(transforms.pose("imu", "other"));
+    EXPECT_FALSE(transforms.pose("one", "base"));
 }
 
 TEST(ImuSamples, BrokenMessagesAreLeftOut) {
