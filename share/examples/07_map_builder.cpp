@@ -2,7 +2,7 @@
 // rawlog of sensory frames or observations in, a .simplemap out. Options come from an .ini file.
 //   07_map_builder DRIVE.rawlog OUT.simplemap [OPTIONS.ini]
 #include <delio/core/error.h>
-#include <delio/mrpt/odometry_map_builder.h>
+#include <delio/slam/odometry_map_builder.h>
 #include <mrpt/config/CConfigFile.h>
 #include <mrpt/io/lazy_load_path.h>
 #include <mrpt/obs/CRawlog.h>

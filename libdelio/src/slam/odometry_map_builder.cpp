@@ -1,4 +1,4 @@
-#include "delio/mrpt/odometry_map_builder.h"
+#include "delio/slam/odometry_map_builder.h"
 
 #include <mrpt/img/CImage.h>
 #include <mrpt/maps/CSimplePointsMap.h>
