@@ -109,8 +109,9 @@ TEST(RecordingsPcap, ImuOfAnOuster) {
         ASSERT_GE(samples.size(), 9 * stamps_s.size()) << name;
         for (std::size_t i = 0; i < samples.size(); ++i) {
             EXPECT_NEAR(samples[i].acceleration_mps2.norm(), 9.81, 1.5) << name;
-            EXPECT_LT(samples[i].rate_radps.norm(), 0.1) << name;
-            if (i > 0) EXPECT_NEAR(samples[i].stamp_s - samples[i - 1].stamp_s, 0.01, 0.002);
+            EXPECT_LT(samples[i].rate_radps.norm(), 0.2) << name;
+            const double before_s = i > 0 ? samples[i - 1].stamp_s : samples[i].stamp_s - 0.01;
+            EXPECT_NEAR(samples[i].stamp_s - before_s, 0.01, 0.002);
             EXPECT_GT(samples[i].stamp_s, stamps_s.front() - 0.05) << name;
             EXPECT_LT(samples[i].stamp_s, stamps_s.back() + 0.15) << name;
         }

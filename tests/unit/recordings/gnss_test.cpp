@@ -120,7 +120,9 @@ TEST(Gnss, OfABagIsNavSatFix) {
         EXPECT_EQ(fixes[2].covariance(2, 2), 1e6);  // no height
         EXPECT_TRUE(earth::isUsable(fixes[2]));
         EXPECT_EQ(fixes[1].antenna.has_value(), ros2);
-        if (ros2) EXPECT_TRUE(fixes[1].antenna->isApprox(Eigen::Vector3d(1, 0, 1)));
+        if (ros2) {
+            EXPECT_TRUE(fixes[1].antenna->isApprox(Eigen::Vector3d(1, 0, 1)));
+        }
         EXPECT_TRUE(reader->takeFixes().empty());
     }
 }
