@@ -8,9 +8,11 @@
 #include <mrpt/poses/CPosePDF.h>
 
 #include <algorithm>
-#include <sstream>
+#include <cstdint>
+#include <unordered_set>
 #include <utility>
 
+#include "core/voxel_grid.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/graph/pose_pdf.h"
@@ -65,10 +67,7 @@ class OdometryMapBuilder::Keyframes : public SlamListener {
               const mrpt::slam::CMetricMapBuilder& builder, const Eigen::Isometry3d& start)
         : options_(options), builder_(builder), start_(start), pdf_(toMrpt(start)) {
         mrpt::maps::TSetOfMetricMapInitializers maps;
-        CSimplePointsMap::TMapDefinition points;
-        points.insertionOpts.minDistBetweenLaserPoints = static_cast<float>(options.map_resolution);
-        points.insertionOpts.fuseWithExisting = false;
-        maps.push_back(points);
+        maps.push_back(CSimplePointsMap::TMapDefinition());
         metricMap_.setListOfMaps(maps);
     }
 
@@ -91,7 +90,7 @@ class OdometryMapBuilder::Keyframes : public SlamListener {
             points->insertPointFast(used(0, i), used(1, i), used(2, i));
         cloud->pointcloud = points;
         keyframes_.push_back({scan.node, pose_, pdf_.cov, cloud});
-        metricMap_.insertObservation(*cloud, pdf_.mean);
+        insert(keyframes_.back());
     }
 
     const std::optional<Step>& step() const { return step_; }
@@ -138,8 +137,21 @@ class OdometryMapBuilder::Keyframes : public SlamListener {
                 }
         if (!isChanged) return;
         metricMap_.clear();
-        for (const Keyframe& keyframe : keyframes_)
-            metricMap_.insertObservation(*keyframe.cloud, toMrpt(keyframe.pose));
+        occupied_.clear();
+        for (const Keyframe& keyframe : keyframes_) insert(keyframe);
+    }
+
+    /** Into the metric map: one point a voxel. */
+    void insert(const Keyframe& keyframe) {
+        const auto map = metricMap_.mapByClass<CSimplePointsMap>();
+        const auto& cloud = *keyframe.cloud->pointcloud;
+        for (std::size_t i = 0; i < cloud.size(); ++i) {
+            Eigen::Vector3d point;
+            cloud.getPoint(i, point.x(), point.y(), point.z());
+            point = keyframe.pose * point;
+            if (occupied_.insert(voxelKey(point, options_.map_resolution)).second)
+                map->insertPoint(point.x(), point.y(), point.z());
+        }
     }
 
     const OdometryMapBuilderOptions& options_;
@@ -149,6 +161,7 @@ class OdometryMapBuilder::Keyframes : public SlamListener {
     std::optional<Step> step_;
     std::vector<Keyframe> keyframes_;
     CMultiMetricMap metricMap_;
+    std::unordered_set<std::uint64_t> occupied_;  //!< voxels of the metric map
 };
 
 OdometryMapBuilder::OdometryMapBuilder(const OdometryMapBuilderOptions& o) : own_(o) {
