@@ -149,8 +149,9 @@ class OdometryMapBuilder::Keyframes : public SlamListener {
             Eigen::Vector3d point;
             cloud.getPoint(i, point.x(), point.y(), point.z());
             point = keyframe.pose * point;
-            if (occupied_.insert(voxelKey(point, options_.map_resolution)).second)
-                map->insertPoint(point.x(), point.y(), point.z());
+            if (!occupied_.insert(voxelKey(point, options_.map_resolution)).second) continue;
+            const Eigen::Vector3f kept = point.cast<float>();
+            map->insertPoint(kept.x(), kept.y(), kept.z());
         }
     }
 
