@@ -13,6 +13,7 @@
 #include "delio/files/output_folder.h"
 #include "delio/map/frames.h"
 #include "delio/map/map_point.h"
+#include "delio/places/import_cloud.h"
 #include "delio/version.h"
 #include "map_input.h"
 #include "map_outputs.h"
@@ -86,6 +87,7 @@ struct Arguments {
     Arguments();
     /** An option that would have no effect; empty: none. */
     std::string fault();
+    std::string importFault();
     MapOutputOptions options();
 
     TCLAP::CmdLine cmd;
@@ -98,7 +100,7 @@ struct Arguments {
     std::vector<std::string> frameNames{"map", "ground", "enu", "utm"};
     Words values{valueNames}, colormaps{colormapNames}, frames{frameNames};
 
-    Text input, output, crop;
+    Text input, import, output, crop;
     Number spacing;
     Text colourBy, colormap;
     Number resolution, height;
@@ -108,14 +110,21 @@ struct Arguments {
 
 Arguments::Arguments()
     : cmd("converts, crops and georeferences maps", ' ', kVersion),
-      input("i", "input", "Map: the result folder of a delio-slam run, or a file", true, "",
+      input("i", "input", "Map: the result folder of a delio-slam run, or a file", false, "",
             "FOLDER|FILE.delio|FILE.ply|FILE.pcd|FILE.las|FILE.simplemap", cmd),
+      import("", "import",
+             "Point cloud of another program (metres, z up, any origin) to localise drives in; OUT "
+             "is a .delio",
+             false, "", "CLOUD.ply|.pcd|.las", cmd),
       output("o", "output", "File to write; a .yaml for ROS's map_server comes with a .pgm image",
-             true, "", "OUT.ply|.pcd|.las|.3Dscene|.html|.gridmap|.yaml", cmd),
+             true, "", "OUT.ply|.pcd|.las|.3Dscene|.html|.gridmap|.yaml|.delio", cmd),
       crop("", "crop", "Keep the points in this box (metres, in the output frame)", false, "",
            &boxes, cmd),
-      spacing("", "spacing", "Minimum distance between points, metres; 0: keep all", false, 0,
-              &spacings, cmd),
+      spacing(
+          "", "spacing",
+          "Minimum distance between points, metres; 0: keep all; of an imported cloud 0.05 to 2, "
+          "default 0.3",
+          false, 0, &spacings, cmd),
       colourBy("", "color-by", "Value shown by the colours", false, "height", &values, cmd),
       colormap("", "colormap", "Colour map", false, "turbo", &colormaps, cmd),
       resolution("", "resolution", "Cell size of a grid, metres", false, 0.1, &lengths, cmd),
@@ -137,6 +146,8 @@ Arguments::Arguments()
       verbose("", "verbose", "Print progress and full error texts", cmd) {}
 
 std::string Arguments::fault() {
+    if (input.isSet() == import.isSet()) return "give either -i or --import";
+    if (import.isSet()) return importFault();
     if (georeference.isSet() && frame.isSet() && frame.getValue() != "utm")
         return "--georeference gives east-north-up or, with --frame utm, UTM: no other --frame";
     const MapOutput& kind = mapOutputFor(output.getValue());
@@ -146,6 +157,17 @@ std::string Arguments::fault() {
         return "--resolution and --height only apply to grids (.gridmap, .yaml)";
     if (kind.isGrid && !(height.getValue() > map::OccupancyOptions().low_m))
         return "--height must be more than " + digitsOf(map::OccupancyOptions().low_m) + " m";
+    return "";
+}
+
+std::string Arguments::importFault() {
+    if (fs::path(output.getValue()).extension() != ".delio")
+        return "--import writes a stored map: give -o OUT.delio";
+    for (TCLAP::Arg* other : std::initializer_list<TCLAP::Arg*>{
+             &crop, &colourBy, &colormap, &resolution, &height, &frame, &georeference})
+        if (other->isSet()) return "--" + other->getName() + " has no effect with --import";
+    if (spacing.isSet() && !(spacing.getValue() >= 0.05 && spacing.getValue() <= 2))
+        return "--spacing of an imported cloud must be 0.05 to 2 m";
     return "";
 }
 
@@ -167,14 +189,18 @@ std::vector<std::string> outputsOf(const std::string& output) {
     return files;
 }
 
+void refuseMissingFolder(const std::string& output) {
+    const fs::path folder = fs::absolute(output).parent_path();
+    if (!fs::is_directory(folder))
+        throw Error("cannot write '" + output + "': no such folder: '" + folder.string() + "'");
+}
+
 /** Checks of the files before the map is read. */
 void checkFiles(const std::string& input, const std::string& output, bool force) {
     mapFileIn(input);
     cli::refuseOverlap(mapFilesIn(input), outputsOf(output));
     for (const auto& file : outputsOf(output)) cli::refuseExisting(file, force);
-    const fs::path folder = fs::absolute(output).parent_path();
-    if (!fs::is_directory(folder))
-        throw Error("cannot write '" + output + "': no such folder: '" + folder.string() + "'");
+    refuseMissingFolder(output);
 }
 
 /** Where the map lies on the earth: as it says itself, or as --georeference says. */
@@ -296,20 +322,43 @@ void convert(Arguments& asked) {
     say("wrote " + std::to_string(map.points.size()) + " points as '" + output + "'");
 }
 
+void importMap(Arguments& asked) {
+    constexpr double kSpacing_m = 0.3;
+    const std::string cloud = asked.import.getValue(), output = asked.output.getValue();
+    cli::refuseOverlap({cloud}, {output});
+    cli::refuseExisting(output, asked.force.getValue());
+    refuseMissingFolder(output);
+    const io::OutputLock lock(output);
+    const auto made =
+        importCloud(cloud, asked.spacing.isSet() ? asked.spacing.getValue() : kSpacing_m, output);
+    const auto& offset = made.origin.offset;
+    if (made.outliers > 0)
+        cli::inform("dropped " + std::to_string(made.outliers) +
+                    " points that lie more than 50 km from the others");
+    if (!offset.isZero())
+        cli::inform("the map's coordinates are those of the cloud less " + fixed(offset.x(), 0) +
+                    ", " + fixed(offset.y(), 0) + ", " + fixed(offset.z(), 0) + " m");
+    if (asked.verbose.getValue())
+        cli::inform("kept " + std::to_string(made.kept) + " of " + std::to_string(made.points) +
+                    " points in " + std::to_string(made.submaps) + " submaps, " +
+                    std::to_string(made.places) + " of them with free ground; tilt " +
+                    fixed(made.tilt_deg, 1) + " deg");
+}
+
 cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
         {"OUT",
          "the map as points (.ply, .pcd, .las), MRPT scene (.3Dscene), page for a browser (.html), "
          "MRPT "
-         "grid (.gridmap) or ROS grid (.yaml and .pgm)"},
+         "grid (.gridmap) or ROS grid (.yaml and .pgm); of --import the map for delio-slam --map"},
         {"OUT.frame.yaml",
          "with another frame than the map's: the transformation from the map's frame, or the "
          "offset and zone of UTM"}};
     help.examples = {{{"delio-map -i 07-results -o 07.pcd --frame ground --spacing 0.5",
                        "Levelled and thinned to 0.5 m"},
-                      {"delio-map -i 07-results -o 07.yaml --resolution 0.2",
-                       "Occupancy grid for ROS's map_server"}}};
+                      {"delio-map --import site.las -o site.delio",
+                       "Map for delio-slam --map of another program's cloud"}}};
     help.interrupted = "existing files are unchanged";
     return help;
 }
@@ -323,7 +372,7 @@ int main(int argc, char** argv) {
             cli::inform(fault + "; see --help");
             return cli::kExitBadCommandLine;
         }
-        convert(asked);
+        asked.import.isSet() ? importMap(asked) : convert(asked);
         return cli::kExitSuccess;
     });
 }
