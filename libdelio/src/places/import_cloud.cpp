@@ -88,7 +88,7 @@ class CutCloud {
 
     std::size_t size() const { return tiles_.size(); }
     const std::vector<Eigen::Isometry3d>& levelFrames() const { return level_; }
-    /** The normal of most of the ground; the cloud's axis z where there is none. */
+    /** The normal of most of the ground; the cloud's axis z without ground. */
     Eigen::Vector3d up() const { return up_; }
     /** Of a tile, in its level frame. */
     Eigen::Matrix3Xf pointsOf(std::size_t tile) const {
