@@ -13,7 +13,9 @@
 #include "delio/files/output_folder.h"
 #include "delio/map/frames.h"
 #include "delio/map/map_point.h"
+#include "delio/places/edit_graph.h"
 #include "delio/places/import_cloud.h"
+#include "delio/run/run_folder.h"
 #include "delio/version.h"
 #include "map_input.h"
 #include "map_outputs.h"
@@ -88,6 +90,12 @@ struct Arguments {
     /** An option that would have no effect; empty: none. */
     std::string fault();
     std::string importFault();
+    /** The graph of a stored map is listed or edited. */
+    bool isGraph();
+    std::string graphFault();
+    /** The first of these that is set, as an error; empty: none is. */
+    static std::string withoutEffect(std::initializer_list<TCLAP::Arg*> args,
+                                     const std::string& why);
     MapOutputOptions options();
 
     TCLAP::CmdLine cmd;
@@ -100,7 +108,7 @@ struct Arguments {
     std::vector<std::string> frameNames{"map", "ground", "enu", "utm"};
     Words values{valueNames}, colormaps{colormapNames}, frames{frameNames};
 
-    Text input, import, output, crop;
+    Text input, import, edits, output, crop;
     Number spacing;
     Text colourBy, colormap;
     Number resolution, height;
@@ -116,8 +124,13 @@ Arguments::Arguments()
              "Point cloud of another program (metres, z up, any origin) to localise drives in; OUT "
              "is a .delio",
              false, "", "CLOUD.ply|.pcd|.las", cmd),
+      edits("", "edits",
+            "Edit the pose graph of a stored map: lines 'add A B' (an edge between two submaps, if "
+            "registration confirms it) and 'forbid A B'; OUT is a .delio. With -o OUT.csv and "
+            "without this option, the edges between submaps are listed",
+            false, "", "EDITS.txt", cmd),
       output("o", "output", "File to write; a .yaml for ROS's map_server comes with a .pgm image",
-             true, "", "OUT.ply|.pcd|.las|.3Dscene|.html|.gridmap|.yaml|.delio", cmd),
+             true, "", "OUT.ply|.pcd|.las|.3Dscene|.html|.gridmap|.yaml|.delio|.csv", cmd),
       crop("", "crop", "Keep the points in this box (metres, in the output frame)", false, "",
            &boxes, cmd),
       spacing(
@@ -148,6 +161,7 @@ Arguments::Arguments()
 std::string Arguments::fault() {
     if (input.isSet() == import.isSet()) return "give either -i or --import";
     if (import.isSet()) return importFault();
+    if (isGraph()) return graphFault();
     if (georeference.isSet() && frame.isSet() && frame.getValue() != "utm")
         return "--georeference gives east-north-up or, with --frame utm, UTM: no other --frame";
     const MapOutput& kind = mapOutputFor(output.getValue());
@@ -163,12 +177,32 @@ std::string Arguments::fault() {
 std::string Arguments::importFault() {
     if (fs::path(output.getValue()).extension() != ".delio")
         return "--import writes a stored map: give -o OUT.delio";
-    for (TCLAP::Arg* other : std::initializer_list<TCLAP::Arg*>{
-             &crop, &colourBy, &colormap, &resolution, &height, &frame, &georeference})
-        if (other->isSet()) return "--" + other->getName() + " has no effect with --import";
+    const auto none = withoutEffect(
+        {&edits, &crop, &colourBy, &colormap, &resolution, &height, &frame, &georeference},
+        "with --import");
+    if (!none.empty()) return none;
     if (spacing.isSet() && !(spacing.getValue() >= 0.05 && spacing.getValue() <= 2))
         return "--spacing of an imported cloud must be 0.05 to 2 m";
     return "";
+}
+
+std::string Arguments::withoutEffect(std::initializer_list<TCLAP::Arg*> args,
+                                     const std::string& why) {
+    for (TCLAP::Arg* arg : args)
+        if (arg->isSet()) return "--" + arg->getName() + " has no effect " + why;
+    return "";
+}
+
+bool Arguments::isGraph() {
+    return edits.isSet() || fs::path(output.getValue()).extension() == ".csv";
+}
+
+std::string Arguments::graphFault() {
+    if (fs::path(output.getValue()).extension() != (edits.isSet() ? ".delio" : ".csv"))
+        return "--edits writes a stored map: give -o OUT.delio";
+    return withoutEffect(
+        {&crop, &spacing, &colourBy, &colormap, &resolution, &height, &frame, &georeference},
+        "on the graph of a map");
 }
 
 MapOutputOptions Arguments::options() {
@@ -322,6 +356,24 @@ void convert(Arguments& asked) {
     say("wrote " + std::to_string(map.points.size()) + " points as '" + output + "'");
 }
 
+/** Lists the edges between submaps, or changes them. */
+void editGraph(Arguments& asked) {
+    const std::string input = asked.input.getValue(), output = asked.output.getValue(),
+                      edits = asked.edits.getValue();
+    const std::string stored = run::storedMapIn(input);
+    std::vector<std::string> inputs{stored};
+    if (!edits.empty()) inputs.push_back(edits);
+    cli::refuseOverlap(inputs, {output});
+    cli::refuseExisting(output, asked.force.getValue());
+    refuseMissingFolder(output);
+    const io::OutputLock lock(output);
+    const StoredMap map(stored);
+    if (edits.empty())
+        saveSubmapEdges(submapEdges(map), output);
+    else
+        StoredMap::save(edited(map, readGraphEdits(edits)), output);
+}
+
 void importMap(Arguments& asked) {
     constexpr double kSpacing_m = 0.3;
     const std::string cloud = asked.import.getValue(), output = asked.output.getValue();
@@ -351,7 +403,8 @@ cli::HelpText help() {
         {"OUT",
          "the map as points (.ply, .pcd, .las), MRPT scene (.3Dscene), page for a browser (.html), "
          "MRPT "
-         "grid (.gridmap) or ROS grid (.yaml and .pgm); of --import the map for delio-slam --map"},
+         "grid (.gridmap) or ROS grid (.yaml and .pgm); of --import and --edits the "
+         "map for delio-slam --map; the edges of its graph (.csv)"},
         {"OUT.frame.yaml",
          "with another frame than the map's: the transformation from the map's frame, or the "
          "offset and zone of UTM"}};
@@ -372,7 +425,10 @@ int main(int argc, char** argv) {
             cli::inform(fault + "; see --help");
             return cli::kExitBadCommandLine;
         }
-        asked.import.isSet() ? importMap(asked) : convert(asked);
+        if (asked.import.isSet())
+            importMap(asked);
+        else
+            asked.isGraph() ? editGraph(asked) : convert(asked);
         return cli::kExitSuccess;
     });
 }
