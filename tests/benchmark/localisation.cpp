@@ -88,6 +88,26 @@ class MapTruth {
         }
         return mapped_[best] * true_[best].inverse() * truth;
     }
+    /** Drops poses about which a map has less than half of what it usually has: it was cut off. */
+    void keepWithin(const Eigen::Matrix3Xf& cloud) {
+        constexpr float kAround_m = 25;
+        std::vector<Eigen::Index> counts;
+        for (const auto& pose : mapped_) {
+            const Eigen::Vector3f at = pose.translation().cast<float>();
+            counts.push_back(((cloud.colwise() - at).colwise().norm().array() < kAround_m).count());
+        }
+        auto sorted = counts;
+        std::sort(sorted.begin(), sorted.end());
+        const Eigen::Index usual = sorted.empty() ? 0 : sorted[sorted.size() * 3 / 4];
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            if (2 * counts[i] < usual) continue;
+            true_[kept] = true_[i];
+            mapped_[kept++] = mapped_[i];
+        }
+        true_.resize(kept);
+        mapped_.resize(kept);
+    }
     const std::vector<Isometry3d>& truth() const { return true_; }
     const std::vector<Isometry3d>& mapped() const { return mapped_; }
 
@@ -208,6 +228,7 @@ MapTruth truthOf(const StoredMap& map, const Settings& settings) {
     Isometry3d inCloud = io::readTrajectory(settings.ownPose).poses.at(0);
     inCloud.translation() -= map.cloudOrigin().value().offset;
     truth.move(inCloud);
+    truth.keepWithin(map.cloud(0.3));
     return truth;
 }
 
