@@ -13,6 +13,9 @@
 #include "delio/files/output_folder.h"
 #include "delio/map/frames.h"
 #include "delio/map/map_point.h"
+#include "delio/places/edit_graph.h"
+#include "delio/places/import_cloud.h"
+#include "delio/run/run_folder.h"
 #include "delio/version.h"
 #include "map_input.h"
 #include "map_outputs.h"
@@ -86,6 +89,13 @@ struct Arguments {
     Arguments();
     /** An option that would have no effect; empty: none. */
     std::string fault();
+    std::string importFault();
+    /** The graph of a stored map is listed or edited. */
+    bool isGraph();
+    std::string graphFault();
+    /** The first of these that is set, as an error; empty: none is. */
+    static std::string withoutEffect(std::initializer_list<TCLAP::Arg*> args,
+                                     const std::string& why);
     MapOutputOptions options();
 
     TCLAP::CmdLine cmd;
@@ -98,7 +108,7 @@ struct Arguments {
     std::vector<std::string> frameNames{"map", "ground", "enu", "utm"};
     Words values{valueNames}, colormaps{colormapNames}, frames{frameNames};
 
-    Text input, output, crop;
+    Text input, import, edits, output, crop;
     Number spacing;
     Text colourBy, colormap;
     Number resolution, height;
@@ -108,14 +118,26 @@ struct Arguments {
 
 Arguments::Arguments()
     : cmd("converts, crops and georeferences maps", ' ', kVersion),
-      input("i", "input", "Map: the result folder of a delio-slam run, or a file", true, "",
+      input("i", "input", "Map: the result folder of a delio-slam run, or a file", false, "",
             "FOLDER|FILE.delio|FILE.ply|FILE.pcd|FILE.las|FILE.simplemap", cmd),
+      import("", "import",
+             "Point cloud of another program (metres, z up, any origin) to localise drives in; OUT "
+             "is a .delio",
+             false, "", "CLOUD.ply|.pcd|.las", cmd),
+      edits("", "edits",
+            "Edit the pose graph of a stored map: lines 'add A B' (an edge between two submaps, if "
+            "registration confirms it) and 'forbid A B'; OUT is a .delio. With -o OUT.csv and "
+            "without this option, the edges between submaps are listed",
+            false, "", "EDITS.txt", cmd),
       output("o", "output", "File to write; a .yaml for ROS's map_server comes with a .pgm image",
-             true, "", "OUT.ply|.pcd|.las|.3Dscene|.html|.gridmap|.yaml", cmd),
+             true, "", "OUT.ply|.pcd|.las|.3Dscene|.html|.gridmap|.yaml|.delio|.csv", cmd),
       crop("", "crop", "Keep the points in this box (metres, in the output frame)", false, "",
            &boxes, cmd),
-      spacing("", "spacing", "Minimum distance between points, metres; 0: keep all", false, 0,
-              &spacings, cmd),
+      spacing(
+          "", "spacing",
+          "Minimum distance between points, metres; 0: keep all; of an imported cloud 0.05 to 2, "
+          "default 0.3",
+          false, 0, &spacings, cmd),
       colourBy("", "color-by", "Value shown by the colours", false, "height", &values, cmd),
       colormap("", "colormap", "Colour map", false, "turbo", &colormaps, cmd),
       resolution("", "resolution", "Cell size of a grid, metres", false, 0.1, &lengths, cmd),
@@ -137,6 +159,9 @@ Arguments::Arguments()
       verbose("", "verbose", "Print progress and full error texts", cmd) {}
 
 std::string Arguments::fault() {
+    if (input.isSet() == import.isSet()) return "give either -i or --import";
+    if (import.isSet()) return importFault();
+    if (isGraph()) return graphFault();
     if (georeference.isSet() && frame.isSet() && frame.getValue() != "utm")
         return "--georeference gives east-north-up or, with --frame utm, UTM: no other --frame";
     const MapOutput& kind = mapOutputFor(output.getValue());
@@ -147,6 +172,37 @@ std::string Arguments::fault() {
     if (kind.isGrid && !(height.getValue() > map::OccupancyOptions().low_m))
         return "--height must be more than " + digitsOf(map::OccupancyOptions().low_m) + " m";
     return "";
+}
+
+std::string Arguments::importFault() {
+    if (fs::path(output.getValue()).extension() != ".delio")
+        return "--import writes a stored map: give -o OUT.delio";
+    const auto none = withoutEffect(
+        {&edits, &crop, &colourBy, &colormap, &resolution, &height, &frame, &georeference},
+        "with --import");
+    if (!none.empty()) return none;
+    if (spacing.isSet() && !(spacing.getValue() >= 0.05 && spacing.getValue() <= 2))
+        return "--spacing of an imported cloud must be 0.05 to 2 m";
+    return "";
+}
+
+std::string Arguments::withoutEffect(std::initializer_list<TCLAP::Arg*> args,
+                                     const std::string& why) {
+    for (TCLAP::Arg* arg : args)
+        if (arg->isSet()) return "--" + arg->getName() + " has no effect " + why;
+    return "";
+}
+
+bool Arguments::isGraph() {
+    return edits.isSet() || fs::path(output.getValue()).extension() == ".csv";
+}
+
+std::string Arguments::graphFault() {
+    if (fs::path(output.getValue()).extension() != (edits.isSet() ? ".delio" : ".csv"))
+        return "--edits writes a stored map: give -o OUT.delio";
+    return withoutEffect(
+        {&crop, &spacing, &colourBy, &colormap, &resolution, &height, &frame, &georeference},
+        "on the graph of a map");
 }
 
 MapOutputOptions Arguments::options() {
@@ -167,14 +223,18 @@ std::vector<std::string> outputsOf(const std::string& output) {
     return files;
 }
 
+void refuseMissingFolder(const std::string& output) {
+    const fs::path folder = fs::absolute(output).parent_path();
+    if (!fs::is_directory(folder))
+        throw Error("cannot write '" + output + "': no such folder: '" + folder.string() + "'");
+}
+
 /** Checks of the files before the map is read. */
 void checkFiles(const std::string& input, const std::string& output, bool force) {
     mapFileIn(input);
     cli::refuseOverlap(mapFilesIn(input), outputsOf(output));
     for (const auto& file : outputsOf(output)) cli::refuseExisting(file, force);
-    const fs::path folder = fs::absolute(output).parent_path();
-    if (!fs::is_directory(folder))
-        throw Error("cannot write '" + output + "': no such folder: '" + folder.string() + "'");
+    refuseMissingFolder(output);
 }
 
 /** Where the map lies on the earth: as it says itself, or as --georeference says. */
@@ -296,20 +356,62 @@ void convert(Arguments& asked) {
     say("wrote " + std::to_string(map.points.size()) + " points as '" + output + "'");
 }
 
+/** Lists the edges between submaps, or changes them. */
+void editGraph(Arguments& asked) {
+    const std::string input = asked.input.getValue(), output = asked.output.getValue(),
+                      edits = asked.edits.getValue();
+    const std::string stored = run::storedMapIn(input);
+    std::vector<std::string> inputs{stored};
+    if (!edits.empty()) inputs.push_back(edits);
+    cli::refuseOverlap(inputs, {output});
+    cli::refuseExisting(output, asked.force.getValue());
+    refuseMissingFolder(output);
+    const io::OutputLock lock(output);
+    const StoredMap map(stored);
+    if (edits.empty())
+        saveSubmapEdges(submapEdges(map), output);
+    else
+        StoredMap::save(edited(map, readGraphEdits(edits)), output);
+}
+
+void importMap(Arguments& asked) {
+    constexpr double kSpacing_m = 0.3;
+    const std::string cloud = asked.import.getValue(), output = asked.output.getValue();
+    cli::refuseOverlap({cloud}, {output});
+    cli::refuseExisting(output, asked.force.getValue());
+    refuseMissingFolder(output);
+    const io::OutputLock lock(output);
+    const auto made =
+        importCloud(cloud, asked.spacing.isSet() ? asked.spacing.getValue() : kSpacing_m, output);
+    const auto& offset = made.origin.offset;
+    if (made.outliers > 0)
+        cli::inform("dropped " + std::to_string(made.outliers) +
+                    " points that lie more than 50 km from the others");
+    if (!offset.isZero())
+        cli::inform("the map's coordinates are those of the cloud less " + fixed(offset.x(), 0) +
+                    ", " + fixed(offset.y(), 0) + ", " + fixed(offset.z(), 0) + " m");
+    if (asked.verbose.getValue())
+        cli::inform("kept " + std::to_string(made.kept) + " of " + std::to_string(made.points) +
+                    " points in " + std::to_string(made.submaps) + " submaps, " +
+                    std::to_string(made.places) + " of them with free ground; tilt " +
+                    fixed(made.tilt_deg, 1) + " deg");
+}
+
 cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
         {"OUT",
          "the map as points (.ply, .pcd, .las), MRPT scene (.3Dscene), page for a browser (.html), "
          "MRPT "
-         "grid (.gridmap) or ROS grid (.yaml and .pgm)"},
+         "grid (.gridmap) or ROS grid (.yaml and .pgm); of --import and --edits the "
+         "map for delio-slam --map; the edges of its graph (.csv)"},
         {"OUT.frame.yaml",
          "with another frame than the map's: the transformation from the map's frame, or the "
          "offset and zone of UTM"}};
     help.examples = {{{"delio-map -i 07-results -o 07.pcd --frame ground --spacing 0.5",
                        "Levelled and thinned to 0.5 m"},
-                      {"delio-map -i 07-results -o 07.yaml --resolution 0.2",
-                       "Occupancy grid for ROS's map_server"}}};
+                      {"delio-map --import site.las -o site.delio",
+                       "Map for delio-slam --map of another program's cloud"}}};
     help.interrupted = "existing files are unchanged";
     return help;
 }
@@ -323,7 +425,10 @@ int main(int argc, char** argv) {
             cli::inform(fault + "; see --help");
             return cli::kExitBadCommandLine;
         }
-        convert(asked);
+        if (asked.import.isSet())
+            importMap(asked);
+        else
+            asked.isGraph() ? editGraph(asked) : convert(asked);
         return cli::kExitSuccess;
     });
 }

@@ -27,6 +27,10 @@ MapInput readStored(const std::string& path, double spacing_m) {
     for (std::size_t i = 0; i < input.points.size(); ++i)
         input.points[i].position = cloud.col(static_cast<Eigen::Index>(i));
     input.earth = stored.georeference();
+    if (const auto& origin = stored.cloudOrigin()) {
+        input.offset = origin->offset;
+        input.wkt = origin->wkt;
+    }
     for (const auto& drive : stored.drives()) input.ways.push_back(stored.trajectory(drive).poses);
     return input;
 }

@@ -49,6 +49,8 @@ cli::HelpText slamHelp() {
          "with GNSS fixes: place on the earth; poses as latitude, longitude, height and UTM"},
         {both(Folder::kEnuTum, Folder::kGeoJson),
          "with GNSS fixes: poses in east-north-up, TUM format; line for a map viewer"},
+        {Folder::kCloudTum,
+         "with --map of an imported cloud with an offset: poses in its coordinates"},
         {both(Folder::kGraph, Folder::kMrptGraph), "pose graph"},
         {both(Folder::kPly, Folder::kScene), "map points; scene for SceneViewer3D"},
         {Folder::kMapPage, "the map as an interactive page for a browser"},

@@ -2,7 +2,10 @@
 // DRIVE.poses.txt, DRIVE.calib.txt and DRIVE.times.txt beside them, and DRIVE.origin.txt if they
 // are two drives through one world (synth2rawlog).
 //   benchmark_localisation MAP.delio MAPPED.rawlog DRIVE.rawlog [--start N] [--every N]
-//                          [--places N] [--elsewhere] [--list]
+//                          [--places N] [--elsewhere] [--list] [--own OWN.delio POSE.txt]
+//                          --own: MAP was imported from a cloud of OWN, whose poses POSE.txt (one
+//                          row in KITTI's format) brings into the cloud
+//                          (share/scripts/foreign-maps)
 //   benchmark_localisation --seam MAP.delio FIRST.rawlog SECOND.rawlog
 //                          how well two drives of one map fit together where they meet
 #include <algorithm>
@@ -30,7 +33,7 @@ using namespace delio;
 using Eigen::Isometry3d;
 
 struct Settings {
-    std::string map, mapped, drive;
+    std::string map, mapped, drive, own, ownPose;
     std::size_t start = 0, every = 1, places = 100;
     bool elsewhere = false;  // the drive is in another world: nothing may be found
     bool list = false;
@@ -68,6 +71,11 @@ class MapTruth {
         }
     }
 
+    /** The map's poses in another map. */
+    void move(const Isometry3d& otherFromMap) {
+        for (auto& pose : mapped_) pose = otherFromMap * pose;
+    }
+
     /** Where the map has what is truly there: by the nearest pose that it was made of. */
     Isometry3d inMap(const Isometry3d& truth, double& distance) const {
         std::size_t best = 0;
@@ -79,6 +87,26 @@ class MapTruth {
             best = i;
         }
         return mapped_[best] * true_[best].inverse() * truth;
+    }
+    /** Drops poses about which a map has less than half of what it usually has: it was cut off. */
+    void keepWithin(const Eigen::Matrix3Xf& cloud) {
+        constexpr float kAround_m = 25;
+        std::vector<Eigen::Index> counts;
+        for (const auto& pose : mapped_) {
+            const Eigen::Vector3f at = pose.translation().cast<float>();
+            counts.push_back(((cloud.colwise() - at).colwise().norm().array() < kAround_m).count());
+        }
+        auto sorted = counts;
+        std::sort(sorted.begin(), sorted.end());
+        const Eigen::Index usual = sorted.empty() ? 0 : sorted[sorted.size() * 3 / 4];
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            if (2 * counts[i] < usual) continue;
+            true_[kept] = true_[i];
+            mapped_[kept++] = mapped_[i];
+        }
+        true_.resize(kept);
+        mapped_.resize(kept);
     }
     const std::vector<Isometry3d>& truth() const { return true_; }
     const std::vector<Isometry3d>& mapped() const { return mapped_; }
@@ -193,13 +221,32 @@ void print(const Starts& starts, const Tracking& tracking) {
         run::peakMemory_mb());
 }
 
+MapTruth truthOf(const StoredMap& map, const Settings& settings) {
+    if (settings.own.empty()) return {map, map.drives().front(), settings.mapped};
+    const StoredMap own(settings.own);
+    MapTruth truth(own, own.drives().front(), settings.mapped);
+    Isometry3d inCloud = io::readTrajectory(settings.ownPose).poses.at(0);
+    inCloud.translation() -= map.cloudOrigin().value().offset;
+    truth.move(inCloud);
+    truth.keepWithin(map.cloud(0.3));
+    return truth;
+}
+
+/** Along the poses of the map. */
+double pathOf(const MapTruth& truth) {
+    double path_m = 0;
+    for (std::size_t i = 1; i < truth.mapped().size(); ++i)
+        path_m += (truth.mapped()[i].translation() - truth.mapped()[i - 1].translation()).norm();
+    return path_m;
+}
+
 /** All of the drive in one go, and starts beside it. */
 void measure(const Settings& settings) {
     const auto map = std::make_shared<const StoredMap>(settings.map);
     const auto truth = truePoses(settings.drive);
-    const MapTruth mapTruth(*map, map->drives().front(), settings.mapped);
+    const MapTruth mapTruth = truthOf(*map, settings);
     const auto options = Options::forDrive("accurate", io::readDriveMeta(settings.drive));
-    const double path_m = map->submaps().back().driven.path_m;
+    const double path_m = pathOf(mapTruth);
     Stopwatch watch;
     Localiser localiser(map, options);
     const double opened_ms = watch.lap_ms();
@@ -266,7 +313,10 @@ int main(int argc, char** argv) {
                 settings.seam = true;
             else if (word == "--elsewhere")
                 settings.elsewhere = true;
-            else if (word == "--start" && i + 1 < argc)
+            else if (word == "--own" && i + 2 < argc) {
+                settings.own = argv[++i];
+                settings.ownPose = argv[++i];
+            } else if (word == "--start" && i + 1 < argc)
                 settings.start = number();
             else if (word == "--every" && i + 1 < argc)
                 settings.every = number();

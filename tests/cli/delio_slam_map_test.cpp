@@ -121,6 +121,27 @@ TEST_F(StoredMaps, ADriveIsLocalisedInTheMapsFrame) {
         << eval.out;
 }
 
+TEST_F(StoredMaps, TheGraphIsListedAndEdited) {
+    const auto map = [](const Words& words, int exitCode, const std::string& text = "") {
+        const auto run = test::runTool("delio-map", words + Words{"--force"});
+        EXPECT_EQ(run.exitCode, exitCode) << run.err;
+        EXPECT_NE(run.err.find(text), std::string::npos) << run.err;
+    };
+    test::writeText(path("add.txt"), "add 0 1  # neighbours\n");
+    test::writeText(path("forbid.txt"), "forbid 1 0\n");
+    map({"-i", old(), "-o", path("edited.delio"), "--edits", path("add.txt")}, 0);
+    map({"-i", path("edited.delio"), "-o", path("edges.csv")}, 0);
+    EXPECT_EQ(linesOf(readText(path("edges.csv"))).size(), 2U);
+    map({"-i", path("edited.delio"), "-o", path("back.delio"), "--edits", path("forbid.txt")}, 0);
+    map({"-i", path("back.delio"), "-o", path("edges.csv")}, 0);
+    EXPECT_EQ(linesOf(readText(path("edges.csv"))).size(), 1U);
+    map({"-i", old(), "-o", path("no.delio"), "--edits", path("forbid.txt")}, 1, "no edge");
+    map({"-i", old(), "-o", path("no.delio"), "--edits", path("none.txt")}, 1, "none.txt");
+    map({"-i", old(), "-o", path("no.ply"), "--edits", path("add.txt")}, 2, "OUT.delio");
+    map({"-i", old(), "-o", path("no.csv"), "--frame", "ground"}, 2, "--frame has no effect");
+    EXPECT_FALSE(fs::exists(path("no.delio")));
+}
+
 TEST_F(StoredMaps, WhoSaysWhereItIsIsFoundThere) {
     const auto start = truth("first")[20];
     const std::string near = std::to_string(start(0, 3) + 1) + "," + std::to_string(start(1, 3)) +

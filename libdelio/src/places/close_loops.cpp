@@ -138,6 +138,11 @@ ClosedLoops closeLoops(const graph::PoseGraph& graph, LoopSearch& search,
     return result;
 }
 
+graph::PoseGraph closedBy(const graph::PoseGraph& graph, const graph::Edge& loop,
+                          const LoopOptions& options) {
+    return withLoops(graph, {loop}, driftFactor(graph, {loop}, options), options);
+}
+
 namespace {
 constexpr double kDeg = M_PI / 180;
 constexpr double kChi2 = 22.5;  // 99.9 % of six degrees of freedom

@@ -24,6 +24,11 @@ struct ClosedLoops {
 ClosedLoops closeLoops(const graph::PoseGraph& graph, LoopSearch& search,
                        const graph::PoseGraphOptions& optimisation);
 
+/** The graph with one more edge. Where the chain contradicts it, the covariances of the chain get
+ *  as much drift, in proportion to the path, as makes the edge likely. Not optimised. */
+graph::PoseGraph closedBy(const graph::PoseGraph& graph, const graph::Edge& loop,
+                          const LoopOptions& options);
+
 /** Refuses candidates that were registered but are not consistent: farther off than the odometry
  * may have drifted, in contradiction to others that agree among themselves (pairwise consistency,
  *  Mangelsohn et al. 2018), or without a neighbour that agrees. `level`: the submaps' level frames

@@ -279,11 +279,9 @@ std::vector<Shift> shiftsOf(const HeightImage& image, const HeightImage& other, 
     return shifts;
 }
 
-namespace {
-/** One normal per flat voxel of a levelled cloud, weighted by its number of points. (Normals of
- *  each point from nearest neighbours found no other loops and took eight times the instructions.)
- */
-paper::SurfaceNormals wallsOf(const Eigen::Matrix3Xf& points) {
+// Normals of each point from nearest neighbours found no other loops and took eight times the
+// instructions.
+paper::SurfaceNormals flatVoxels(const Eigen::Matrix3Xf& points) {
     PlaneMapOptions options;
     options.voxel_size = 1;
     options.levels = 1;
@@ -310,7 +308,6 @@ paper::SurfaceNormals wallsOf(const Eigen::Matrix3Xf& points) {
     walls.planarity.conservativeResize(kept);
     return walls;
 }
-}  // namespace
 
-Descriptor::Descriptor(const Eigen::Matrix3Xf& points) : walls(wallsOf(points)), image(points) {}
+Descriptor::Descriptor(const Eigen::Matrix3Xf& points) : walls(flatVoxels(points)), image(points) {}
 }  // namespace delio::places

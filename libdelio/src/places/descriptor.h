@@ -125,6 +125,9 @@ struct Raster {
     }
 };
 
+/** One normal per flat voxel of 1 m, weighted by its number of points; metres. */
+paper::SurfaceNormals flatVoxels(const Eigen::Matrix3Xf& points);
+
 /** Submap descriptor: wall orientations and height image. */
 struct Descriptor {
     WallOrientations walls;  //!< for the rotation

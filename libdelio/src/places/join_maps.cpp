@@ -66,7 +66,7 @@ class Both {
         return i < older() ? map_.descriptor(i) : drive_.descriptor(i - older());
     }
     Eigen::Matrix3Xf points(std::size_t i) const {
-        return i < older() ? map_.points(i) : drive_.points(i - older());
+        return i < older() ? map_.surroundings(i) : drive_.points(i - older());
     }
     std::shared_ptr<const places::DenseSubmap> ground(std::size_t i) {
         return grounds_.at(i, [&] { return places::DenseSubmap(points(i), descriptor(i).image); });
@@ -176,6 +176,7 @@ JoinedMap joined(const StoredMap& map, const MapContent& drive, const std::vecto
     content.graph = together(map.graph(), drive.graph, result.joints);
     content.graph.optimise(optimisation);
     content.drives = map.drives();
+    content.cloud = map.cloudOrigin();
     for (StoredDrive one : drive.drives) {
         one.firstNode += before;
         content.drives.push_back(std::move(one));

@@ -75,20 +75,25 @@ constexpr double kDeg = M_PI / 180;
  *  With 0.55 benchmark_loops closes no wrong loop (share/doc/method/loops.md). */
 constexpr double kMaxSelfSimilarity = 0.55;
 
-/** Rotations first, then the shift under each; the best shifts, of whatever rotation. */
-std::vector<Shift> shiftsOf(const Descriptor& from, const Descriptor& to, const LoopCandidate& pair,
-                            double turn_rad, double rival) {
+bool differ(const Closure& a, const Closure& b) {
+    constexpr double kSame_m = 0.5;
+    return (a.level.translation() - b.level.translation()).norm() > kSame_m;
+}
+}  // namespace
+
+std::vector<Shift> shiftsOf(const Descriptor& from, const Descriptor& to,
+                            const Eigen::Isometry3d& guess, double reach_m, double turn_rad,
+                            double rival) {
     constexpr std::size_t kTurns = 3, kShifts = 3;
     constexpr double kApart_m = 2;
-    const Eigen::Isometry3d& guess = pair.expected;
     const double yaw = portable::atan2(guess(1, 0), guess(0, 0));
     auto turns = from.walls.turnsOf(to.walls, yaw, turn_rad, kTurns);
     if (turns.empty()) turns.push_back(yaw);
     std::vector<Shift> best;
     for (const double angle : turns)
         for (const auto& shift :
-             shiftsOf(from.image, to.image, angle, guess.translation().head<2>(), pair.reach_m,
-                      kApart_m, kShifts))
+             shiftsOf(from.image, to.image, angle, guess.translation().head<2>(), reach_m, kApart_m,
+                      kShifts))
             best.push_back(shift);
     std::stable_sort(best.begin(), best.end(),
                      [](const Shift& a, const Shift& b) { return a.overlap > b.overlap; });
@@ -100,12 +105,6 @@ std::vector<Shift> shiftsOf(const Descriptor& from, const Descriptor& to, const 
     if (best.size() > kShifts) best.resize(kShifts);
     return best;
 }
-
-bool differ(const Closure& a, const Closure& b) {
-    constexpr double kSame_m = 0.5;
-    return (a.level.translation() - b.level.translation()).norm() > kSame_m;
-}
-}  // namespace
 
 std::vector<OptionField> LoopOptions::fields() const {
     return {{"enabled", &LoopOptions::enabled, "false: do not search for loops"},
@@ -198,8 +197,8 @@ void LoopSearch::search(LoopCandidate& pair) {
     pair.closure.reason = "no similar place";
     pair.closure.level = pair.expected;
     double rival = 0;  // overlap of the best one elsewhere
-    const auto shifts = shiftsOf(store_->descriptor(pair.from), store_->descriptor(pair.to), pair,
-                                 turn_rad, options_.rival);
+    const auto shifts = shiftsOf(store_->descriptor(pair.from), store_->descriptor(pair.to),
+                                 pair.expected, pair.reach_m, turn_rad, options_.rival);
     if (shifts.empty()) return;
     const auto fromGround = store_->ground(pair.from), toGround = store_->ground(pair.to);
     const ClosureEnd from{submaps_[pair.from], fromGround->map},

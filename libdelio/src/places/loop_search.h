@@ -26,6 +26,13 @@ struct Drift {
 /** Sum of the drift that the options expect and of the odometry's own standard deviations. */
 Drift driftOf(const PathSegment& driven, const LoopOptions& options);
 
+/** Likely shifts of one submap's descriptor onto another's within `reach_m` and `turn_rad` of
+ *  `guess`: rotations first, then the shift under each; the best shifts, of whatever rotation, the
+ *  best first. Those with less than `rival` of the best overlap are left out. */
+std::vector<Shift> shiftsOf(const Descriptor& from, const Descriptor& to,
+                            const Eigen::Isometry3d& guess, double reach_m, double turn_rad,
+                            double rival);
+
 /** Searches for loops. Candidates are all pairs of submaps that may overlap, given the expected
  * drift. For each, the rotation is found first (wall orientations, which no translation changes),
  * then the shift (height images), and the result is verified by registration in both directions.

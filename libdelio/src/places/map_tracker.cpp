@@ -10,6 +10,12 @@
 #include "places/descriptor.h"
 
 namespace delio {
+namespace {
+std::uint64_t columnOf(const Eigen::Vector3d& point) {
+    return voxelKey(floorOf(point.x()), floorOf(point.y()), 0);
+}
+}  // namespace
+
 LoadedMap::LoadedMap(std::shared_ptr<const StoredMap> map)
     : stored_(std::move(map)),
       isNear_(stored_->submaps().size(), false),
@@ -31,11 +37,38 @@ void LoadedMap::take(Eigen::Index most) {
     while (most > 0 && !waiting_.empty()) {
         auto& cloud = waiting_.front();
         const Eigen::Index count = std::min(most, cloud.points.cols() - cloud.taken);
-        map_.add(cloud.points.middleCols(cloud.taken, count), stored_->levelFrames()[cloud.submap]);
+        const Eigen::Matrix3Xf points = cloud.points.middleCols(cloud.taken, count);
+        map_.add(points, stored_->levelFrames()[cloud.submap]);
+        raiseTops(stored_->levelFrames()[cloud.submap] * points.cast<double>());
         cloud.taken += count;
         most -= count;
         if (cloud.taken == cloud.points.cols()) waiting_.pop_front();
     }
+}
+
+void LoadedMap::raiseTops(const Eigen::Matrix3Xd& points) {
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const auto number = columns_.insert(columnOf(points.col(i)));
+        if (number == tops_.size()) tops_.push_back(points(2, i));
+        tops_[number] = std::max(tops_[number], points(2, i));
+    }
+}
+
+double LoadedMap::shareAt(const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
+                          double distance) const {
+    constexpr double kLeast = 0.3;
+    Eigen::Matrix3Xd visible(3, points.cols());
+    Eigen::Index count = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector3d point = pose * points.col(i);
+        const auto column = columns_.find(columnOf(point));
+        if (column == VoxelIndex::kNone || point.z() <= tops_[column] + distance)
+            visible.col(count++) = points.col(i);
+    }
+    visible.conservativeResize(3, count);
+    if (count == 0) return 0;
+    const auto all = static_cast<double>(points.cols()), counted = static_cast<double>(count);
+    return map_.shareAt(visible, pose, distance) * counted / std::max(counted, kLeast * all);
 }
 
 void LoadedMap::load(const Eigen::Vector3d& place) {
@@ -128,7 +161,8 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
     // Ground matches anywhere: only points above it count.
     const auto standing = places::aboveGround((level * view.thinned).cast<float>());
     if (standing.cols() > 0)
-        fix.inlierRatio = map.shareAt(standing, found.pose() * turned(level.transpose()), kMeets_m);
+        fix.inlierRatio =
+            local_.shareAt(standing, found.pose() * turned(level.transpose()), kMeets_m);
     fix.reason = "inlier ratio too low";
     if (!found.valid || fix.inlierRatio < std::max(kMinInlierRatio, usual)) return {};
     fix.reason.clear();

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/voxel_table.h"
 #include "delio/core/increment.h"
 #include "delio/places/localisation.h"
 #include "delio/places/stored_map.h"
@@ -26,9 +27,16 @@ class LoadedMap {
     /** Points and planes of what is near, in the map's frame. */
     const odometry::LocalMap& map() const { return map_; }
 
+    /** Fraction of the points within `distance` metres of one of the map's, 0 to 1. Points higher
+     *  than anything that the map has in their column are not counted (another sensor may see
+     *  higher), but at most 70 % of them. `pose`: maps the points to the map's frame. */
+    double shareAt(const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
+                   double distance) const;
+
  private:
     void comeNear(const Eigen::Vector3d& place);
     void take(Eigen::Index most);
+    void raiseTops(const Eigen::Matrix3Xd& points);
 
     struct Cloud {
         std::size_t submap = 0;
@@ -39,6 +47,8 @@ class LoadedMap {
     std::vector<bool> isNear_;  //!< of each submap: it was taken in, or waits
     std::deque<Cloud> waiting_;
     odometry::LocalMap map_;
+    VoxelIndex columns_;        //!< of 1 m in which the map has anything
+    std::vector<double> tops_;  //!< of each of them
 };
 
 /** Tracks a vehicle in a stored map: predicts by its odometry and registers each scan to the map.

@@ -128,7 +128,7 @@ FoundPlace PlaceSearch::verified(const std::vector<places::PlaceMatch>& matches,
     grounds.reserve(found.size());
     for (const auto& [place, shift] : found)
         grounds.push_back(cache_.at(place, [&, place = place] {
-            return places::DenseSubmap(map_->points(place), descriptors_[place].image);
+            return places::DenseSubmap(map_->surroundings(place), descriptors_[place].image);
         }));
     std::vector<FoundPlace> places(found.size());
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {

@@ -18,6 +18,7 @@
 #include "files/names.h"
 #include "places/bytes.h"
 #include "places/descriptor.h"
+#include "places/tiles.h"
 
 namespace delio {
 namespace {
@@ -25,6 +26,7 @@ namespace {
 // the checksum of all that.
 constexpr std::array<char, 8> kMagic{'D', 'e', 'L', 'i', 'O', 'm', 'a', 'p'};
 constexpr std::size_t kHead = 8 + 4 + 8 + 8 + 8 + 4 + 8 + 4;
+constexpr std::uint32_t kDrivesOnly = 1;  // version without CloudOrigin
 constexpr double kCell_m = places::HeightImage::kCell_m;
 
 std::uint32_t checksumOf(const std::uint8_t* bytes, std::size_t count) {
@@ -105,6 +107,19 @@ earth::Georeference getGeoreference(ByteReader& bytes) {
     place.enuFromMap = bytes.getPose();
     place.covariance = getSymmetric(bytes);
     return place;
+}
+
+void put(ByteWriter& bytes, const CloudOrigin& cloud) {
+    bytes.put<std::uint64_t>(cloud.tiles);
+    for (const double value : cloud.offset) bytes.put(value);
+    bytes.put(cloud.wkt);
+}
+CloudOrigin getCloudOrigin(ByteReader& bytes) {
+    CloudOrigin cloud;
+    cloud.tiles = bytes.get<std::uint64_t>();
+    for (double& value : cloud.offset) value = bytes.get<double>();
+    cloud.wkt = bytes.getText();
+    return cloud;
 }
 
 /** Centres of cells, as whole numbers of half a cell. */
@@ -214,11 +229,13 @@ void StoredMap::save(const MapContent& content, const std::string& path) {
             Writer::put(index, writer.add(descriptor));
             Writer::put(index, writer.add(points));
         }
+        if (content.cloud) index.put<std::uint8_t>(content.georeference.has_value());
         if (content.georeference) put(index, *content.georeference);
+        if (content.cloud) put(index, *content.cloud);
         const Part part = writer.add(index);
         ByteWriter head;
         for (const char letter : kMagic) head.put(letter);
-        head.put(kVersion);
+        head.put<std::uint32_t>(content.cloud ? kVersion : kDrivesOnly);
         Writer::put(head, part);
         head.put(writer.end());
         head.put(checksumOf(head.bytes().data(), head.bytes().size()));
@@ -243,16 +260,16 @@ StoredMap::StoredMap(const std::string& path) : path_(path) {
         ByteReader reader(head);
         for (std::size_t i = 0; i < kMagic.size(); ++i) reader.get<char>();
         const auto version = reader.get<std::uint32_t>();
-        if (version != kVersion)
+        if (version != kVersion && version != kDrivesOnly)
             throw Error("'" + path + "' is a stored map with format version " +
-                        std::to_string(version) + "; this program reads version " +
+                        std::to_string(version) + "; this program reads versions up to " +
                         std::to_string(kVersion));
         const Part index = Writer::get(reader);
         const auto size = reader.get<std::uint64_t>();
         if (reader.get<std::uint32_t>() != checksumOf(head.data(), kHead - 4))
             damaged("wrong checksum of the header");
         if (size > size_) damaged("the file is cut off");
-        readIndex(index);
+        readIndex(index, version);
     } catch (...) {
         close(file_);
         throw;
@@ -285,7 +302,7 @@ std::vector<std::uint8_t> StoredMap::read(const Part& part) const {
     return plain;
 }
 
-void StoredMap::readIndex(const Part& index) {
+void StoredMap::readIndex(const Part& index, std::uint32_t version) {
     const auto bytes = read(index);
     ByteReader reader(bytes);
     try {
@@ -307,8 +324,12 @@ void StoredMap::readIndex(const Part& index) {
             descriptors_.push_back(Writer::get(reader));
             clouds_.push_back(Writer::get(reader));
         }
-        // A map without a georeference ends here.
-        if (!reader.atEnd()) georeference_ = getGeoreference(reader);
+        // A map of drives without a georeference ends here.
+        const bool isImported = version != kDrivesOnly;
+        if (isImported ? reader.get<std::uint8_t>() != 0 : !reader.atEnd())
+            georeference_ = getGeoreference(reader);
+        if (isImported) cloud_ = getCloudOrigin(reader);
+        if (cloud_ && cloud_->tiles > submaps_.size()) throw std::out_of_range("tiles");
     } catch (const std::exception&) {
         damaged("invalid index");
     }
@@ -340,6 +361,13 @@ Eigen::Matrix3Xf StoredMap::points(std::size_t submap) const {
     }
 }
 
+Eigen::Matrix3Xf StoredMap::surroundings(std::size_t submap) const {
+    if (!cloud_ || submap >= cloud_->tiles) return points(submap);
+    const std::vector<Eigen::Isometry3d> tiles(
+        level_.begin(), level_.begin() + static_cast<std::ptrdiff_t>(cloud_->tiles));
+    return places::surroundings(submap, tiles, [this](std::size_t i) { return points(i); });
+}
+
 Eigen::Matrix3Xf StoredMap::cloud(double spacing) const {
     std::vector<Eigen::Matrix3Xf> parts;
     Eigen::Index count = 0;
@@ -362,6 +390,7 @@ MapContent StoredMap::content() const {
             submaps_,
             [this](std::size_t i) { return descriptor(i); },
             [this](std::size_t i) { return points(i); },
-            georeference_};
+            georeference_,
+            cloud_};
 }
 }  // namespace delio

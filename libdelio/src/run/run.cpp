@@ -229,7 +229,10 @@ void Run::optimise() {
         optimiseGraph();
     else  // it failed: nodes without edges
         for (const auto& pose : record_.odometry.poses) record_.graph.addNode(pose);
-    if (follower_ && record_.isLocalised()) record_.georeference = follower_->map().georeference();
+    if (follower_ && record_.isLocalised()) {
+        record_.georeference = follower_->map().georeference();
+        record_.cloudOrigin = follower_->map().cloudOrigin();
+    }
     if (settings_.gnss && !gnssFixes_.empty() && !record_.georeference) georeference();
     record_.optimise_ms = watch.lap_ms();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
@@ -244,7 +247,8 @@ void Run::store() {
                       submaps.submaps(),
                       [&](std::size_t i) { return submaps.descriptor(i); },
                       [&](std::size_t i) { return submaps.points(i); },
-                      record_.georeference};
+                      record_.georeference,
+                      {}};
     stored_ = own_;
     try {
         if (settings_.extend && follower_ && record_.isLocalised()) extend();

@@ -32,6 +32,7 @@ constexpr const char* kAll[] = {RunFolder::kSummary,
                                 RunFolder::kGeoTrajectory,
                                 RunFolder::kEnuTum,
                                 RunFolder::kGeoJson,
+                                RunFolder::kCloudTum,
                                 RunFolder::kGraph,
                                 RunFolder::kMrptGraph,
                                 RunFolder::kScans,
@@ -74,6 +75,15 @@ void writeOnEarth(const RunRecord& record, const RunFolder& folder) {
     auto enu = record.final;
     for (auto& pose : enu.poses) pose = place.enuFromMap * pose;
     io::writeTum(enu, folder.path(RunFolder::kEnuTum));
+}
+
+/** Not where it would be the same as kTum. */
+void writeInCloud(const RunRecord& record, const RunFolder& folder) {
+    const Eigen::Vector3d& offset = record.cloudOrigin->offset;
+    if (offset.isZero()) return;
+    auto inCloud = record.final;
+    for (auto& pose : inCloud.poses) pose.translation() += offset;
+    io::writeTum(inCloud, folder.path(RunFolder::kCloudTum));
 }
 }  // namespace
 
@@ -145,6 +155,7 @@ void RunFolder::writeMaps(const RunRecord& record, const RunMaps& maps,
 void RunFolder::writeTables(const RunRecord& record) const {
     writeTrajectories(record);
     if (record.georeference) writeOnEarth(record, *this);
+    if (record.cloudOrigin && !record.final.stamps_s.empty()) writeInCloud(record, *this);
     io::saveG2o(record.graph, path(kGraph));
     io::saveMrptText(record.graph, path(kMrptGraph), record.closedLoops());
     if (!record.rows.empty()) writeScans(record.rows, path(kScans));

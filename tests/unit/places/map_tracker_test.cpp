@@ -77,6 +77,38 @@ TEST_F(InTheTown, TheOtherWayToo) {
     expectAt(fixes.back(), poses.back());
 }
 
+// The map ends 1 m above the sensor; most of what a scan sees of the houses is higher.
+TEST_F(InTheTown, ASensorThatSeesHigherThanTheMaps) {
+    TownDrive low(roundTheBlock(0));
+    for (auto& submap : low.submaps) {
+        Eigen::Index kept = 0;
+        for (Eigen::Index i = 0; i < submap.points.cols(); ++i)
+            if (submap.points(2, i) < 1) submap.points.col(kept++) = submap.points.col(i);
+        submap.points.conservativeResize(3, kept);
+    }
+    StoredMap::save(low.content, fileIn(folder_, "low.delio"));
+    MapTracker tracker(std::make_shared<const StoredMap>(fileIn(folder_, "low.delio")), {}, {});
+    test::Noise noise(3);
+    const auto poses = roundTheBlock(0);
+    const test::Sensor high{24, 360, -10, 40, 0.01};
+    std::size_t standing = 0, higher = 0;
+    MapFix fix;
+    for (std::size_t i = 20; i < 26; ++i) {
+        const auto points = test::ringScan(town(), poses[i], high, noise).points;
+        for (Eigen::Index k = 0; k < points.cols(); ++k) {
+            standing += points(2, k) > -1.4F;
+            higher += points(2, k) > 1.3F;
+        }
+        Increment step{Eigen::Isometry3d::Identity(), 1e-5 * Matrix6::Identity()};
+        if (i > 20) step.pose = poses[i - 1].inverse() * poses[i];
+        fix = tracker.add(step, points, Eigen::Vector3d::UnitZ());
+    }
+    EXPECT_GT(2 * higher, standing);
+    ASSERT_TRUE(isAnchor(fix)) << fix.reason;
+    EXPECT_GT(fix.inlierRatio, 0.6);
+    expectAt(fix, poses[25]);
+}
+
 // Another vehicle, whose sensor is mounted elsewhere.
 TEST_F(InTheTown, AtAnotherHeightToo) {
     Poses poses;

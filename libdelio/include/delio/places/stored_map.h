@@ -23,6 +23,14 @@ struct StoredDrive {
     std::vector<double> stamps_s;  //!< of each of its scans
 };
 
+/** What a map has of the cloud of another program that it was imported from. */
+struct CloudOrigin {
+    std::size_t tiles = 0;  //!< the first submaps: squares of the cloud, without a drive
+    /** Added to the map's coordinates, it gives the cloud's, metres. */
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+    std::string wkt;  //!< coordinate system of the cloud, as OGC WKT; empty: unknown
+};
+
 /** Content of a stored map. Poses are the vehicle's in the map's frame, which is that of
  *  the first scan of its first drive. */
 struct MapContent {
@@ -34,6 +42,7 @@ struct MapContent {
     /** Points of each of them: metres, its level frame. */
     std::function<Eigen::Matrix3Xf(std::size_t)> points;
     std::optional<earth::Georeference> georeference;  //!< where the map lies on the earth
+    std::optional<CloudOrigin> cloud;                 //!< of an imported cloud
 };
 
 /** A map for localisation: the drives' submaps with their descriptors, and the pose graph. A file,
@@ -41,7 +50,8 @@ struct MapContent {
  * Coordinates are rounded to 5 mm. */
 class StoredMap {
  public:
-    static constexpr std::uint32_t kVersion = 1;  //!< of the file
+    /** Of the file; a map without an imported cloud has version 1. */
+    static constexpr std::uint32_t kVersion = 2;
 
     /** Throws Error if the file is missing, not a stored map, of another version, or cut off. */
     explicit StoredMap(const std::string& path);
@@ -53,6 +63,8 @@ class StoredMap {
     const graph::PoseGraph& graph() const { return graph_; }  //!< one node per scan, of all drives
     /** Where the map lies on the earth; nothing: not known. */
     const std::optional<earth::Georeference>& georeference() const { return georeference_; }
+    /** Of a map that was imported from a cloud. */
+    const std::optional<CloudOrigin>& cloudOrigin() const { return cloud_; }
     /** In the order of their nodes. */
     const std::vector<StoredDrive>& drives() const { return drives_; }
     /** Without their points. */
@@ -67,6 +79,9 @@ class StoredMap {
     places::Descriptor descriptor(std::size_t submap) const;
     /** Points of a submap: metres, its level frame. Error likewise. */
     Eigen::Matrix3Xf points(std::size_t submap) const;
+    /** Points that can be seen from a submap: its own, with those of tiles around a tile; metres,
+     *  its level frame. Error likewise. */
+    Eigen::Matrix3Xf surroundings(std::size_t submap) const;
 
     /** All of them in the map's frame, one in `spacing` metres. */
     Eigen::Matrix3Xf cloud(double spacing) const;
@@ -85,7 +100,7 @@ class StoredMap {
     };
     class Writer;
     std::vector<std::uint8_t> read(const Part& part) const;
-    void readIndex(const Part& index);
+    void readIndex(const Part& index, std::uint32_t version);
     [[noreturn]] void damaged(const std::string& how) const;
 
     std::string path_;
@@ -93,6 +108,7 @@ class StoredMap {
     std::uint64_t size_ = 0;
     graph::PoseGraph graph_;
     std::optional<earth::Georeference> georeference_;
+    std::optional<CloudOrigin> cloud_;
     std::vector<StoredDrive> drives_;
     std::vector<places::Submap> submaps_;
     std::vector<Eigen::Isometry3d> level_;

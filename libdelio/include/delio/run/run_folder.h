@@ -55,6 +55,8 @@ class RunFolder {
     static constexpr const char* kGeoTrajectory = "trajectory_geo.csv";  //!< on the earth
     static constexpr const char* kEnuTum = "trajectory_enu_tum.txt";     //!< east, north, up
     static constexpr const char* kGeoJson = "trajectory.geojson";        //!< for maps
+    /** In the coordinates of an imported cloud that has an offset. */
+    static constexpr const char* kCloudTum = "trajectory_cloud_tum.txt";
     static constexpr const char* kGraph = "posegraph.g2o";  //!< for g2o, and to be optimised again
     static constexpr const char* kMrptGraph = "posegraph.graph";  //!< MRPT's text format
     static constexpr const char* kScans = "scans.csv";            //!< one row per scan

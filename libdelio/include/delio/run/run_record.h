@@ -100,6 +100,8 @@ struct RunRecord {
     std::optional<ImuReport> imu;  //!< what was found out about the IMU, where there is one
     std::optional<earth::Georeference> georeference;  //!< of the final poses, where it is known
     earth::GnssFigures gnss;                          //!< of the drive's fixes
+    /** Of the imported cloud that the drive was localised in. */
+    std::optional<CloudOrigin> cloudOrigin;
 
     io::Calibration calibration;  //!< of the drive, where there is one
     /** The final trajectory beside true poses, where they are known. */
