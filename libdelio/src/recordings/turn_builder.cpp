@@ -38,7 +38,7 @@ void TurnBuilder::block(double turns, double time_s) {
     ++taken_;
     const double before = turned_;
     const bool isGap = !blocks_.empty() && std::abs(time_s - blocks_.back().time_s) > kGap_s;
-    const bool ends = passes(turns);
+    const bool ends = passes(turns - std::floor(turns));
     if (isGap || (ends && !blocks_.empty())) {
         const double now = std::exchange(turned_, before);
         endTurn(isFirst_ || isGap);

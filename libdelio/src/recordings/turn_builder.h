@@ -24,7 +24,7 @@ struct PacketPoint {
 class TurnBuilder {
  public:
     /** What is added from here on belongs to a block that was measured at `time_s` (Unix) at the
-     *  azimuth `turns`, of which one is the whole circle. */
+     *  azimuth `turns`, of which one is the whole circle, and any more are the same. */
     void block(double turns, double time_s);
     void add(const PacketPoint& point);
     /** There are no more blocks. Throws Error where there were some, but no scan was made of them;

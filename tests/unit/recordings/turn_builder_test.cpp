@@ -93,7 +93,7 @@ TEST(TurnBuilder, GapsEndATurn) {
 TEST(TurnBuilder, WrongTimesAreMended) {
     TurnBuilder builder;
     for (int i = 0; i < 1000; ++i) {
-        builder.block(0.001 * i, 100 + 1e-4 * i + (i == 500 ? 0.3 : 0));
+        builder.block(0.001 * i, 100 + 1e-4 * i + (i == 500 ? 0.34 : 0));
         builder.add({});
     }
     builder.finish("Toy");
