@@ -143,7 +143,7 @@ void HesaiDecoder::addGroup(const std::uint8_t* packet, std::size_t b, std::size
                 block + r * step + model_->azimuthAt + 2 + laser * model_->returnBytes;
             const std::uint32_t distance = littleEndian(measured, 2);
             const double range = unit_m * distance;
-            // A return that only repeats the one before is none.
+            // A return that only repeats the one before does not count.
             if (distance == 0 || distance == earlier || range < model_->minRange ||
                 range > model_->maxRange)
                 continue;

@@ -54,14 +54,14 @@ std::vector<float> secondsOf(const std::vector<double>& microseconds) {
 }
 
 /** User manuals of RS-Helios, RS-Bpearl and RS-Ruby Plus, and RoboSense's driver. */
-const std::vector<double> kFiringOfHelios{0,     1.57,  3.15,  4.72,  6.3,   7.87,  9.45,  11.36,
-                                          13.26, 15.17, 17.08, 18.99, 20.56, 22.14, 23.71, 25.29,
-                                          26.53, 29.01, 27.77, 30.25, 31.49, 32.73, 33.98, 35.22,
-                                          36.46, 37.7,  38.94, 40.18, 41.42, 42.67, 43.91, 45.15};
-const std::vector<double> kFiringOfBpearl{0,     2.56,  5.12,  7.68,  10.24, 12.8,  15.36, 17.92,
-                                          25.68, 28.24, 30.8,  33.36, 35.92, 38.48, 41.04, 43.6,
-                                          1.28,  3.84,  6.4,   8.96,  11.52, 14.08, 16.64, 19.2,
-                                          26.96, 29.52, 32.08, 34.64, 37.2,  39.76, 42.32, 44.88};
+const std::vector<double> kFiringOfHelios = {
+    0,     1.57,  3.15,  4.72,  6.3,   7.87,  9.45,  11.36, 13.26, 15.17, 17.08,
+    18.99, 20.56, 22.14, 23.71, 25.29, 26.53, 29.01, 27.77, 30.25, 31.49, 32.73,
+    33.98, 35.22, 36.46, 37.7,  38.94, 40.18, 41.42, 42.67, 43.91, 45.15};
+const std::vector<double> kFiringOfBpearl = {
+    0,     2.56,  5.12,  7.68,  10.24, 12.8,  15.36, 17.92, 25.68, 28.24, 30.8,
+    33.36, 35.92, 38.48, 41.04, 43.6,  1.28,  3.84,  6.4,   8.96,  11.52, 14.08,
+    16.64, 19.2,  26.96, 29.52, 32.08, 34.64, 37.2,  39.76, 42.32, 44.88};
 
 std::vector<double> firingOfNewBpearl() {
     std::vector<double> firing;
@@ -325,7 +325,7 @@ void RobosenseDecoder::addShot(const std::uint8_t* packet, const Shot& shot, dou
                 block + r * model_->blockBytes + model_->returnsAt + 3 * laser;
             const std::uint64_t distance = bigEndian(measured, 2);
             const double range = unit_m * static_cast<double>(distance);
-            // A return that only repeats the one before is none.
+            // A return that only repeats the one before does not count.
             if (distance == 0 || distance == earlier || range < model_->minRange ||
                 range > model_->maxRange)
                 continue;

@@ -18,7 +18,7 @@ class PatternJoiner {
     /** There are no more messages. */
     void finish();
     std::optional<Scan> take();
-    /** Stamp of the scan that the next part may belong to; nothing where there is none. */
+    /** Stamp of the scan that the next part may belong to; nothing before its first part. */
     std::optional<double> begun_s() const;
     /** Scans that were made of several messages. */
     std::size_t joined() const { return joined_; }

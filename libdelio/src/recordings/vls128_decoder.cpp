@@ -22,7 +22,7 @@ constexpr std::size_t kBytes = 1206, kBlocks = 12, kBlockBytes = 100, kBankLaser
 
 /** Elevation and azimuth offset (clockwise) of each laser in degrees, in the order of firing:
  * VLS-128 User Manual. */
-const std::vector<BeamAngles> kAngles{
+const std::vector<BeamAngles> kAngles = {
     {-11.742, 6.354}, {-1.99, 4.548},  {3.4, 2.732},      {-5.29, 0.911},  {-0.78, -0.911},
     {4.61, -2.732},   {-4.08, -4.548}, {1.31, -6.354},    {-6.5, 6.354},   {-1.11, 4.548},
     {4.28, 2.732},    {-4.41, 0.911},  {0.1, -0.911},     {6.48, -2.732},  {-3.2, -4.548},
