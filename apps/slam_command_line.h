@@ -56,8 +56,9 @@ struct SlamCommandLine {
     Text sensorInfo{
         "",
         "sensor-info",
-        "Sensor description for packets: json of an Ouster, calibration file of a Velodyne; "
-        "default: the json next to the recording, or the model's standard calibration",
+        "Sensor description for packets: json of an Ouster, calibration file of a Velodyne, table "
+        "of beam angles of a Hesai or RoboSense; default: the json next to the recording, what it "
+        "holds, or the model's standard calibration",
         false,
         "",
         "FILE",

@@ -12,14 +12,19 @@ const char* const kJson = R"({"beam_altitude_angles": [1, 0], "beam_azimuth_angl
 std::unique_ptr<io::ScanMaker> makerOf(std::size_t kind) {
     if (kind == 0) return io::makeCloudMaker();
     if (kind == 1) return io::makePacketMaker(io::ScanType::kVelodyne, io::velodyneDecoder(""));
-    return io::makePacketMaker(io::ScanType::kOuster, io::ousterDecoder(kJson, "sensor.json"));
+    if (kind == 2)
+        return io::makePacketMaker(io::ScanType::kOuster, io::ousterDecoder(kJson, "sensor.json"));
+    if (kind == 3) return io::makeLivoxMaker();
+    return io::makePacketMaker(io::ScanType::kPackets, io::recognisingDecoder(""));
 }
 }  // namespace
 
-/** A ROS message: a cloud, or packets of a Velodyne or an Ouster, as ROS 1 or as CDR. */
+/** A ROS message: a cloud, points of a Livox, or packets, as ROS 1 or as CDR. */
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const std::array<const char*, 3> kTypes{
-        "sensor_msgs/PointCloud2", "velodyne_msgs/VelodyneScan", "ouster_ros/PacketMsg"};
+    static const std::array<const char*, 9> kTypes{
+        "sensor_msgs/PointCloud2",    "velodyne_msgs/VelodyneScan", "ouster_ros/PacketMsg",
+        "livox_ros_driver/CustomMsg", "pandar_msgs/PandarScan",     "nebula_msgs/NebulaPackets",
+        "hesai_ros_driver/UdpFrame",  "rslidar_msgs/rslidarScan",   "rslidar_msg/RslidarPacket"};
     fuzz::Input input(data, size);
     const auto kind = input.pick(kTypes.size());
     const auto encoding = input.pick(2) == 0 ? io::Encoding::kRos1 : io::Encoding::kCdr;

@@ -11,6 +11,7 @@
 #include "imu_samples.h"
 #include "message_source.h"
 #include "ouster.h"
+#include "packet_messages.h"
 #include "scan_maker.h"
 #include "sources.h"
 #include "static_transforms.h"
@@ -48,6 +49,27 @@ std::string recordedDescription(const std::string& topic, const OpenSource& open
         return "";  // cut off before it came
     }
 }
+/** Gives the decoder the description of the RoboSense of `topic`, if the bag has one. */
+void describeTo(PacketDecoder& decoder, const std::string& topic, const OpenSource& open) {
+    const auto bag = open();
+    const Topic* found = nullptr;
+    for (const Topic& other : bag->topics())
+        if (holdsDescription(plainType(other.type)) &&
+            (!found || inCommon(other.name, topic) > inCommon(found->name, topic)))
+            found = &other;
+    if (!found) return;
+    const std::string type = plainType(found->type);
+    bag->only({std::string(found->name)});
+    try {
+        if (const auto message = bag->next()) {
+            const StampedPacket packet = descriptionIn(*message, type);
+            decoder.add(packet.bytes.data, packet.bytes.size, packet.stamp_s);
+        }
+    } catch (const Error&) {
+        // Damaged, or cut off before it came: its lack is an error where it is needed.
+    }
+}
+
 /** The requested topic, or the only one with scans. Throws an Error that lists the topics (without
  *  the file's name) if there is no such topic, there are several, or it has no scans. */
 Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
@@ -134,6 +156,12 @@ class BagReader : public ScanReader {
         if (type_ == ScanType::kCloud) {
             maker_ = makeCloudMaker(topic_.name, frame);
             lookAhead(open);
+        } else if (type_ == ScanType::kLivox) {
+            maker_ = makeLivoxMaker();
+        } else if (type_ == ScanType::kPackets) {
+            auto decoder = recognisingDecoder(source.sensorFile);
+            describeTo(*decoder, topic_.name, open);
+            maker_ = makePacketMaker(type_, std::move(decoder));
         } else if (type_ == ScanType::kVelodyne) {
             maker_ = makePacketMaker(type_, velodyneDecoder(source.sensorFile));
         } else {
@@ -154,7 +182,8 @@ class BagReader : public ScanReader {
     bool skip() override {
         return guarded([this]() -> std::optional<bool> {
                    // Where a turn ends is known from its packets only, the frame from the message.
-                   const bool isAScan = type_ == ScanType::kCloud && !picksFrame_;
+                   const bool isAScan =
+                       type_ == ScanType::kCloud && !picksFrame_ && maker_->turns();
                    const bool there = isAScan ? nextMessage().has_value() : nextScan().has_value();
                    if (!there) return std::nullopt;
                    ++count_;
@@ -186,10 +215,12 @@ class BagReader : public ScanReader {
         recording.sensor = maker_->sensor();
         recording.findings = maker_->findings();
         recording.imu = imuTopic_;
-        if (type_ == ScanType::kCloud)
+        const bool isCloud = type_ == ScanType::kCloud;
+        if (isCloud && maker_->turns())
             recording.scans = topic_.messages;
         else
             recording.motionCompensated = false;
+        recording.compensationAssumed = isCloud && !maker_->turns();
         return recording;
     }
 

@@ -48,8 +48,27 @@ class PacketDecoder {
     virtual std::vector<std::string> findings() const { return {}; }
 };
 
-/** `calibrationFile`: an .xml or .yaml as MRPT reads it; empty: the model's usual one. */
+/** `calibrationFile`: an .xml or .yaml as MRPT reads it, of a VLS-128 a table of its beam angles;
+ *  empty: the model's usual one. */
 std::unique_ptr<PacketDecoder> velodyneDecoder(const std::string& calibrationFile);
+
+/** `anglesFile`: the sensor's own angles, as Hesai's tools write them (channel, elevation,
+ * azimuth); empty: the model's default ones. */
+std::unique_ptr<PacketDecoder> hesaiDecoder(const std::string& anglesFile);
+
+/** The angles are those of a DIFOP packet, which may come behind other packets, or of `anglesFile`
+ * (a line with elevation and azimuth for each laser), where it is not empty. */
+std::unique_ptr<PacketDecoder> robosenseDecoder(const std::string& anglesFile);
+
+/** Maker of the sensor that sent a packet: "velodyne", "hesai" or "robosense"; empty: another one.
+ *  Ouster's packets do not tell. */
+std::string makerOf(const std::uint8_t* packet, std::size_t bytes);
+
+/** A decoder for a maker that makerOf() names. */
+std::unique_ptr<PacketDecoder> decoderFor(const std::string& maker, const std::string& sensorFile);
+
+/** A decoder that takes the first packet's maker for that of all. */
+std::unique_ptr<PacketDecoder> recognisingDecoder(const std::string& sensorFile);
 
 /** `json`: the sensor's description as Ouster's tools write it; `name`: of its source, for errors.
  *  Throws Error where it cannot be understood. */

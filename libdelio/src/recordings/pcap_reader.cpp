@@ -7,19 +7,19 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <vector>
 
 #include "delio/core/error.h"
 #include "ouster.h"
 #include "packet_decoder.h"
+#include "robosense.h"
 #include "udp_stream.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr std::size_t kVelodyneBytes = 1206;
-
 std::string textOf(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in) throw Error("'" + file.string() + "' cannot be opened");
@@ -75,6 +75,7 @@ class PcapReader : public ScanReader {
     bool feed();
     bool give(const UdpPacket& packet);
     bool takeImuOf(const UdpPacket& packet);
+    void keepDescription(const UdpPacket& packet);
     void finish();
 
     ScanSource source_;
@@ -83,11 +84,13 @@ class PcapReader : public ScanReader {
     std::optional<Sender> sender_;
     std::string label_;
     std::set<std::string> others_;
+    /** Of the RoboSense of an address: these packets come to another port than the others. */
+    std::map<std::uint32_t, std::vector<std::uint8_t>> descriptions_;
     std::optional<DriveMeta> meta_;
     std::string foundJson_;      //!< beside the recording, under another name
     std::uint16_t imuPort_ = 0;  //!< 0: no packet of an IMU was met
     std::size_t count_ = 0;
-    bool pointTimes_ = false, ended_ = false;
+    bool isOuster_ = false, pointTimes_ = false, ended_ = false;
     std::string fault_;  //!< fault that ended the recording, reported after the scans before it
 };
 
@@ -99,25 +102,29 @@ PcapReader::PcapReader(const ScanSource& source) : source_(source), stream_(sour
     if (!fault_.empty()) throw Error(fault_);
     std::string seen;
     for (const std::string& other : others_) seen += (seen.empty() ? "" : ", ") + other;
-    throw Error(
-        named() + " contains no packets of " +
-        (source_.label.empty() ? "a Velodyne or an Ouster" : "the sensor '" + source_.label + "'") +
-        (decoder_ ? " that match '" + source_.sensorFile + "'" : "") +
-        (seen.empty() ? "" : "; it contains packets of " + seen));
+    throw Error(named() + " contains no packets of " +
+                (source_.label.empty() ? "a Velodyne, Ouster, Hesai or RoboSense"
+                                       : "the sensor '" + source_.label + "'") +
+                (decoder_ ? " that match '" + source_.sensorFile + "'" : "") +
+                (seen.empty() ? "" : "; it contains packets of " + seen));
 }
 
 std::optional<Sender> PcapReader::senderOf(const UdpPacket& packet) const {
-    if (packet.bytes == kVelodyneBytes) return Sender{"velodyne", packet.toPort, packet.from};
-    if (decoder_ ? decoder_->takes(packet.bytes) : isOusterPacketSize(packet.bytes))
+    const std::string maker = makerOf(packet.payload, packet.bytes);
+    if (!maker.empty()) return Sender{maker, packet.toPort, packet.from};
+    if (decoder_ ? isOuster_ && decoder_->takes(packet.bytes) : isOusterPacketSize(packet.bytes))
         return Sender{"ouster", packet.toPort, packet.from};
     return {};
 }
 
 void PcapReader::makeDecoder(const std::string& kind, const UdpPacket& packet) {
-    if (kind == "velodyne") {
-        decoder_ = velodyneDecoder(source_.sensorFile);
+    if (kind != "ouster") {
+        decoder_ = decoderFor(kind, source_.sensorFile);
+        if (const auto known = descriptions_.find(packet.from); known != descriptions_.end())
+            decoder_->add(known->second.data(), known->second.size(), packet.time_s);
         return;
     }
+    isOuster_ = true;
     if (source_.sensorFile.empty()) {
         if (source_.path == "-")
             throw Error(
@@ -167,12 +174,25 @@ bool PcapReader::takeImuOf(const UdpPacket& packet) {
     return true;
 }
 
+void PcapReader::keepDescription(const UdpPacket& packet) {
+    constexpr std::size_t kMost = 64;  // sensors
+    if (sender_) {
+        if (sender_->kind == "robosense" && sender_->address == packet.from) give(packet);
+    } else if (descriptions_.size() < kMost) {
+        descriptions_[packet.from].assign(packet.payload, packet.payload + packet.bytes);
+    }
+}
+
 bool PcapReader::feed() {
     while (!ended_) {
         std::optional<UdpPacket> packet;
         try {
             packet = stream_.next();
             if (packet && takeImuOf(*packet)) continue;
+            if (packet && describesRobosense(packet->payload, packet->bytes)) {
+                keepDescription(*packet);
+                continue;
+            }
             const auto sender = packet ? senderOf(*packet) : std::nullopt;
             if (packet && !sender) continue;
             const bool wanted =

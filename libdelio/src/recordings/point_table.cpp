@@ -186,6 +186,8 @@ std::optional<RecordedTimes> timesIn(const PointLayout& layout, const Values& va
 }
 }  // namespace
 
+bool isLivox(const PointLayout& layout) { return find(layout, {"tag"}) && find(layout, {"line"}); }
+
 Scan PointTable::scan(const PointLayout& layout, const std::uint8_t* data, std::size_t bytes,
                       std::size_t count, std::size_t rows, const ScanPlace& place) {
     check(layout, bytes, count);
@@ -195,7 +197,10 @@ Scan PointTable::scan(const PointLayout& layout, const std::uint8_t* data, std::
     scan.stamp_s = place.stamp_s;
     scan.time = timeOf(place.stamp_s);
     scan.points = cloudOf(layout, values, count);
-    if (const PointField* ring = find(layout, kRings))
+    const PointField* const ring = find(layout, kRings);
+    if (isLivox(layout))
+        scan.rings.clear();
+    else if (ring)
         scan.rings = ringsOf(values.of<double>(*ring));
     else
         scan.rings = rowsOf(count, rows);

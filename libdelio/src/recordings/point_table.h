@@ -15,6 +15,10 @@ struct ScanPlace {
     std::size_t index = 0;  //!< among the scans of the drive
 };
 
+/** True for the points of Livox's drivers, which have a `tag` and a `line`. Their lines are no
+ *  rings: a beam has no elevation of its own. */
+bool isLivox(const PointLayout& layout);
+
 /** Makes scans of such points: x y z; intensity (or `i`, `reflectivity`, `signal`); ring (or
  *  `channel`, `line`, `laser_id`); time (or `t`, `timestamp`, `time_stamp`, `offset_time`,
  *  `point_time_offset`, ...), whose unit and zero PointClock finds. One a drive. */

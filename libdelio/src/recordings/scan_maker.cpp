@@ -6,7 +6,9 @@
 
 #include "delio/core/error.h"
 #include "message_source.h"
+#include "packet_messages.h"
 #include "point_table.h"
+#include "scan_parts.h"
 
 namespace delio::io {
 namespace {
@@ -58,6 +60,7 @@ class CloudMaker : public ScanMaker {
         if (isChosen_ && cloud.frame != frame_) return true;
         const std::size_t count = checkedCount(cloud);
         compact(cloud);
+        isLivox_ = isLivox(cloud.layout);
         return table_.look(cloud.layout, cloud.data.data, cloud.data.size, count, cloud.stamp_s);
     }
     void add(const Message& message, std::size_t scan) override {
@@ -65,18 +68,24 @@ class CloudMaker : public ScanMaker {
         if (!takes(cloud.frame)) return;
         const std::size_t count = checkedCount(cloud);
         compact(cloud);
-        scan_ = table_.scan(cloud.layout, cloud.data.data, cloud.data.size, count, cloud.rows,
-                            {cloud.stamp_s, scan});
-        scan_->stamp_s = cloud.stamp_s;
-        scan_->time = mrpt::Clock::fromDouble(cloud.stamp_s);
+        Scan made = table_.scan(cloud.layout, cloud.data.data, cloud.data.size, count, cloud.rows,
+                                {cloud.stamp_s, scan});
+        made.stamp_s = cloud.stamp_s;
+        made.time = mrpt::Clock::fromDouble(cloud.stamp_s);
+        if (isLivox_)
+            joiner_.add(std::move(made));
+        else
+            scan_ = std::move(made);
     }
-    void finish() override {}
+    void finish() override { joiner_.finish(); }
     std::optional<Scan> take() override {
+        if (isLivox_) return joiner_.take();
         auto scan = std::move(scan_);
         scan_.reset();
         return scan;
     }
-    std::string sensor() const override { return ""; }
+    std::string sensor() const override { return isLivox_ ? "Livox" : ""; }
+    bool turns() const override { return !isLivox_; }
     std::vector<std::string> findings() const override { return table_.findings(); }
 
  private:
@@ -114,6 +123,8 @@ class CloudMaker : public ScanMaker {
 
     std::string topic_, frame_;  //!< of the first message, if none was chosen
     bool isChosen_;
+    bool isLivox_ = false;
+    PatternJoiner joiner_;
     PointTable table_;
     std::vector<std::uint8_t> rows_;
     std::optional<Scan> scan_;
@@ -125,7 +136,6 @@ std::unique_ptr<ScanMaker> makeCloudMaker(const std::string& topic, const std::s
 }
 
 namespace {
-constexpr std::size_t kVelodynePacket = 1206;
 constexpr std::size_t kMostPackets = 20'000;  // of a message: all are decoded before one is taken
 
 class PacketMaker : public ScanMaker {
@@ -134,11 +144,16 @@ class PacketMaker : public ScanMaker {
         : type_(type), decoder_(std::move(decoder)) {}
 
     void add(const Message& message, std::size_t /*scan*/) override {
-        WireReader in(message);
-        if (type_ == ScanType::kOuster)
-            addPacket(in.byteArray(), message.log_s);
-        else
-            addVelodyneScan(in, message.log_s);
+        if (type_ == ScanType::kOuster) {
+            addPacket(WireReader(message).byteArray(), message.log_s);
+            return;
+        }
+        const auto packets = packetsIn(
+            message, type_ == ScanType::kVelodyne ? "velodyne_msgs/VelodyneScan" : message.type);
+        if (packets.size() > kMostPackets)
+            throw Error("the message has " + std::to_string(packets.size()) +
+                        " packets; a revolution has a few hundred");
+        for (const StampedPacket& packet : packets) addPacket(packet.bytes, packet.stamp_s);
     }
     void finish() override {
         if (!anyTaken_ && otherBytes_ > 0)
@@ -152,17 +167,6 @@ class PacketMaker : public ScanMaker {
     std::vector<std::string> findings() const override { return decoder_->findings(); }
 
  private:
-    void addVelodyneScan(WireReader& in, double log_s) {
-        in.header();
-        const std::size_t packets = in.length(8 + kVelodynePacket);
-        if (packets > kMostPackets)
-            throw Error("the message has " + std::to_string(packets) +
-                        " packets; a revolution has a few hundred");
-        for (std::size_t i = 0; i < packets; ++i) {
-            const double stamp_s = in.time();
-            addPacket(in.bytes(kVelodynePacket), stamp_s == 0 ? log_s : stamp_s);
-        }
-    }
     void addPacket(const Bytes& packet, double received_s) {
         if (!decoder_->takes(packet.size)) {
             otherBytes_ = packet.size;
@@ -189,13 +193,13 @@ ScanType scanTypeOf(const Topic& topic) {
         {"velodyne_msgs/VelodyneScan", ScanType::kVelodyne},
         {"ouster_msgs/PacketMsg", ScanType::kOuster},
         {"ouster_ros/PacketMsg", ScanType::kOuster},
-        {"ouster_sensor_msgs/PacketMsg", ScanType::kOuster}};
-    std::string type = topic.type;
-    const std::string part = "/msg/";  // as ROS 2 has it
-    if (const auto at = type.find(part); at != std::string::npos)
-        type.replace(at, part.size(), "/");
+        {"ouster_sensor_msgs/PacketMsg", ScanType::kOuster},
+        {"livox_ros_driver/CustomMsg", ScanType::kLivox},
+        {"livox_ros_driver2/CustomMsg", ScanType::kLivox},
+        {"livox_interfaces/CustomMsg", ScanType::kLivox}};
+    const std::string type = plainType(topic.type);
     const auto known = kTypes.find(type);
-    if (known == kTypes.end()) return ScanType::kNone;
+    if (known == kTypes.end()) return holdsPackets(type) ? ScanType::kPackets : ScanType::kNone;
     const bool imu = topic.name.find("imu", topic.name.rfind('/') + 1) != std::string::npos;
     return known->second == ScanType::kOuster && imu ? ScanType::kNone : known->second;
 }

@@ -9,9 +9,9 @@
 #include "packet_decoder.h"
 
 namespace delio::io {
-/** Makes scans from messages: sensor_msgs/PointCloud2, velodyne_msgs/VelodyneScan, or Ouster's
- *  PacketMsg. */
-enum class ScanType { kNone, kCloud, kVelodyne, kOuster };
+/** Makes scans from messages: sensor_msgs/PointCloud2, velodyne_msgs/VelodyneScan, Ouster's
+ *  PacketMsg, Livox's CustomMsg, or other lists of packets. */
+enum class ScanType { kNone, kCloud, kVelodyne, kOuster, kLivox, kPackets };
 /** kNone: a topic's messages hold no scans (Ouster's packets of its IMU are of that kind, too). */
 ScanType scanTypeOf(const Topic& topic);
 
@@ -35,6 +35,9 @@ class ScanMaker {
     virtual std::optional<Scan> take() = 0;
     /** e.g. "Velodyne VLP-16"; empty: not known. */
     virtual std::string sensor() const = 0;
+    /** False where the sensor's beams follow a pattern that does not repeat (Livox): a scan may be
+     *  made of several messages then. */
+    virtual bool turns() const { return true; }
     /** Ignored or corrected data, one line per kind. */
     virtual std::vector<std::string> findings() const { return {}; }
 };
@@ -44,7 +47,11 @@ class ScanMaker {
  *  taken, and add() throws Error, which lists topic:frame, where there are two: two sensors. */
 std::unique_ptr<ScanMaker> makeCloudMaker(const std::string& topic = "",
                                           const std::string& frame = "");
-/** For messages with packets of Velodyne or Ouster: one scan per revolution, independent of the
- *  messages. finish() throws Error if the packets gave no scan. */
+/** For livox_ros_driver/CustomMsg and livox_ros_driver2/CustomMsg: scans of 0.1 s without rings,
+ *  stamped as the header of their first message says. Messages of another lidar_id than the first
+ *  one's are left out. */
+std::unique_ptr<ScanMaker> makeLivoxMaker();
+/** For messages with packets: one scan per revolution, independent of the messages. finish() throws
+ * Error if the packets gave no scan. */
 std::unique_ptr<ScanMaker> makePacketMaker(ScanType type, std::unique_ptr<PacketDecoder> decoder);
 }  // namespace delio::io

@@ -21,8 +21,8 @@ std::unique_ptr<ScanReader> openMcap(const ScanSource& source);
 /** A folder with metadata.yaml and the .db3 or .mcap files that it names. */
 std::unique_ptr<ScanReader> openRos2Folder(const ScanSource& source);
 
-/** Reads a pcap or pcapng of a Velodyne or an Ouster (whose .json lies beside it, or is
- *  `sensorFile`). Path "-": standard input. Throws as openScans(). */
+/** Reads a pcap or pcapng of a Velodyne, Hesai, RoboSense or Ouster (whose .json lies beside it, or
+ *  is `sensorFile`). Path "-": standard input. Throws as openScans(). */
 std::unique_ptr<ScanReader> openPcap(const ScanSource& source);
 
 /** True for a KITTI odometry sequence (velodyne/) or raw drive (velodyne_points/data/). */

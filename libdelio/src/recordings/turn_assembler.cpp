@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "scan_parts.h"
+
 namespace delio::io {
 Sectors sectorsOf(const Scan& scan) {
     constexpr float kLeast_m = 0.1F;
@@ -52,19 +54,6 @@ bool holdParts(const std::deque<Scan>& scans) {
     return static_cast<double>(continued) >= kMost * static_cast<double>(sectors.size() - 1);
 }
 
-/** Adds the points of a later part of the turn. Its rings and times are kept where both have them.
- */
-void append(Scan& turn, const Scan& part) {
-    const std::size_t before = turn.points->size(), added = part.points->size();
-    const auto shift_s = static_cast<float>(part.stamp_s - turn.stamp_s);
-    const bool haveRings = turn.rings.size() == before && part.rings.size() == added,
-               haveTimes = turn.times_s.size() == before && part.times_s.size() == added;
-    *turn.points += *part.points;
-    turn.rings.insert(turn.rings.end(), part.rings.begin(), part.rings.end());
-    for (const float time_s : part.times_s) turn.times_s.push_back(time_s + shift_s);
-    if (!haveRings) turn.rings.clear();
-    if (!haveTimes) turn.times_s.clear();
-}
 }  // namespace
 
 TurnAssembler::TurnAssembler(std::unique_ptr<ScanReader> source) : source_(std::move(source)) {

@@ -3,10 +3,13 @@
 #include <mrpt/obs/VelodyneCalibration.h>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "delio/odometry/scan.h"
+#include "packet_clock.h"
+#include "packet_decoder.h"
 
 namespace delio::io {
 /** Microseconds from the first laser of a firing to `laser` (counted from 0), and from one firing
@@ -65,28 +68,31 @@ struct VelodyneModel {
     VelodyneLayout layout;
 };
 
+/** True for a data packet (1206 bytes) of a VLS-128: by the blocks of its third and fourth bank, or
+ *  by the factory byte. */
+bool isVls128(const std::uint8_t* packet);
+
+/** A decoder of all other Velodynes. */
+std::unique_ptr<PacketDecoder> smallVelodyneDecoder(const std::string& calibrationFile);
+
 /** Of the sensor that sent a data packet (1206 bytes): "HDL-64E" by its blocks of the lower bank
- *  of two, a VLS-128 by those of its third and fourth bank, others by the factory byte. Throws
- * Error for one that is not known, or known but not decoded. */
+ *  of two, others by the factory byte. Throws Error for a VLS-128, one that is not known, and one
+ *  that is known but not decoded. */
 std::string velodyneModelName(const std::uint8_t* packet);
 
 /** `calibrationFile`: an .xml or .yaml as MRPT reads it; empty: the model's usual one. Throws Error
  *  where that cannot be read, is of another number of lasers, or there is no usual one. */
 VelodyneModel velodyneModel(const std::string& name, const std::string& calibrationFile);
 
-/** Unix times of a Velodyne's packets. Its clock, microseconds since the full hour, tells them; the
- *  hour is that of the recorder. Where that is more than half a minute off, the clock was never set
- *  and counts from the first packet's recording; where it stands or leaps while the recorder's does
- *  not, the recorder's goes on.
- */
+/** Unix times of a Velodyne's packets. Its clock counts microseconds since the full hour; the hour
+ *  is that of the recorder. */
 class VelodyneClock {
  public:
-    double timeOf(std::uint32_t clock_us, double received_s);
+    double timeOf(std::uint32_t clock_us, double received_s) {
+        return clock_.timeOf(1e-6 * static_cast<double>(clock_us), received_s);
+    }
 
  private:
-    bool started_ = false;
-    double start_s_ = 0;  //!< Unix time of the first packet
-    double since_s_ = 0;  //!< from there to the packet before: a sum of Unix times would drift
-    double clock_s_ = 0, received_s_ = 0;
+    PacketClock clock_{3600};
 };
 }  // namespace delio::io

@@ -166,7 +166,7 @@ std::optional<Scan> VelodyneDecoder::take() {
 }
 }  // namespace
 
-std::unique_ptr<PacketDecoder> velodyneDecoder(const std::string& calibrationFile) {
+std::unique_ptr<PacketDecoder> smallVelodyneDecoder(const std::string& calibrationFile) {
     return std::make_unique<VelodyneDecoder>(calibrationFile);
 }
 
@@ -249,7 +249,7 @@ std::size_t lasersOf(const std::string& name) {
     return name == "VLP-32C" || name == "HDL-32E" ? 32 : 16;
 }
 
-const char* const kDecoded = "HDL-64E, HDL-32E, VLP-16, Puck Hi-Res and VLP-32C";
+const char* const kDecoded = "HDL-64E, HDL-32E, VLP-16, Puck Hi-Res, VLP-32C and VLS-128";
 
 [[noreturn]] void refuse(const std::string& model) {
     throw Error("packets of the Velodyne " + model + " are not supported (supported: " + kDecoded +
@@ -259,11 +259,11 @@ const char* const kDecoded = "HDL-64E, HDL-32E, VLP-16, Puck Hi-Res and VLP-32C"
 
 std::string velodyneModelName(const std::uint8_t* packet) {
     constexpr std::size_t kBlocks = 12, kBlockBytes = 100, kFactoryByte = 1205;
+    if (isVls128(packet)) throw Error("a packet of a VLS-128 is among packets of another Velodyne");
     bool secondBank = false;
     for (std::size_t b = 0; b < kBlocks; ++b) {
         const std::uint8_t* const block = packet + kBlockBytes * b;
         if (block[0] != 0xFF) continue;
-        if (block[1] == 0xCC || block[1] == 0xBB) refuse("VLS-128 (Alpha Prime)");
         secondBank = secondBank || block[1] == 0xDD;
     }
     // Its last two bytes cycle through status values and do not identify the model.
@@ -281,9 +281,6 @@ std::string velodyneModelName(const std::uint8_t* packet) {
             return "VLP-32C";
         case 0x31:
             refuse("Velarray");
-        case 0x63:
-        case 0xA1:
-            refuse("VLS-128 (Alpha Prime)");
         default:
             break;
     }
@@ -311,24 +308,5 @@ VelodyneModel velodyneModel(const std::string& name, const std::string& calibrat
         model.layout.unit_m = 0.004;
     }
     return model;
-}
-
-double VelodyneClock::timeOf(std::uint32_t clock_us, double received_s) {
-    constexpr double kHour_s = 3600, kSet_s = 30, kLeap_s = 0.5;
-    const double clock_s = 1e-6 * static_cast<double>(clock_us);
-    if (!started_) {
-        const double behind_s = std::remainder(clock_s - received_s, kHour_s);
-        start_s_ = received_s + (std::abs(behind_s) < kSet_s && clock_us != 0 ? behind_s : 0);
-    } else {
-        const double recorded_s = received_s - received_s_;
-        const double told_s = std::remainder(clock_s - clock_s_, kHour_s);
-        const bool agree = std::abs(told_s - recorded_s) < kLeap_s;
-        const bool runs = clock_s != clock_s_ && (agree || (told_s > 0 && told_s < kLeap_s));
-        since_s_ += runs ? told_s : recorded_s;
-    }
-    started_ = true;
-    clock_s_ = clock_s;
-    received_s_ = received_s;
-    return start_s_ + since_s_;
 }
 }  // namespace delio::io

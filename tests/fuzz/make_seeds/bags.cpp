@@ -1,7 +1,9 @@
 #include "bag_files.h"
 #include "fast_spinner.h"
 #include "ouster_packets.h"
+#include "rosette.h"
 #include "seeds.h"
+#include "spinning_packets.h"
 
 namespace delio::fuzz {
 namespace {
@@ -21,6 +23,72 @@ void bags() {
     writeText(seed("bag_folder", "metadata"), readText(folder / "metadata.yaml"));
 }
 
+/** A Hesai's packet with more than a turn: its azimuths lie 60 deg apart. */
+test::Bytes hesaiPacket(const test::HesaiToy& toy) {
+    auto fast = toy;
+    fast.step = 6000;
+    return test::hesaiPacket(fast, 0, 1700000000);
+}
+
+test::Bytes robosensePacket(const test::RobosenseToy& toy) {
+    auto fast = toy;
+    fast.step = 6000;
+    return test::robosensePacket(fast, 0, 1700000000);
+}
+
+void otherMessages() {
+    using Kind = test::WireWriter::Kind;
+    const auto packet = hesaiPacket(test::hesaiToys()[2]);
+    const std::string hesai(packet.begin(), packet.end());
+    test::RosetteDrive drive;
+    drive.pointsPerSecond = 100;
+    for (const auto& [digit, kind] : {std::pair{"0", Kind::kRos1}, {"1", Kind::kCdr}}) {
+        const std::string name = digit;
+        drive.kind = kind;
+        writeText(seed("messages", "livox" + name), "3" + name + livoxMessage(drive, 0, 0.1));
+        test::WireWriter pandar(kind), nebula(kind), frame(kind), robosense(kind);
+        pandar.header(1000).number(std::uint32_t{1}).time(1000);
+        pandar.bytes(hesai).bytes(std::string(1500 - hesai.size(), ' '));
+        pandar.number(static_cast<std::uint32_t>(hesai.size()));
+        writeText(seed("messages", "pandar" + name), "4" + name + pandar.message());
+        nebula.header(1000).number(std::uint32_t{1}).time(1000).byteArray(hesai);
+        writeText(seed("messages", "nebula" + name), "5" + name + nebula.message());
+        frame.header(1000).number(std::uint32_t{1}).byteArray(hesai);
+        frame.number(static_cast<std::uint32_t>(hesai.size()));
+        writeText(seed("messages", "frame" + name), "6" + name + frame.message());
+        const auto description = test::robosenseDescription(test::robosenseToys()[0]);
+        robosense.header(1000).number(std::uint8_t{1}).number(std::uint8_t{0});
+        robosense.byteArray({description.begin(), description.end()});
+        writeText(seed("messages", "robosense" + name), "8" + name + robosense.message());
+    }
+}
+
+/** Two packets of each model that tells itself; those of a RoboSense behind its description. */
+void packets() {
+    const auto timed = [](const test::Bytes& packet) {
+        std::string text = "d";
+        text += static_cast<char>(packet.size() & 0xFFU);
+        text += static_cast<char>(packet.size() >> 8);
+        return text.append(packet.begin(), packet.end());
+    };
+    const std::string noTable = std::string("0") + '\0';
+    for (const auto& toy : test::hesaiToys()) {
+        const std::string packet = timed(hesaiPacket(toy));
+        writeText(seed("packets", toy.name), noTable + packet + packet);
+        writeText(seed("packets", "table" + toy.name),
+                  "1" + test::toyAngles(toy.lasers) + '\0' + packet);
+    }
+    for (const auto& toy : test::robosenseToys()) {
+        const std::string packet = timed(robosensePacket(toy));
+        writeText(seed("packets", toy.name),
+                  noTable + timed(test::robosenseDescription(toy)) + packet + packet);
+    }
+    auto bank = velodynePacket();
+    for (std::size_t b = 0; b < 12; ++b)
+        bank[100 * b + 1] = static_cast<std::uint8_t>(0xEE - 0x11 * (b % 4));
+    writeText(seed("packets", "vls128"), noTable + timed(bank) + timed(bank));
+}
+
 void messages() {
     using Kind = test::WireWriter::Kind;
     const auto packet = velodynePacket();
@@ -34,6 +102,7 @@ void messages() {
         beams.byteArray(std::string(64 + 16 * 20, '\1'));
         writeText(seed("messages", "ouster" + name), "2" + name + beams.message());
     }
+    otherMessages();
     test::CloudSpec rows;
     rows.rows = 2;
     rows.padding = 3;
@@ -113,6 +182,7 @@ void packets() {
 void seedBags() {
     bags();
     messages();
+    packets();
     packets();
 }
 }  // namespace delio::fuzz

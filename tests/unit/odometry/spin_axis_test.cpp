@@ -7,6 +7,7 @@
 
 #include "odometry/rings.h"
 #include "ring_scan.h"
+#include "rosette.h"
 
 using namespace delio;
 using namespace delio::odometry;
@@ -71,5 +72,40 @@ TEST(SpinAxis, WhatDoesNotSpinHasNone) {
         anywhere.col(i) = 10 * noise.direction().cast<float>();
     EXPECT_FALSE(odometry::spinAxisOf(anywhere));
     EXPECT_FALSE(odometry::uprightOf(anywhere));
+}
+
+/** Points of a tenth of a second along beams. */
+template <typename Beam>
+Eigen::Matrix3Xf patternOf(double begin_s, const Beam& beam) {
+    constexpr int kPoints = 24000, kLines = 6;
+    Eigen::Matrix3Xf points(3, kPoints);
+    const Eigen::Isometry3d pose = test::rosettePose(begin_s);
+    for (int i = 0; i < kPoints; ++i) {
+        const double t = begin_s + 0.1 * (i - i % kLines) / kPoints;
+        const Eigen::Vector3d ray = beam(t, i % kLines);
+        const double range = test::rosetteRange(pose.translation(), pose.linear() * ray);
+        points.col(i) = (range * ray).cast<float>();
+    }
+    return points;
+}
+
+Eigen::Vector3d rayAt(double azimuth, double elevation) {
+    return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+            std::sin(elevation)};
+}
+
+// Livox: rosettes, figures of Lissajous, and a mirror that turns while it nods.
+TEST(SpinAxis, PatternsThatDoNotRepeatHaveNone) {
+    for (const double begin_s : {0.0, 1.3, 2.6}) {
+        EXPECT_FALSE(spinAxisOf(patternOf(begin_s, test::rosetteBeam)));
+        EXPECT_FALSE(spinAxisOf(patternOf(begin_s, [](double t, int line) {
+            return rayAt(0.7 * std::sin(2 * M_PI * 97.3 * t),
+                         0.2 * std::sin(2 * M_PI * 151.7 * t) + 0.003 * line);
+        })));
+        EXPECT_FALSE(spinAxisOf(patternOf(begin_s, [](double t, int line) {
+            return rayAt(2 * M_PI * 200.3 * t,
+                         0.4 + 0.5 * std::sin(2 * M_PI * 20.7 * t + 0.3 * line));
+        })));
+    }
 }
 }  // namespace

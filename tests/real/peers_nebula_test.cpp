@@ -1,0 +1,200 @@
+// Packets that TIER IV's nebula recorded, and the clouds that it made of them: DELIO_PEER_DATA
+// names the folder that holds a checkout of github.com/tier4/nebula.
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "delio/recordings/scan_reader.h"
+#include "recordings/beam_angles.h"
+#include "test_data.h"
+
+namespace {
+using namespace delio;
+namespace fs = std::filesystem;
+
+fs::path nebula(const std::string& maker) {
+    const char* const folder = std::getenv("DELIO_PEER_DATA");
+    return fs::path(folder ? folder : "") / "nebula/src" / ("nebula_" + maker);
+}
+
+std::vector<fs::path> filesIn(const fs::path& folder, const std::string& extension) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.path().extension() == extension) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::vector<Eigen::Vector3f> pointsOf(const Scan& scan) {
+    std::vector<Eigen::Vector3f> points(scan.points->size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        scan.points->getPoint(i, points[i].x(), points[i].y(), points[i].z());
+    return points;
+}
+
+std::vector<Eigen::Vector3f> cloudOf(const fs::path& pcd) {
+    const test::TemporaryFolder folder;
+    fs::copy_file(pcd, folder / "1.pcd");
+    return pointsOf(io::openScans(folder.path().string())->next().value());
+}
+
+/** What scans have in common with a cloud. nebula cuts turns where a beam passes the cut, DeLiO
+ * where its block does: a cloud ends with beams that lag behind the first block of the next turn,
+ * which is no scan where the recording ends with it. */
+struct Agreement {
+    std::size_t points = 0, ofNextTurn = 0, missing = 0;
+    double worst_m = 0;
+    double worstUp_deg = 0;  //!< of a point from its ring's elevation
+};
+
+/** Points by ranges and elevations. */
+class Points {
+ public:
+    void add(const Scan& scan) {
+        const auto points = pointsOf(scan);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            cells_[keyOf(points[i], 0, 0)].push_back({points[i], scan.rings[i]});
+    }
+
+    struct Point {
+        Eigen::Vector3f xyz;
+        std::uint16_t ring;
+    };
+    /** The nearest one with this range and elevation. */
+    const Point* nearest(const Eigen::Vector3f& to) const {
+        const Point* best = nullptr;
+        for (int r = -1; r <= 1; ++r)
+            for (int e = -1; e <= 1; ++e) {
+                const auto cell = cells_.find(keyOf(to, r, e));
+                if (cell == cells_.end()) continue;
+                for (const Point& point : cell->second)
+                    if (!best || (point.xyz - to).norm() < (best->xyz - to).norm()) best = &point;
+            }
+        return best;
+    }
+
+ private:
+    using Key = std::pair<long, long>;
+    static Key keyOf(const Eigen::Vector3f& p, int ranges, int elevations) {
+        constexpr float kRange = 0.002F, kElevation = 0.0002F;
+        return {std::lround(p.norm() / kRange) + ranges,
+                std::lround(std::asin(p.z() / p.norm()) / kElevation) + elevations};
+    }
+    std::map<Key, std::vector<Point>> cells_;
+};
+
+double degrees(double rad) { return rad * 180 / M_PI; }
+
+/** True for a Hesai's point before azimuth 0, whose block lies behind it. */
+bool beginsATurn(const Eigen::Vector3f& point, const std::vector<io::BeamAngles>& angles) {
+    const double up = degrees(std::asin(double{point.z() / point.norm()}));
+    const double across = degrees(std::atan2(double{point.x()}, double{point.y()}));
+    return std::any_of(angles.begin(), angles.end(), [&](const io::BeamAngles& beam) {
+        const double block = across - beam.azimuth_deg;
+        return std::abs(up - beam.elevation_deg) < 0.001 && block > -0.001 && across < 0.001;
+    });
+}
+
+Agreement agreementOf(const fs::path& bag, const std::vector<fs::path>& clouds,
+                      const std::vector<io::BeamAngles>& angles) {
+    constexpr float kSame_m = 0.0001F;
+    const auto reader = io::openScans(bag.string());
+    Points ours;
+    while (const auto scan = reader->next()) {
+        EXPECT_EQ(scan->times_s.size(), scan->points->size());
+        EXPECT_EQ(scan->rings.size(), scan->points->size());
+        ours.add(*scan);
+    }
+    Agreement found;
+    for (const fs::path& cloud : clouds)
+        for (const auto& point : cloudOf(cloud)) {
+            ++found.points;
+            const auto* same = ours.nearest(point);
+            if (!same || (same->xyz - point).norm() > kSame_m) {
+                ++(beginsATurn(point, angles) ? found.ofNextTurn : found.missing);
+                continue;
+            }
+            found.worst_m = std::max(found.worst_m, double{(same->xyz - point).norm()});
+            const double up = degrees(std::asin(double{point.z() / point.norm()}));
+            found.worstUp_deg =
+                std::max(found.worstUp_deg, std::abs(up - angles.at(same->ring).elevation_deg));
+        }
+    std::cout << reader->recording().sensor << ": " << found.points << " points, "
+              << found.ofNextTurn << " of the next turn, " << found.missing << " missing, worst "
+              << found.worst_m << " m, rings " << found.worstUp_deg << " deg\n";
+    return found;
+}
+
+struct Case {
+    const char *folder, *angles;
+    std::size_t lasers;
+};
+
+TEST(Peers, HesaiPacketsAsNebulaDecodesThem) {
+    const fs::path root = nebula("hesai");
+    if (!fs::exists(root)) GTEST_SKIP() << "DELIO_PEER_DATA has no nebula";
+    for (const Case& model :
+         {Case{"40p", "Pandar40P", 40}, Case{"64", "Pandar64", 64}, Case{"xt16", "PandarXT16", 16},
+          Case{"xt32", "PandarXT32", 32}, Case{"xt32m", "PandarXT32M", 32},
+          Case{"qt64", "PandarQT64", 64}, Case{"qt128", "PandarQT128", 128}}) {
+        SCOPED_TRACE(model.folder);
+        const fs::path data =
+            root / "nebula_hesai/test_resources/decoder_ground_truth" / model.folder;
+        const auto bags = filesIn(data, ".db3"), clouds = filesIn(data, ".pcd");
+        ASSERT_FALSE(bags.empty());
+        ASSERT_FALSE(clouds.empty());
+        const auto angles = io::readBeamAngles(
+            (root / "nebula_hesai_decoders/calibration" / (std::string(model.angles) + ".csv"))
+                .string(),
+            model.lasers);
+        const Agreement found = agreementOf(bags.front(), clouds, angles);
+        EXPECT_GT(found.points, 5000U);
+        EXPECT_EQ(found.missing, 0U);
+        EXPECT_LT(100 * found.ofNextTurn, found.points);
+        EXPECT_LT(found.worst_m, 2e-5);
+        EXPECT_LT(found.worstUp_deg, 0.001);
+    }
+}
+
+/** nebula turns a VLS-128 on within some of its blocks only, and so is up to 0.17 deg behind. */
+TEST(Peers, Vls128PacketsAsNebulaDecodesThem) {
+    const fs::path root = nebula("velodyne");
+    if (!fs::exists(root)) GTEST_SKIP() << "DELIO_PEER_DATA has no nebula";
+    const fs::path data = root / "nebula_velodyne/test_resources/decoder_ground_truth/vls128";
+    const auto reader = io::openScans(filesIn(data, ".db3").at(0).string());
+    EXPECT_EQ(reader->recording().sensor, "Velodyne VLS-128");
+    Points ours;
+    while (const auto scan = reader->next()) ours.add(*scan);
+    std::size_t points = 0, missing = 0;
+    double worst_deg = 0, worstUp_deg = 0;
+    for (const auto& point : cloudOf(filesIn(data, ".pcd").at(0))) {
+        ++points;
+        const auto* same = ours.nearest(point);
+        const double off = same ? std::atan2(double{same->xyz.y()}, double{same->xyz.x()}) -
+                                      std::atan2(double{point.y()}, double{point.x()})
+                                : M_PI;
+        const double off_deg = std::abs(degrees(std::remainder(off, 2 * M_PI)));
+        if (off_deg > 0.18) {
+            ++missing;
+            continue;
+        }
+        worst_deg = std::max(worst_deg, off_deg);
+        worstUp_deg = std::max(
+            worstUp_deg, std::abs(degrees(std::asin(double{point.z() / point.norm()}) -
+                                          std::asin(double{same->xyz.z() / same->xyz.norm()}))));
+    }
+    std::cout << "VLS-128: " << points << " points, " << missing << " missing, worst " << worst_deg
+              << " deg across, " << worstUp_deg << " deg up\n";
+    EXPECT_GT(points, 100'000U);
+    EXPECT_EQ(missing, 0U);
+    EXPECT_LT(worstUp_deg, 0.001);
+}
+}  // namespace
