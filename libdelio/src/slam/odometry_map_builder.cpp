@@ -141,7 +141,7 @@ class OdometryMapBuilder::Keyframes : public SlamListener {
         for (const Keyframe& keyframe : keyframes_) insert(keyframe);
     }
 
-    /** Into the metric map: one point a voxel. */
+    /** Into the metric map: one point per voxel. */
     void insert(const Keyframe& keyframe) {
         const auto map = metricMap_.mapByClass<CSimplePointsMap>();
         const auto& cloud = *keyframe.cloud->pointcloud;
