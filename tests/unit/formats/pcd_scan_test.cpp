@@ -174,10 +174,10 @@ TEST_F(PcdScan, WidthAndHeightOfZero) {
     EXPECT_EQ(scanOf(read(none)).points->size(), 0U);
 }
 
-// As Livox's recorder writes tag and line: a line end and a space may be among them.
+// As Livox's recorder writes numbers of a byte: a line end and a space may be among them.
 TEST_F(PcdScan, RawCharactersInAscii) {
     Pcd pcd;
-    pcd.fields = "x y z intensity tag line";
+    pcd.fields = "x y z intensity tag ring";
     pcd.sizes = "4 4 4 4 1 1";
     pcd.types = "F F F F U U";
     pcd.counts = "1 1 1 1 1 1";
@@ -188,6 +188,9 @@ TEST_F(PcdScan, RawCharactersInAscii) {
     const Scan scan = scanOf(read(pcd));
     EXPECT_EQ(scan.points->getPointsBufferRef_z()[4], -3);
     EXPECT_EQ(scan.rings, (std::vector<std::uint16_t>{0, 1, 10, 32, 5}));
+    Pcd livox = pcd;
+    livox.fields = "x y z intensity tag line";  // the laser, which is no ring
+    EXPECT_TRUE(scanOf(read(livox)).rings.empty());
     pcd.bytes.resize(pcd.bytes.size() - 12);
     refused(pcd, {"after 4 of 5"});
     pcd.bytes = "1 2 3 4 16 5\n1 2 3 4 16 6\n1 2 3 4 0 7\n1 2 3 4 0 8\n1 2 3 4 0 9";
