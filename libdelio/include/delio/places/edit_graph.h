@@ -8,10 +8,11 @@
 namespace delio {
 /** An edge of a stored map's graph between two submaps: a loop, or a joint of two drives. */
 struct SubmapEdge {
-    std::size_t from = 0, to = 0;  //!< submaps
-    graph::Edge edge;              //!< between their key nodes
-    double off_m = 0;              //!< between where the edge has `to` and where the graph has it
-    double off_deg = 0;            //!< the same of the rotation
+    std::size_t from = 0;  //!< submap
+    std::size_t to = 0;    //!< submap
+    graph::Edge edge;      //!< between their key nodes
+    double off_m = 0;      //!< between where the edge has `to` and where the graph has it
+    double off_deg = 0;    //!< the same of the rotation
 };
 
 /** In the order of the graph's edges. */
@@ -22,12 +23,14 @@ void saveSubmapEdges(const std::vector<SubmapEdge>& edges, const std::string& pa
 
 /** A change of the graph by hand. */
 struct GraphEdit {
+    /** What is changed. */
     enum class Kind {
         Add,    //!< an edge, where registration and the acceptance tests for loops confirm it
         Forbid  //!< removes all edges between the two
     };
-    Kind kind = Kind::Add;
-    std::size_t from = 0, to = 0;  //!< submaps
+    Kind kind = Kind::Add;  //!< what is changed
+    std::size_t from = 0;   //!< submap
+    std::size_t to = 0;     //!< submap
 };
 
 /** Reads lines `add 3 17` and `forbid 2 9`; # begins a comment. Error, which names file and line,
