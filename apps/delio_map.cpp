@@ -129,8 +129,10 @@ Arguments::Arguments()
             "registration confirms it) and 'forbid A B'; OUT is a .delio. With -o OUT.csv and "
             "without this option, the edges between submaps are listed",
             false, "", "EDITS.txt", cmd),
-      output("o", "output", "File to write; a .yaml for ROS's map_server comes with a .pgm image",
-             true, "", "OUT.ply|.pcd|.las|.3Dscene|.html|.gridmap|.yaml|.delio|.csv", cmd),
+      output("o", "output",
+             "File to write; a .yaml for ROS's map_server comes with a .pgm image; a .delio with "
+             "--import and --edits; a .csv lists the edges of a stored map",
+             true, "", "OUT.ply|.pcd|.las|.3Dscene|.html|.gridmap|.yaml", cmd),
       crop("", "crop", "Keep the points in this box (metres, in the output frame)", false, "",
            &boxes, cmd),
       spacing(
