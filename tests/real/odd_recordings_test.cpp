@@ -33,8 +33,7 @@ TEST_F(OddRecordings, LivoxsRawCharacters) {
     const auto scan = io::openScans(folderOf("livox_ascii_char_fields.pcd"))->next();
     ASSERT_TRUE(scan);
     EXPECT_EQ(scan->points->size(), 43104U);
-    ASSERT_EQ(scan->rings.size(), 43104U);
-    for (const auto ring : scan->rings) ASSERT_LT(ring, 6);
+    EXPECT_TRUE(scan->rings.empty());  // its lines are no rings
 }
 
 TEST_F(OddRecordings, WidthAndHeightOfZero) {
