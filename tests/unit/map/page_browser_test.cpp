@@ -249,13 +249,20 @@ TEST_F(PageInBrowser, ObeysTheMouse) {
     auto page = test::readText(folder_ / "map.html");
     page.replace(page.rfind("</body>"), 7, kMouse);
     test::writeText(folder_ / "map.html", page);
-    for (const char* size : {"1280,800", "375,667"}) {
+    const std::string all =
+        "whole yes, turn yes, move yes, zoom yes, top yes, point yes, distance yes, none yes, "
+        "section yes, finger yes, width yes, labels yes, rest yes";
+    const auto saidAt = [&](const char* size) -> std::string {
         const auto shot = ready("", size);
         std::smatch found;
-        ASSERT_TRUE(std::regex_search(shot.dom, found, std::regex("data-said=\"([^\"]*)\"")));
-        EXPECT_EQ(found.str(1),
-                  "whole yes, turn yes, move yes, zoom yes, top yes, point yes, distance yes, "
-                  "none yes, section yes, finger yes, width yes, labels yes, rest yes");
+        if (!std::regex_search(shot.dom, found, std::regex("data-said=\"([^\"]*)\""))) return "";
+        return found[1];
+    };
+    for (const char* size : {"1280,800", "375,667"}) {
+        // On a busy machine the last picture may come after the page's virtual time.
+        std::string said = saidAt(size);
+        for (int again = 0; again < 3 && said != all; ++again) said = saidAt(size);
+        EXPECT_EQ(said, all) << size;
     }
 }
 
