@@ -129,9 +129,11 @@ PlaneOdometry::Attempt PlaneOdometry::attemptToTrack(const PointCloud& cloud,
                                                      const Interval& interval, Step& step) {
     // After scans that were not registered, the motion since the last registered one counts.
     const double since_s = time_s_ - reference_.time_s;
-    return step.interrupted && prediction_.hasMotion()
-               ? attemptAfterPause(cloud, interval, since_s, step)
-               : attemptWithGyro(cloud, interval.duration_s, since_s, !step.interrupted, step);
+    if (step.interrupted && prediction_.hasMotion())
+        return attemptAfterPause(cloud, interval, since_s, step);
+    Attempt attempt = attemptWithGyro(cloud, interval.duration_s, since_s, !step.interrupted, step);
+    if (isImplausible(attempt.placement.estimate)) attempt.placement.estimate.valid = false;
+    return attempt;
 }
 
 /** The method: a scan against the map of earlier scans. */
@@ -170,13 +172,31 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
 PlaneOdometry::Attempt PlaneOdometry::attemptAfterPause(const PointCloud& cloud,
                                                         const Interval& interval, double since_s,
                                                         Step& step) {
-    Attempt wentOn = attemptAsPredicted(cloud, interval.elapsed_s, interval.elapsed_s, true, step);
     const LinearPrediction before = prediction_;
+    Attempt wentOn = attemptAsPredicted(cloud, interval.elapsed_s, interval.elapsed_s, true, step);
     prediction_.forget();
     Attempt stood = attemptAsPredicted(cloud, interval.duration_s, since_s, false, step);
-    if (stood.isBetterThan(wentOn)) return stood;
     prediction_ = before;
-    return wentOn;
+    for (Attempt* attempt : {&wentOn, &stood})
+        if (isImplausible(attempt->placement.estimate)) attempt->placement.estimate.valid = false;
+    if (!stood.isBetterThan(wentOn)) return wentOn;
+    prediction_.forget();
+    return stood;
+}
+
+/** No vehicle brakes so hard: the time since the latest scan that was registered would have to be
+ * an error of the clock. On a road that looks the same everywhere that is not believed unless as
+ * many points fit as there. */
+bool PlaneOdometry::isImplausible(const PointEstimate& placed) const {
+    constexpr double kLong_s = 0.5, kAsBefore = 0.9;
+    const bool isNewMap = std::holds_alternative<FirstScan>(state_);
+    if (unregistered_s_ <= kLong_s || isNewMap || !prediction_.hasMotion()) return false;
+    const double speed_mps = prediction_.predict(1).translation().norm(),
+                 acceleration = options_.spacing.braking,
+                 braking_s = std::min(speed_mps / acceleration, unregistered_s_),
+                 least_m = (speed_mps - acceleration / 2 * braking_s) * braking_s;
+    const Eigen::Vector3d moved = placed.pose.translation() - reference_.pose.translation();
+    return moved.norm() < least_m && placed.inlierRatio < kAsBefore * latestInlierRatio_;
 }
 
 /** The scan placed by points, `duration_s` after the one before. */
@@ -351,6 +371,7 @@ void PlaneOdometry::miss(const PointCloud& cloud) {
 /** Learns the motion, how well it is predicted, and the usual inlier ratio. */
 void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
                           double since_s) {
+    latestInlierRatio_ = placed.inlierRatio;
     if (prediction_.hasMotion()) {
         // A scan that fits badly where it was not expected may be at a wrong pose.
         constexpr double kForget = 0.1, kAsUsual = 0.75;

@@ -60,8 +60,8 @@ class PlaneOdometry : public Odometry {
         Placement placement;
 
         bool isBetterThan(const Attempt& other) const {
-            return placement.estimate.valid &&
-                   placement.estimate.inlierRatio > other.placement.estimate.inlierRatio;
+            const auto &mine = placement.estimate, &others = other.placement.estimate;
+            return mine.valid && (!others.valid || mine.inlierRatio > others.inlierRatio);
         }
     };
     void track(const PointCloud& cloud, Attempt attempt, Step& step);
@@ -115,6 +115,7 @@ class PlaneOdometry : public Odometry {
     void update(const PlaneEstimate& estimate, const PointEstimate& placed,
                 const Eigen::Isometry3d& predicted, double since_s, bool hasSight, ScanView& view,
                 const Step& step);
+    bool isImplausible(const PointEstimate& placed) const;
     bool isBeyondReach(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
                        double since_s) const;
     void miss(const PointCloud& cloud);
@@ -253,6 +254,7 @@ class PlaneOdometry : public Odometry {
     Unevenness unevenness_;
     std::optional<Extrapolation> extrapolation_;  //!< where the points have times
     double usualInlierRatio_ = 0;                 //!< 0: not known
+    double latestInlierRatio_ = 0;                //!< of the latest scan that was registered
 
     // The rotation by a gyroscope, and how far predictions by it are off.
     GyroPrior gyro_;

@@ -14,7 +14,8 @@ struct SpacingTuning {
     double point_spacing = 1.0;     //!< points that are registered to points
     double doubt_spacing = 10;      //!< degenerate scans enter the map once in such a distance
     double first_speed = 40;        //!< m/s; an unknown motion is searched up to this speed
-    double acceleration = 15;       //!< m/s^2; of the hardest start or stop
+    double acceleration = 15;       //!< m/s^2; of the hardest start or stop, between two scans
+    double braking = 10;            //!< m/s^2; of the hardest stop that takes seconds
     double pause_acceleration = 2;  //!< m/s^2; the same, over more than half a second
     double first_turn_radps = 60 * M_PI / 180;  //!< an unknown motion is searched up to this rate
     double most_turn_rad = 30 * M_PI / 180;     //!< and up to this turn; does not scale
