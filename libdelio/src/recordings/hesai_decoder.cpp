@@ -130,7 +130,9 @@ void HesaiDecoder::addGroup(const std::uint8_t* packet, std::size_t b, std::size
     const HesaiFiring& times = model_->firing;
     const auto before = static_cast<int>(b / returns);
     const auto behind = static_cast<int>((model_->blocks - 1 - b) / returns);
-    const int block_ns = times.block_ns + times.next_ns * (times.ofLast ? -behind : before);
+    const bool isFine = times.fine_ns > 0 && packet[model_->stateAt] == 0;
+    const int next_ns = isFine ? times.fine_ns : times.next_ns;
+    const int block_ns = times.block_ns + next_ns * (times.ofLast ? -behind : before);
     turns_.block(azimuth / kTurn, time_s + 1e-9 * block_ns);
     const double angle = mrpt::DEG2RAD(0.01 * azimuth), unit_m = unitOf(packet);
     const double sine = portable::sin(angle), cosine = portable::cos(angle);
@@ -153,7 +155,8 @@ void HesaiDecoder::addGroup(const std::uint8_t* packet, std::size_t b, std::size
                         static_cast<float>(flat * (cosine * beam.cosine - sine * beam.sine)),
                         static_cast<float>(range * beam.sineUp),
                         static_cast<float>(measured[2]) / 255.0F, static_cast<std::uint16_t>(laser),
-                        1e-9F * static_cast<float>(laser_ns[laser])});
+                        1e-9F * static_cast<float>(isFine ? laser_ns[laser] % times.fine_ns
+                                                          : laser_ns[laser])});
         }
     }
 }
