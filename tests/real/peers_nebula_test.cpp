@@ -14,6 +14,7 @@
 
 #include "delio/recordings/scan_reader.h"
 #include "recordings/beam_angles.h"
+#include "recordings/hesai_at128.h"
 #include "recordings/packet_decoder.h"
 #include "spinning_packets.h"
 #include "test_data.h"
@@ -222,6 +223,44 @@ TEST(Peers, Ot128CloudOfNebulaFromPacketsMadeOfIt) {
               << " from packets, worst " << worst_m << " m\n";
     EXPECT_EQ(scan->points->size(), cloud.size());
     EXPECT_LT(worst_m, 5e-5);
+}
+
+/** Of nebula's AT128 there is the cloud, without the packets: each point has to lie on a beam of
+ * its correction file, at an angle of the mirror that a packet can tell. nebula rounds corrections
+ * to 0.01 deg, DeLiO interpolates them. */
+TEST(Peers, At128CloudOfNebulaLiesOnTheBeams) {
+    const fs::path root = nebula("hesai");
+    if (!fs::exists(root)) GTEST_SKIP() << "DELIO_PEER_DATA has no nebula";
+    const auto clouds =
+        filesIn(root / "nebula_hesai/test_resources/decoder_ground_truth/at128", ".pcd");
+    ASSERT_FALSE(clouds.empty());
+    const io::At128Angles angles(
+        (root / "nebula_hesai_decoders/calibration/PandarAT128.dat").string());
+    double worst_deg = 0;
+    const auto cloud = cloudOf(clouds.front());
+    for (const auto& point : cloud) {
+        const double up = degrees(std::asin(double{point.z() / point.norm()}));
+        const double across = degrees(std::atan2(double{point.x()}, double{point.y()}));
+        double least_deg = 90;
+        for (std::size_t field = 0; field < 3; ++field)
+            for (std::size_t laser = 0; laser < io::kAt128Lasers; ++laser) {
+                // The mirror's angle at which the beam has the point's azimuth.
+                const double begin = angles.direction(field, 0, laser).azimuth;
+                double mirror = (across - begin) / 2;
+                mirror += (across - angles.direction(field, mirror, laser).azimuth) / 2;
+                std::size_t own = 0;
+                if (mirror < 0 || mirror >= 360 || angles.withinField(mirror, own) < 0 ||
+                    own != field)
+                    continue;
+                least_deg = std::min(
+                    least_deg, std::abs(up - angles.direction(field, mirror, laser).elevation));
+            }
+        worst_deg = std::max(worst_deg, least_deg);
+    }
+    std::cout << "AT128: " << cloud.size() << " points, worst " << worst_deg
+              << " deg from a beam's elevation\n";
+    EXPECT_GT(cloud.size(), 10000U);
+    EXPECT_LT(worst_deg, 0.011);
 }
 
 /** nebula turns a VLS-128 on within some of its blocks only, and so is up to 0.17 deg behind. */

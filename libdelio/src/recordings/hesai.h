@@ -51,6 +51,8 @@ bool fitsWithParts(const HesaiModel& model, std::size_t bytes);
 /** The model that sent a data packet; null where none did. Throws Error for one that is known but
  *  not decoded. */
 const HesaiModel* hesaiModel(const std::uint8_t* packet, std::size_t bytes);
+/** Returns of each laser that a packet of this mode has, in consecutive blocks. Throws Error. */
+std::size_t returnsOfHesai(std::uint8_t mode);
 /** True where a packet of a Hesai, decoded or not, can have so many bytes. */
 bool isHesaiSize(std::size_t bytes);
 }  // namespace delio::io

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "hesai.h"
+#include "hesai_at128.h"
 
 namespace delio::io {
 namespace {
@@ -276,7 +277,8 @@ bool isHesaiSize(std::size_t bytes) {
     for (const HesaiModel& model : models())
         if (fits(model, bytes)) return true;
     const auto& others = modelsWithParts();
-    return std::any_of(others.begin(), others.end(),
+    return isAt128Size(bytes) ||
+           std::any_of(others.begin(), others.end(),
                        [bytes](const HesaiModel& model) { return fitsWithParts(model, bytes); });
 }
 
