@@ -1,3 +1,4 @@
+#include "at128_packets.h"
 #include "bag_files.h"
 #include "fast_spinner.h"
 #include "osf_writer.h"
@@ -86,6 +87,13 @@ void otherPackets() {
         writeText(seed("packets", toy.name),
                   noTable + timed(test::robosenseDescription(toy)) + packet + packet);
     }
+    std::string at128 = "0";
+    for (int field = 0; field < 2; ++field) {
+        const auto packet = test::at128Packet(field, 100, 1.7e9);
+        at128.append(packet.begin(), packet.end());
+    }
+    writeText(seed("at128", "packets"), at128);
+    writeText(seed("at128", "file"), "1" + test::at128File());
     auto bank = velodynePacket();
     for (std::size_t b = 0; b < 12; ++b)
         bank[100 * b + 1] = static_cast<std::uint8_t>(0xEE - 0x11 * (b % 4));

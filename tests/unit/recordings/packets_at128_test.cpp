@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "at128_packets.h"
 #include "delio/core/error.h"
-#include "pcap_writer.h"
 #include "recordings/hesai_at128.h"
 #include "recordings/sources.h"
 #include "test_data.h"
@@ -12,66 +12,8 @@
 namespace {
 using namespace delio;
 using test::Bytes;
-using test::putAt;
-constexpr std::size_t kLasers = 128, kBytes = 1086;
+constexpr std::size_t kLasers = test::kAt128Rows;
 constexpr double kBegin_s = 1700000000;
-
-std::string raw(std::int32_t number) {
-    return std::string(reinterpret_cast<const char*>(&number), sizeof(number));
-}
-
-/** Three fields that begin at 20, 140 and 260 deg; angles in 2/25600 deg. Laser 5 has corrections:
- *  0.04 deg across and -0.02 deg up at even tens of degrees of the mirror, and none 2 deg away. */
-std::string correctionFile() {
-    std::string text{"\xEE\xFF\x01\x05\x80\x03\x03", 7};
-    text += std::string(8, '\0') + '\x02';
-    for (const int begin : {20, 140, 260}) text += raw(begin * 12800);
-    for (const int end : {140, 260, 20}) text += raw(end * 12800);
-    for (std::size_t laser = 0; laser < kLasers; ++laser)
-        text += raw(static_cast<std::int32_t>(laser % 8) * 1280 - 4480);
-    for (std::size_t laser = 0; laser < kLasers; ++laser)
-        text += raw(160000 - static_cast<std::int32_t>(laser) * 2560);
-    for (const char correction : {'\x02', '\xFF'})
-        for (std::size_t laser = 0; laser < kLasers; ++laser)
-            for (int step = 0; step < 180; ++step)
-                text += laser == 5 && step % 5 == 0 ? correction : '\0';
-    return text + std::string(32, '\0');
-}
-
-double acrossOf(std::size_t laser) { return -(static_cast<double>(laser % 8) * 0.1 - 0.35); }
-double upOf(std::size_t laser) { return 12.5 - 0.2 * static_cast<double>(laser); }
-
-int distanceOf(std::size_t laser, int shot) {
-    return 3000 + 10 * static_cast<int>(laser) + shot % 100;
-}
-
-/** Two azimuths, of the `shot`-th one of its field and of the next. */
-Bytes packetOf(int field, int shot, double clock_s, std::uint8_t mode = 0x37) {
-    Bytes packet(kBytes);
-    const Bytes head{0xEE, 0xFF, 4, 3, 0, 0, 128, 2, 0, 4, 0, 1};
-    std::copy(head.begin(), head.end(), packet.begin());
-    for (int b = 0; b < 2; ++b) {
-        const std::size_t block = 12 + 515 * static_cast<std::size_t>(b);
-        const int own = mode == 0x37 ? shot + b : shot;
-        // Beams sweep from 30 to 150 deg, the mirror by half of that.
-        const int fine = (20 + 120 * field + 15) * 25600 + own * 1280;
-        putAt(packet, block, static_cast<std::uint16_t>(fine / 256 % 36000));
-        packet[block + 2] = static_cast<std::uint8_t>(fine % 256);
-        for (std::size_t laser = 0; laser < kLasers; ++laser) {
-            putAt(
-                packet, block + 3 + 4 * laser,
-                static_cast<std::uint16_t>(distanceOf(laser, own) + (mode == 0x37 ? 0 : 500 * b)));
-            packet[block + 5 + 4 * laser] = static_cast<std::uint8_t>(laser);
-        }
-    }
-    const double whole = std::floor(clock_s);
-    putAt(packet, 1066, static_cast<std::uint32_t>(std::lround(1e6 * (clock_s - whole))));
-    packet[1070] = mode;
-    const auto seconds = static_cast<std::uint64_t>(whole);
-    for (std::size_t i = 0; i < 5; ++i)
-        packet[1073 + i] = static_cast<std::uint8_t>(seconds >> 8 * (4 - i));
-    return packet;
-}
 
 /** 0.1 s a field; the first 1200 azimuths are those of returns. */
 std::vector<Scan> scansOf(io::PacketDecoder& decoder, int fields, std::uint8_t mode = 0x37) {
@@ -79,7 +21,7 @@ std::vector<Scan> scansOf(io::PacketDecoder& decoder, int fields, std::uint8_t m
     for (int field = 0; field < fields; ++field)
         for (int shot = 0; shot < 1200; shot += mode == 0x37 ? 2 : 1) {
             const double time_s = kBegin_s + 0.1 * field + 41.666e-6 * shot;
-            const Bytes packet = packetOf(field % 3, shot, time_s, mode);
+            const Bytes packet = test::at128Packet(field % 3, shot, time_s, mode);
             decoder.add(packet.data(), packet.size(), time_s + 0.001);
             while (auto scan = decoder.take()) scans.push_back(std::move(*scan));
         }
@@ -90,10 +32,10 @@ std::vector<Scan> scansOf(io::PacketDecoder& decoder, int fields, std::uint8_t m
 
 class PacketsAt128 : public testing::Test {
  protected:
-    void SetUp() override { test::writeText(file_, correctionFile()); }
+    void SetUp() override { test::writeText(file_, test::at128File()); }
     std::unique_ptr<io::PacketDecoder> decoder() const { return io::hesaiDecoder(file_.string()); }
     std::string faultOf(const std::string& file) const {
-        const Bytes packet = packetOf(0, 0, kBegin_s);
+        const Bytes packet = test::at128Packet(0, 0, kBegin_s);
         try {
             io::hesaiDecoder(file)->add(packet.data(), packet.size(), kBegin_s);
         } catch (const Error& e) {
@@ -119,9 +61,9 @@ TEST_F(PacketsAt128, EachFieldIsAScan) {
             if (laser == 5) continue;
             float x = 0, y = 0, z = 0;
             scan.points->getPoint(i, x, y, z);
-            const double range = 0.004 * distanceOf(laser, shot);
-            const double across = (30 + 0.1 * shot + acrossOf(laser)) * M_PI / 180,
-                         up = upOf(laser) * M_PI / 180;
+            const double range = 0.004 * test::at128Distance(laser, shot);
+            const double across = (30 + 0.1 * shot + test::at128Across(laser)) * M_PI / 180,
+                         up = test::at128Up(laser) * M_PI / 180;
             ASSERT_EQ(scan.rings[i], laser);
             ASSERT_NEAR(x, range * std::cos(up) * std::sin(across), 1e-4) << i;
             ASSERT_NEAR(y, range * std::cos(up) * std::cos(across), 1e-4) << i;
@@ -149,11 +91,11 @@ TEST_F(PacketsAt128, CorrectionsAreInterpolated) {
     EXPECT_EQ(field, 2U);
     const auto at = angles.direction(1, 170, 5), between = angles.direction(1, 170.5, 5),
                beside = angles.direction(1, 172, 5);
-    EXPECT_NEAR(at.azimuth, 60 + acrossOf(5) + 0.04, 1e-9);
-    EXPECT_NEAR(at.elevation, upOf(5) - 0.02, 1e-9);
-    EXPECT_NEAR(between.azimuth, 61 + acrossOf(5) + 0.03, 1e-9);
-    EXPECT_NEAR(beside.azimuth, 64 + acrossOf(5), 1e-9);
-    EXPECT_NEAR(beside.elevation, upOf(5), 1e-9);
+    EXPECT_NEAR(at.azimuth, 60 + test::at128Across(5) + 0.04, 1e-9);
+    EXPECT_NEAR(at.elevation, test::at128Up(5) - 0.02, 1e-9);
+    EXPECT_NEAR(between.azimuth, 61 + test::at128Across(5) + 0.03, 1e-9);
+    EXPECT_NEAR(beside.azimuth, 64 + test::at128Across(5), 1e-9);
+    EXPECT_NEAR(beside.elevation, test::at128Up(5), 1e-9);
 }
 
 TEST_F(PacketsAt128, FilesAreChecked) {
@@ -164,7 +106,7 @@ TEST_F(PacketsAt128, FilesAreChecked) {
     EXPECT_EQ(faultOf(file_.string()), "");
     has(faultOf(""), "--sensor-info FILE.dat");
     has(faultOf((folder_ / "none.dat").string()), "none.dat");
-    const std::string good = correctionFile(), file = (folder_ / "b.dat").string();
+    const std::string good = test::at128File(), file = (folder_ / "b.dat").string();
     test::writeText(file, good.substr(0, 40000));
     has(faultOf(file), "it is cut off");
     test::writeText(file, "Channel,Elevation,Azimuth");
@@ -184,7 +126,7 @@ TEST_F(PacketsAt128, OfAPcap) {
     for (int field = 0; field < 3; ++field)
         for (int shot = 0; shot < 1200; shot += 2) {
             const double time_s = kBegin_s + 0.1 * field + 41.666e-6 * shot;
-            writer.add(packetOf(field, shot, time_s), time_s);
+            writer.add(test::at128Packet(field, shot, time_s), time_s);
         }
     writer.write((folder_ / "d.pcap").string());
     const auto reader = io::openScans({(folder_ / "d.pcap").string(), "", "", file_.string()});
