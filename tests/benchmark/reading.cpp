@@ -188,16 +188,19 @@ class Sources {
         measured(file);
     }
 
-    /** The points as records of a layout, with 32 rings and times that rise; MulRan's are fewer. */
+    /** The points as records of a layout, with 32 rings and times that rise; of MulRan's layout as
+     *  many as its sensor has. */
     void records(const io::BinLayout& layout) const {
         const fs::path folder = folder_ / (std::string("bin-") + layout.name);
         fs::create_directories(folder);
         for (std::size_t i = 0; i < count_; ++i) {
             std::string bytes;
-            const std::size_t points = scan(i).size() / 4;
+            constexpr std::size_t kMulran = 65536;
+            const bool isMulran = std::string(layout.name) == "mulran";
+            const std::size_t all = scan(i).size() / 4, points = isMulran ? kMulran : all;
             for (std::size_t k = 0; k < points; ++k)
                 for (const io::Column& column : layout.columns)
-                    bytes += number(column, &scan(i)[4 * k], k, points);
+                    bytes += number(column, &scan(i)[4 * (k % all)], k, points);
             std::ofstream(folder / (std::to_string(i) + ".bin"), std::ios::binary) << bytes;
         }
         measured(folder, layout.name);
