@@ -93,7 +93,7 @@ const std::vector<int> kFiringOfPandar128 = {
 };
 
 /** Bits of the header's flags, and the bytes of the parts that they add to a packet. */
-enum Part : std::uint8_t { kNumber = 1, kImu = 2, kSafety = 4, kSignature = 8, kConfidence = 0x10 };
+constexpr std::uint8_t kNumber = 1, kImu = 2, kSafety = 4, kSignature = 8, kConfidence = 0x10;
 constexpr std::uint8_t kOtherReturnBytes = 0x60;
 constexpr std::size_t kNumberBytes = 4, kImuBytes = 22, kSafetyBytes = 17, kSignatureBytes = 32;
 constexpr std::size_t kFlagsAt = 11, kStatusAt = 4, kLasers = 128, kBlocks = 2;
@@ -138,8 +138,10 @@ std::size_t bytesOf(const HesaiModel& model, std::uint8_t flags) {
 std::vector<HesaiModel> hesaiModelsWithParts() {
     std::vector<HesaiModel> models;
     for (const bool isOt128 : {false, true})
-        for (const int flags : {kSafety | 0, 0, kSafety | kConfidence, kConfidence | 0})
-            models.push_back(modelWith(isOt128, static_cast<std::uint8_t>(flags)));
+        for (const std::uint8_t safety : {kSafety, std::uint8_t{0}})
+            for (const std::uint8_t confidence : {std::uint8_t{0}, kConfidence})
+                models.push_back(
+                    modelWith(isOt128, static_cast<std::uint8_t>(safety | confidence)));
     return models;
 }
 

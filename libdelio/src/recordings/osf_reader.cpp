@@ -241,7 +241,7 @@ std::optional<Scan> OsfReader::next() {
             if (frame.received_s == 0)
                 frame.received_s =
                     1e-9 * static_cast<double>(message.number<std::uint64_t>(chunk::kTime));
-            // As in packets, less than half a turn at the begin or end is no scan.
+            // Less than half a turn is no scan, as at the begin and end of packets.
             if (2 * frame.count < info_->columnsUsed) continue;
             Scan scan = maker_->scanOf(frame);
             scan.index = maker_->made() - 1;
