@@ -131,10 +131,24 @@ std::vector<double> anglesOf(const Reader& reader, const std::string& key) {
     return angles;
 }
 
-std::size_t countOf(const Reader& reader, const std::string& key, std::int64_t most) {
-    const auto count = reader.get<std::int64_t>(key);
-    if (count < 1 || count > most) reader.refuse(key, "is out of range");
+/** A number of the file may be one that no whole number can hold, and is read as a double first. */
+std::size_t countOf(const Reader& reader, const std::string& key, double most) {
+    const auto count = reader.get<double>(key);
+    if (!(count >= 1 && count <= most)) reader.refuse(key, "is out of range");
     return static_cast<std::size_t>(count);
+}
+
+/** Whole numbers from `least` to `most`; nothing where the key is missing. */
+std::optional<std::vector<int>> wholeNumbersOf(const Reader& reader, const std::string& key,
+                                               double least, double most) {
+    const auto values = reader.find<std::vector<double>>(key);
+    if (!values) return {};
+    std::vector<int> numbers;
+    for (const double value : *values) {
+        if (!(value >= least && value <= most)) reader.refuse(key, "is out of range");
+        numbers.push_back(static_cast<int>(value));
+    }
+    return numbers;
 }
 
 /** "1024x10": columns and turns a second. */
@@ -185,18 +199,16 @@ void readBeams(const Reader& reader, OusterInfo& info) {
 }
 
 void readColumns(const Reader& reader, OusterInfo& info) {
-    constexpr std::int64_t kMost = 4096;
+    constexpr double kMost = 4096;
     const bool told = reader.find<Json>("columns_per_frame").has_value();
     info.columns = told ? countOf(reader, "columns_per_frame", kMost) : columnsOf(reader);
     if (reader.find<Json>("columns_per_packet"))
         info.columnsPerPacket = countOf(reader, "columns_per_packet", kMost);
     info.columnsUsed = info.columns;
-    const auto window = reader.find<std::vector<std::int64_t>>("column_window");
+    const auto columns = static_cast<int>(info.columns);
+    const auto window = wholeNumbersOf(reader, "column_window", 0, columns - 1);
     if (!window) return;
-    const auto columns = static_cast<std::int64_t>(info.columns);
-    if (window->size() != 2 || window->at(0) < 0 || window->at(1) < 0 || window->at(0) >= columns ||
-        window->at(1) >= columns)
-        reader.refuse("column_window", "does not hold two valid columns");
+    if (window->size() != 2) reader.refuse("column_window", "does not hold two valid columns");
     info.columnsUsed =
         static_cast<std::size_t>((window->at(1) - window->at(0) + columns) % columns + 1);
 }
@@ -214,8 +226,9 @@ OusterInfo readOusterInfo(const std::string& json, const std::string& name) {
         countOf(reader, "pixels_per_column", kMostRows) != info.rows)
         reader.refuse("beam_altitude_angles", "does not match pixels_per_column");
     readColumns(reader, info);
-    info.pixelShifts =
-        reader.find<std::vector<int>>("pixel_shift_by_row").value_or(std::vector<int>{});
+    const auto columns = static_cast<double>(info.columns);
+    info.pixelShifts = wholeNumbersOf(reader, "pixel_shift_by_row", -columns, columns)
+                           .value_or(std::vector<int>{});
     if (!info.pixelShifts.empty() && info.pixelShifts.size() != info.rows)
         reader.refuse("pixel_shift_by_row", "does not match the number of beams");
     const auto profile = reader.find<std::string>("udp_profile_lidar").value_or(kLegacy);

@@ -348,6 +348,18 @@ TEST(PacketsOuster, WrongDescriptionsNameTheKey) {
     json = OusterToy().json();
     json["data_format"]["udp_profile_lidar"] = "RNG99";
     EXPECT_NE(faultOf(json.dump()).find("RNG99"), std::string::npos);
+    for (const char* const key :
+         {"columns_per_frame", "columns_per_packet", "column_window", "pixel_shift_by_row"})
+        for (const double number : {1.5e36, -1.5e36}) {
+            json = OusterToy().json();
+            if (std::string(key).find("per_") != std::string::npos)
+                json["data_format"][key] = number;
+            else
+                json["data_format"][key] = std::vector<double>(16, number);
+            EXPECT_NE(faultOf(json.dump()).find(std::string(key) + " is out of range"),
+                      std::string::npos)
+                << faultOf(json.dump());
+        }
     json = OusterToy().json();
     json["lidar_to_sensor_transform"] = {1, 2};
     EXPECT_NE(faultOf(json.dump()).find("lidar_to_sensor_transform"), std::string::npos);
