@@ -45,14 +45,15 @@ struct SlamCommandLine {
     Number start{"", "start", "First scan to use, counted from 0", false, {}, "N", cmd};
     Number count{"", "count", "Maximum number of scans; 0: all", false, {}, "N", cmd};
     Number every{"", "every", "Use every N-th scan", false, {1}, "N", cmd};
-    Text label{"",
-               "sensor-label",
-               "Sensor: label in a rawlog, topic in a bag, port in a pcap; default: the first "
-               "sensor; a bag must have only one",
-               false,
-               "",
-               "L",
-               cmd};
+    Text label{
+        "",
+        "sensor-label",
+        "Sensor: label in a rawlog, topic in a bag, port in a pcap, serial number in an .osf, "
+        "layout of .bin files; default: the first sensor; a bag must have only one",
+        false,
+        "",
+        "L",
+        cmd};
     Text sensorInfo{
         "",
         "sensor-info",

@@ -6,17 +6,24 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <random>
 
 #include "bag_writers.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/mrpt/rawlog_writer.h"
 #include "delio/recordings/scan_reader.h"
+#include "formats/bin_layouts.h"
+#include "osf_writer.h"
+#include "ouster_packets.h"
+#include "spinning_packets.h"
 #include "toy_drive.h"
 
 namespace {
@@ -49,9 +56,9 @@ void apart(const std::function<void()>& work) {
     waitpid(child, nullptr, 0);
 }
 
-void measure(const fs::path& recording) {
+void measure(const fs::path& recording, const std::string& label = "") {
     Stopwatch watch;
-    const auto reader = io::openScans({recording.string()});
+    const auto reader = io::openScans({recording.string(), label, "", ""});
     std::vector<double> memory_mb;
     std::size_t points = 0;
     double slowest_ms = 0, sum_ms = watch.lap_ms();
@@ -118,6 +125,11 @@ class Sources {
                     test::writeMcap(file, contents, packed);
                 });
         bag("ros2.db3", test::WireWriter::Kind::kCdr, test::writeDatabase);
+        for (const io::BinLayout& layout : io::binLayouts())
+            if (std::string(layout.name) != "kitti") records(layout);
+        osf("png.osf", test::FieldCoding::kPng);
+        osf("zpng.osf", test::FieldCoding::kZpng);
+        packets("ot128.pcap");
     }
 
  private:
@@ -176,8 +188,98 @@ class Sources {
         measured(file);
     }
 
-    static void measured(const fs::path& recording) {
-        apart([&] { measure(recording); });
+    /** The points as records of a layout, with 32 rings and times that rise; of MulRan's layout as
+     *  many as its sensor has. */
+    void records(const io::BinLayout& layout) const {
+        const fs::path folder = folder_ / (std::string("bin-") + layout.name);
+        fs::create_directories(folder);
+        for (std::size_t i = 0; i < count_; ++i) {
+            std::string bytes;
+            constexpr std::size_t kMulran = 65536;
+            const bool isMulran = std::string(layout.name) == "mulran";
+            const std::size_t all = scan(i).size() / 4, points = isMulran ? kMulran : all;
+            for (std::size_t k = 0; k < points; ++k)
+                for (const io::Column& column : layout.columns)
+                    bytes += number(column, &scan(i)[4 * (k % all)], k, points);
+            std::ofstream(folder / (std::to_string(i) + ".bin"), std::ios::binary) << bytes;
+        }
+        measured(folder, layout.name);
+    }
+
+    static std::string number(const io::Column& column, const float* xyzi, std::size_t point,
+                              std::size_t points) {
+        const auto as = [&](double value) {
+            std::string bytes(column.bytes, '\0');
+            const auto real = static_cast<float>(value);
+            const auto whole = static_cast<std::int64_t>(value);
+            std::memcpy(bytes.data(), column.kind == 'F' ? static_cast<const void*>(&real) : &whole,
+                        column.bytes);
+            return bytes;
+        };
+        const double part = static_cast<double>(point) / static_cast<double>(points);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (column.name == std::string(1, "xyz"[axis]))
+                return as(column.kind == 'F' ? xyzi[axis] : 200 * (xyzi[axis] + 100.0));
+        if (column.name == "ring" || column.name == "line")
+            return as(static_cast<double>(point % 32));
+        if (column.name == "t" || column.name.find("time") != column.name.npos)
+            return as((column.kind == 'F' ? 0.1 : 1e8) * part);
+        return as(xyzi[3]);
+    }
+
+    /** Turns of 128 rows and 1024 columns. */
+    void osf(const std::string& name, test::FieldCoding coding) const {
+        const fs::path file = folder_ / name;
+        apart([&] {
+            constexpr std::size_t kRows = 128, kColumns = 1024;
+            auto json = test::OusterToy().json();
+            json["beam_altitude_angles"] = json["beam_azimuth_angles"] =
+                std::vector<double>(kRows, 1.5);
+            json["data_format"]["pixels_per_column"] = kRows;
+            json["data_format"]["columns_per_frame"] = kColumns;
+            json["data_format"]["pixel_shift_by_row"] = std::vector<int>(kRows, 12);
+            const auto info = io::readOusterInfo(json.dump(), "toy");
+            test::OsfSensor sensor{json.dump(), {}};
+            std::mt19937 random(1);
+            for (std::size_t i = 0; i < count_; ++i) {
+                io::OusterFrame frame(info);
+                frame.number = static_cast<std::uint16_t>(i);
+                frame.count = kColumns;
+                for (std::size_t k = 0; k < kRows * kColumns; ++k) {
+                    frame.ranges_mm[k] =
+                        static_cast<std::uint32_t>(5000 + k % kRows * 200 + random() % 30);
+                    frame.reflectivities[k] = static_cast<std::uint8_t>(random() % 60);
+                }
+                for (std::size_t c = 0; c < kColumns; ++c) {
+                    frame.received[c] = true;
+                    frame.times_ns[c] = (i * kColumns + c + 1) * 97656;
+                }
+                sensor.turns.push_back(test::osfTurn(info, frame, coding, 1'600'000'000ULL << 30));
+            }
+            std::ofstream(file, std::ios::binary) << test::osfFile({sensor});
+        });
+        measured(file);
+    }
+
+    /** Turns of an OT128 in high resolution, 460 800 points each. */
+    void packets(const std::string& name) const {
+        const fs::path file = folder_ / name;
+        apart([&] {
+            test::HesaiToy toy = test::hesai128Toy(true);
+            toy.state = 0;
+            toy.step = 10;
+            toy.next_us = 27.778;
+            test::PcapWriter pcap;
+            for (const auto& packet :
+                 test::hesaiDrive(toy, std::min(20.0, static_cast<double>(count_))))
+                pcap.add(packet.bytes, packet.time_s);
+            pcap.write(file.string());
+        });
+        measured(file);
+    }
+
+    static void measured(const fs::path& recording, const std::string& label = "") {
+        apart([&] { measure(recording, label); });
         fs::remove_all(recording);
     }
 

@@ -186,4 +186,57 @@ TEST_F(Recordings, PcapsOfAnOuster) {
     expectFailure(slamOf(pcap, {"--force", "--sensor-info", folder_ / "none.json"}), 1,
                   {"none.json"});
 }
+/** Records of 28 bytes: x y z intensity, time, reflectivity, ambient light, range. */
+TEST_F(Recordings, BinFilesOfAnotherLayout) {
+    const fs::path kitti = folder_ / "kitti", pohang = folder_ / "pohang",
+                   reference = folder_ / "reference";
+    fs::create_directories(kitti);
+    fs::create_directories(pohang);
+    std::size_t number = 0;
+    for (const auto& scan : test::toyScans(kScans)) {
+        const std::string name = std::to_string(number++) + ".bin";
+        const std::size_t count = scan.size() / 4;
+        std::string plain, timed;
+        for (std::size_t i = 0; i < count; ++i) {
+            plain.append(reinterpret_cast<const char*>(&scan[4 * i]), 16);
+            timed.append(reinterpret_cast<const char*>(&scan[4 * i]), 16);
+            const std::uint32_t more[3]{static_cast<std::uint32_t>(100'000'000 * i / count), 0, 0};
+            timed.append(reinterpret_cast<const char*>(more), sizeof(more));
+        }
+        test::writeText(kitti / name, plain);
+        test::writeText(pohang / name, timed);
+    }
+    ASSERT_EQ(runTool("delio-slam", {"-i", kitti, "-o", reference, "--no-map"}).exitCode, 0);
+    expectPosesOf(pohang, reference, {"--set", "scan.deskew=false"});
+    const auto run = slamOf(pohang, {"--force", "--sensor-label", "pohang"});
+    EXPECT_NE(run.err.find("folder of .bin files, layout pohang"), std::string::npos) << run.err;
+    expectFailure(slamOf(pohang, {"--force", "--sensor-label", "velodyne"}), 1,
+                  {"no layout 'velodyne'", "kitti", "boreas", "mulran"});
+    expectFailure(slamOf(pohang, {"--force", "--sensor-label", "boreas"}), 1,
+                  {"0.bin", "multiple of 24"});
+}
+
+TEST_F(Recordings, OsfOfAnOuster) {
+    test::writeText(folder_ / "d.osf", "no OSF");
+    expectFailure(slamOf(folder_ / "d.osf"), 1, {"d.osf", "is not an OSF file"});
+    const char* const peers = std::getenv("DELIO_PEER_DATA");
+    const fs::path sdk = fs::path(peers ? peers : "") / "ouster-sdk/tests";
+    if (!fs::exists(sdk)) GTEST_SKIP() << "DELIO_PEER_DATA has no ouster-sdk";
+    const fs::path reference = folder_ / "reference";
+    const auto pcap = runTool(
+        "delio-slam", {"-i", sdk / "pcaps/OS-1-128_v2.3.0_1024x10_lb_n3.pcap", "--sensor-info",
+                       sdk / "pcaps/OS-1-128_v2.3.0_1024x10.json", "-o", reference, "--no-map"});
+    ASSERT_EQ(pcap.exitCode, 0) << pcap.err;
+    const auto osf = slamOf(sdk / "osfs/OS-1-128_v2.3.0_1024x10_lb_n3.osf", {"--force"});
+    ASSERT_EQ(osf.exitCode, 0) << osf.err;
+    EXPECT_NE(osf.err.find("reading Ouster OS-1-128, "), std::string::npos) << osf.err;
+    // The pcap has the sensor's IMU, too.
+    const auto poses = posesOf(out_), expected = posesOf(reference);
+    ASSERT_EQ(poses.size(), 3U);
+    ASSERT_EQ(expected.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_LT((poses[i].translation() - expected[i].translation()).norm(), 0.01) << i;
+    const auto damaged = slamOf(sdk / "osfs/bad_crc32.osf", {"--force"});
+    expectFailure(damaged, 1, {"bad_crc32.osf", "wrong checksum"});
+}
 }  // namespace

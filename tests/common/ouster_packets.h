@@ -13,9 +13,14 @@ struct OusterToy {
     std::uint32_t initialization = 0;     //!< likewise
 
     bool legacy() const { return profile == "LEGACY"; }
+    bool has(const std::string& part) const { return profile.find(part) != std::string::npos; }
+    bool dual() const { return has("DUAL") || profile == "FIVE_WORD_PIXEL"; }
+    /** Ranges of 15 bits. */
+    bool coarse() const { return has("RNG15"); }
+    bool safety() const { return has("FUSA"); }
     std::size_t pixel() const {
-        if (profile == "RNG15_RFL8_NIR8") return 4;
-        return profile == "RNG19_RFL8_SIG16_NIR16_DUAL" ? 16 : 12;
+        if (coarse()) return dual() || has("ZONE16") ? 8 : 4;
+        return (dual() ? 16 : 12) + (has("RGB16") || profile == "FIVE_WORD_PIXEL" ? 4 : 0);
     }
 
     nlohmann::json json() const {
@@ -47,8 +52,14 @@ struct OusterToy {
         const std::size_t column = columnHead + 16 * pixel() + (legacy() ? 4 : 0);
         Bytes bytes(2 * head + 16 * column);
         if (!legacy()) {
-            putAt(bytes, 2, frame);
-            putAt(bytes, 4, initialization | serial << 24);  // 24 and 40 bits
+            putAt(bytes, safety() ? 4 : 2, frame);
+            putAt(bytes, safety() ? 1 : 4, initialization);  // 24 bits
+            for (std::size_t byte = 0; byte < 5; ++byte)
+                bytes[(safety() ? 11 : 7) + byte] = static_cast<std::uint8_t>(serial >> 8 * byte);
+            if (safety()) {
+                bytes[0] = 1;
+                putAt(bytes, 4, std::uint32_t{frame});
+            }
         }
         for (std::size_t c = 0; c < 16; ++c) {
             const std::size_t at = head + c * column;
@@ -64,13 +75,14 @@ struct OusterToy {
     }
 
     void putPixel(Bytes& bytes, std::size_t at) const {
-        if (pixel() == 4) {
+        if (coarse()) {
             putAt(bytes, at, static_cast<std::uint16_t>(0x8000U | range_mm / 8));
             bytes[at + 2] = 51;
+            if (dual()) putAt<std::uint16_t>(bytes, at + 4, 7777);
         } else {
             putAt(bytes, at, legacy() ? range_mm : range_mm | 0x80000U);
-            bytes[at + (pixel() == 16 ? 3 : 4)] = 51;
-            if (pixel() == 16) putAt(bytes, at + 4, 7777U);  // the second return
+            bytes[at + (pixel() > 12 ? 3 : 4)] = 51;
+            if (dual()) putAt(bytes, at + 4, 7777U);  // the second return
         }
     }
 };

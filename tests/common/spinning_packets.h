@@ -18,6 +18,11 @@ struct HesaiToy {
     bool ofLast;
     std::uint8_t mode = 0x37;
     int step = 20;  //!< 0.01 deg
+    /** Of sensors whose headers tell them: the byte that names the sensor, the flags of parts. */
+    std::uint8_t status = 0, flags = 0;
+    std::size_t stateAt = 0;  //!< 0: there is one operational state only
+    std::uint8_t state = 2;
+    int begin = 0;  //!< first azimuth, 0.01 deg
 
     std::size_t returns() const { return mode == 0x3D ? 3 : mode == 0x39 ? 2 : 1; }
     std::size_t shots() const { return blocks / returns(); }
@@ -32,6 +37,27 @@ inline std::vector<HesaiToy> hesaiToys() {
             {"XT32M2X", 820, 32, 6, 12, 0, 4, 802, 805, 811, 5.632, 50, true},
             {"PandarQT", 1072, 64, 4, 12, 0, 4, 1060, 1062, 1056, 25.71, 166.667, false},
             {"QT128C2X", 1095, 128, 2, 12, 0, 4, 1073, 1076, 1082, 9, 111.11, true}};
+}
+
+/** Pandar128 and OT128, with functional safety, an IMU and a number in each packet. */
+inline HesaiToy hesai128Toy(bool isOt128) {
+    HesaiToy toy{isOt128 ? "OT128" : "Pandar128",
+                 861,
+                 128,
+                 2,
+                 12,
+                 0,
+                 3,
+                 817,
+                 820,
+                 826,
+                 isOt128 ? 0 : 3.148,
+                 55.556,
+                 true};
+    toy.status = isOt128 ? 128 : 127;
+    toy.flags = 7;
+    toy.stateAt = 816;
+    return toy;
 }
 
 /** Distance of a laser's return at an azimuth, in units of the packet. */
@@ -53,10 +79,15 @@ inline Bytes hesaiPacket(const HesaiToy& toy, std::size_t shot, double clock_s,
         packet[isShort ? 3 : 7] = static_cast<std::uint8_t>(toy.blocks);
         packet[isShort ? 5 : 9] = 4;
     }
+    if (toy.stateAt > 0) {
+        packet[4] = toy.status;
+        packet[11] = toy.flags;
+        packet[toy.stateAt] = toy.state;
+    }
     for (std::size_t b = 0; b < toy.blocks; ++b) {
         const std::size_t block = toy.body + b * toy.blockBytes();
         const auto azimuth = static_cast<std::uint16_t>(
-            toy.step * static_cast<int>(shot + b / toy.returns()) % 36000);
+            (toy.begin + toy.step * static_cast<int>(shot + b / toy.returns())) % 36000);
         if (toy.azimuthAt == 2) putAt<std::uint16_t>(packet, block, 0xEEFF);
         putAt(packet, block + toy.azimuthAt, azimuth);
         for (std::size_t laser = 0; laser < toy.lasers; ++laser) {

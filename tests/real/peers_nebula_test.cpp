@@ -14,6 +14,9 @@
 
 #include "delio/recordings/scan_reader.h"
 #include "recordings/beam_angles.h"
+#include "recordings/hesai_at128.h"
+#include "recordings/packet_decoder.h"
+#include "spinning_packets.h"
 #include "test_data.h"
 
 namespace {
@@ -162,6 +165,102 @@ TEST(Peers, HesaiPacketsAsNebulaDecodesThem) {
         EXPECT_LT(found.worst_m, 2e-5);
         EXPECT_LT(found.worstUp_deg, 0.001);
     }
+}
+
+/** The packets of a cloud: its points lie on the grid of azimuths, distances and lasers, two of
+ *  some lasers. */
+std::vector<test::TimedPacket> packetsOf(const std::vector<Eigen::Vector3f>& cloud,
+                                         const std::vector<io::BeamAngles>& angles) {
+    test::HesaiToy toy = test::hesai128Toy(true);
+    toy.mode = 0x39;
+    toy.begin = 1;
+    toy.step = 10;
+    toy.next_us = 27.778;
+    toy.state = 0;
+    std::map<std::pair<int, std::size_t>, std::vector<int>> distances;
+    for (const auto& point : cloud) {
+        const double up = degrees(std::asin(double{point.z() / point.norm()}));
+        const auto beam = std::min_element(
+            angles.begin(), angles.end(), [up](const auto& one, const auto& other) {
+                return std::abs(one.elevation_deg - up) < std::abs(other.elevation_deg - up);
+            });
+        const double across = degrees(std::atan2(double{point.x()}, double{point.y()}));
+        const auto azimuth =
+            static_cast<int>(std::lround(100 * (across - beam->azimuth_deg) + 36000)) % 36000;
+        distances[{azimuth, static_cast<std::size_t>(beam - angles.begin())}].push_back(
+            static_cast<int>(std::lround(250 * double{point.norm()})));
+    }
+    return test::hesaiDrive(
+        toy, 1.6, 1700000000, [&](std::size_t laser, int azimuth, std::size_t which) {
+            const auto at = distances.find({azimuth, laser});
+            return at != distances.end() && which < at->second.size() ? at->second[which] : 0;
+        });
+}
+
+/** nebula's recording of an OT128 is not at hand, its cloud is: packets made of it have to give the
+ * cloud again, with the beam angles that nebula has. */
+TEST(Peers, Ot128CloudOfNebulaFromPacketsMadeOfIt) {
+    const fs::path root = nebula("hesai");
+    if (!fs::exists(root)) GTEST_SKIP() << "DELIO_PEER_DATA has no nebula";
+    const auto clouds =
+        filesIn(root / "nebula_hesai/test_resources/decoder_ground_truth/ot128", ".pcd");
+    ASSERT_FALSE(clouds.empty());
+    const std::string file = (root / "nebula_hesai_decoders/calibration/Pandar128E4X.csv").string();
+    const auto cloud = cloudOf(clouds.front());
+    const auto decoder = io::hesaiDecoder(file);
+    for (const auto& packet : packetsOf(cloud, io::readBeamAngles(file, 128)))
+        decoder->add(packet.bytes.data(), packet.bytes.size(), packet.time_s);
+    const auto scan = decoder->take();
+    ASSERT_TRUE(scan);
+    Points ours;
+    ours.add(*scan);
+    double worst_m = 0;
+    for (const auto& point : cloud) {
+        const auto* same = ours.nearest(point);
+        worst_m = std::max(worst_m, same ? double{(same->xyz - point).norm()} : 1);
+    }
+    std::cout << "OT128: " << cloud.size() << " points, " << scan->points->size()
+              << " from packets, worst " << worst_m << " m\n";
+    EXPECT_EQ(scan->points->size(), cloud.size());
+    EXPECT_LT(worst_m, 5e-5);
+}
+
+/** Of nebula's AT128 there is the cloud, without the packets: each point has to lie on a beam of
+ * its correction file, at an angle of the mirror that a packet can tell. nebula rounds corrections
+ * to 0.01 deg, DeLiO interpolates them. */
+TEST(Peers, At128CloudOfNebulaLiesOnTheBeams) {
+    const fs::path root = nebula("hesai");
+    if (!fs::exists(root)) GTEST_SKIP() << "DELIO_PEER_DATA has no nebula";
+    const auto clouds =
+        filesIn(root / "nebula_hesai/test_resources/decoder_ground_truth/at128", ".pcd");
+    ASSERT_FALSE(clouds.empty());
+    const io::At128Angles angles(
+        (root / "nebula_hesai_decoders/calibration/PandarAT128.dat").string());
+    double worst_deg = 0;
+    const auto cloud = cloudOf(clouds.front());
+    for (const auto& point : cloud) {
+        const double up = degrees(std::asin(double{point.z() / point.norm()}));
+        const double across = degrees(std::atan2(double{point.x()}, double{point.y()}));
+        double least_deg = 90;
+        for (std::size_t field = 0; field < 3; ++field)
+            for (std::size_t laser = 0; laser < io::kAt128Lasers; ++laser) {
+                // The mirror's angle at which the beam has the point's azimuth.
+                const double begin = angles.direction(field, 0, laser).azimuth;
+                double mirror = (across - begin) / 2;
+                mirror += (across - angles.direction(field, mirror, laser).azimuth) / 2;
+                std::size_t own = 0;
+                if (mirror < 0 || mirror >= 360 || angles.withinField(mirror, own) < 0 ||
+                    own != field)
+                    continue;
+                least_deg = std::min(
+                    least_deg, std::abs(up - angles.direction(field, mirror, laser).elevation));
+            }
+        worst_deg = std::max(worst_deg, least_deg);
+    }
+    std::cout << "AT128: " << cloud.size() << " points, worst " << worst_deg
+              << " deg from a beam's elevation\n";
+    EXPECT_GT(cloud.size(), 10000U);
+    EXPECT_LT(worst_deg, 0.011);
 }
 
 /** nebula turns a VLS-128 on within some of its blocks only, and so is up to 0.17 deg behind. */

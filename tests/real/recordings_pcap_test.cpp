@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <iostream>
 
 #include "delio/core/error.h"
 #include "delio/recordings/scan_reader.h"
@@ -133,19 +136,18 @@ TEST(RecordingsPcap, AnotherOustersDescriptionIsRefused) {
     }
 }
 
-/** Ouster's own digest of this recording has MD5 sums of its fields, row by row. */
-TEST(RecordingsPcap, RangesAreThoseOfOustersDigest) {
-    DELIO_NEED_DATA("ouster");
-    const std::string stem = (test::dataFolder() / "ouster/OS-0-32-U1_v2.2.0_1024x10").string();
+/** MD5 sum of the ranges of the recording's first turn, row by row. */
+std::string sumOfRanges(const std::string& stem) {
     const auto info = io::readOusterInfo(test::readText(stem + ".json"), stem + ".json");
     io::OusterFrame frame(info);
     io::UdpStream stream(stem + ".pcap");
     while (const auto datagram = stream.next()) {
         if (datagram->bytes != info.packetBytes()) continue;
         const io::OusterPacket packet(info, datagram->payload);
-        EXPECT_EQ(packet.frameOf(0), 1453);
+        if (frame.count == 0) frame.number = packet.frameOf(0);
         for (std::size_t column = 0; column < info.columnsPerPacket; ++column)
-            if (packet.valid(column)) packet.copyTo(frame, column);
+            if (packet.valid(column) && packet.frameOf(column) == frame.number)
+                packet.copyTo(frame, column);
     }
     EXPECT_EQ(frame.count, 1024U);
     const test::TemporaryFolder folder;
@@ -156,10 +158,127 @@ TEST(RecordingsPcap, RangesAreThoseOfOustersDigest) {
     out.close();
     const std::string command =
         "md5sum " + (folder / "ranges").string() + " > " + (folder / "sum").string();
-    ASSERT_EQ(std::system(command.c_str()), 0);
-    const std::string sum = test::readText(folder / "sum").substr(0, 32);
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return test::readText(folder / "sum").substr(0, 32);
+}
+
+/** Ouster's digests of its recordings have MD5 sums of the fields. */
+void expectSumOfDigest(const std::string& stem) {
+    const std::string sum = sumOfRanges(stem);
     EXPECT_NE(test::readText(stem + "_digest.json").find("\"RANGE\": \"" + sum + "\""),
               std::string::npos)
-        << sum;
+        << stem << " " << sum;
+}
+
+TEST(RecordingsPcap, RangesAreThoseOfOustersDigest) {
+    DELIO_NEED_DATA("ouster");
+    expectSumOfDigest((test::dataFolder() / "ouster/OS-0-32-U1_v2.2.0_1024x10").string());
+}
+
+/** The recordings of Ouster's SDK (tests/pcaps), of which DELIO_PEER_DATA has a checkout. */
+std::string ousterSdk(const std::string& name) {
+    const char* const folder = std::getenv("DELIO_PEER_DATA");
+    return std::string(folder ? folder : "") + "/ouster-sdk/tests/" + name;
+}
+
+TEST(Peers, RangesAreThoseOfOustersDigests) {
+    if (!std::filesystem::exists(ousterSdk("pcaps")))
+        GTEST_SKIP() << "DELIO_PEER_DATA has no ouster-sdk";
+    for (const char* const name :
+         {"OS-0-128-U1_v2.3.0_1024x10", "OS-0-32-U1_v2.2.0_1024x10", "OS-1-32-G_v2.1.1_1024x10",
+          "OS-2-128-U1_v2.3.0_1024x10", "OS-2-32-U0_v2.0.0_1024x10"})
+        expectSumOfDigest(ousterSdk(std::string("pcaps/") + name));
+}
+
+/** Numbers that Ouster's SDK expects of this recording of a few packets (fusa_profile_test). */
+TEST(Peers, FunctionalSafetyAsOustersSdkReadsIt) {
+    if (!std::filesystem::exists(ousterSdk("pcaps")))
+        GTEST_SKIP() << "DELIO_PEER_DATA has no ouster-sdk";
+    const std::string stem = ousterSdk("pcaps/OS-1-128_767798045_1024x10_20230712_120049");
+    const auto info = io::readOusterInfo(test::readText(stem + ".json"), stem + ".json");
+    io::UdpStream stream(stem + ".pcap");
+    const auto datagram = stream.next();
+    ASSERT_TRUE(datagram);
+    ASSERT_EQ(datagram->bytes, 16640U);
+    ASSERT_EQ(info.packetBytes(), 16640U);
+    const io::OusterPacket packet(info, datagram->payload);
+    EXPECT_EQ(packet.frameOf(0), 229);
+    EXPECT_EQ(packet.ids().serial, info.ids.serial);
+    EXPECT_EQ(packet.ids().initialization, info.ids.initialization);
+    EXPECT_EQ(packet.time_ns(0), 647839983424U);
+    EXPECT_EQ(packet.time_ns(15), 647841450008U);
+    io::OusterFrame frame(info);
+    for (std::size_t column = 0; column < 16; ++column) {
+        EXPECT_EQ(packet.place(column), column);
+        ASSERT_TRUE(packet.valid(column));
+        packet.copyTo(frame, column);
+    }
+    const std::size_t column4 = 4 * info.rows;
+    const std::vector<std::uint32_t> ranges_mm(
+        frame.ranges_mm.begin() + static_cast<std::ptrdiff_t>(column4),
+        frame.ranges_mm.begin() + static_cast<std::ptrdiff_t>(column4) + 8);
+    EXPECT_EQ(ranges_mm, (std::vector<std::uint32_t>{0, 2328, 2328, 2320, 3096, 2312, 2304, 2280}));
+    const std::vector<int> reflectivities{3, 26, 31, 32, 13, 38, 44, 45};
+    for (std::size_t row = 0; row < 8; ++row)
+        EXPECT_EQ(frame.reflectivities[column4 + row], reflectivities[row]) << row;
+}
+
+/** How many are read; each other one has to be refused in one line. */
+std::size_t readOrRefused(const std::string& folder, const std::string& extension) {
+    std::size_t read = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(ousterSdk(folder))) {
+        if (entry.path().extension() != extension) continue;
+        std::size_t points = 0;
+        std::string fault;
+        try {
+            const auto reader = io::openScans(entry.path().string());
+            while (const auto scan = reader->next()) points += scan->points->size();
+        } catch (const Error& e) {
+            fault = e.what();
+            EXPECT_EQ(fault.find('\n'), std::string::npos);
+            EXPECT_NE(fault.find(entry.path().filename().string()), std::string::npos) << fault;
+        }
+        std::cout << entry.path().filename().string() << ": " << points << " points " << fault
+                  << "\n";
+        if (points > 0) ++read;
+    }
+    return read;
+}
+
+TEST(Peers, EveryPcapOfOustersSdk) {
+    if (!std::filesystem::exists(ousterSdk("pcaps")))
+        GTEST_SKIP() << "DELIO_PEER_DATA has no ouster-sdk";
+    EXPECT_GE(readOrRefused("pcaps", ".pcap"), 8U);
+}
+
+/** The first recording is there in both formats. */
+TEST(Peers, OsfAndPcapOfOustersSdkAgree) {
+    if (!std::filesystem::exists(ousterSdk("osfs")))
+        GTEST_SKIP() << "DELIO_PEER_DATA has no ouster-sdk";
+    const auto osf = io::openScans(ousterSdk("osfs/OS-1-128_v2.3.0_1024x10_lb_n3.osf"));
+    const auto pcap = io::openScans({ousterSdk("pcaps/OS-1-128_v2.3.0_1024x10_lb_n3.pcap"), "", "",
+                                     ousterSdk("pcaps/OS-1-128_v2.3.0_1024x10.json")});
+    EXPECT_EQ(osf->recording().sensor, pcap->recording().sensor);
+    std::size_t scans = 0;
+    double apart_s = 0;  // the recorder of the OSF wrote times of the sensor's clock
+    while (const auto one = pcap->next()) {
+        const auto other = osf->next();
+        ASSERT_TRUE(other);
+        if (scans++ == 0) apart_s = one->stamp_s - other->stamp_s;
+        EXPECT_EQ(one->points->getPointsBufferRef_x(), other->points->getPointsBufferRef_x());
+        EXPECT_EQ(one->points->getPointsBufferRef_y(), other->points->getPointsBufferRef_y());
+        EXPECT_EQ(one->points->getPointsBufferRef_z(), other->points->getPointsBufferRef_z());
+        EXPECT_EQ(one->rings, other->rings);
+        EXPECT_EQ(one->times_s, other->times_s);
+        EXPECT_NEAR(one->stamp_s - other->stamp_s, apart_s, 1e-6);
+    }
+    EXPECT_EQ(scans, 3U);
+    EXPECT_FALSE(osf->next());
+}
+
+TEST(Peers, EveryOsfOfOustersSdk) {
+    if (!std::filesystem::exists(ousterSdk("osfs")))
+        GTEST_SKIP() << "DELIO_PEER_DATA has no ouster-sdk";
+    EXPECT_GE(readOrRefused("osfs", ".osf"), 8U);
 }
 }  // namespace

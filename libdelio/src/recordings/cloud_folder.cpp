@@ -22,13 +22,13 @@ namespace fs = std::filesystem;
 namespace {
 using ReadRecords = std::function<CloudRecords(const fs::path&)>;
 
-/** Nothing where files of that extension are no scans. */
-ReadRecords recordsReader(const std::string& extension) {
+/** Nothing where files of that extension are no scans. `bins` reads .bin files. */
+ReadRecords recordsReader(const std::string& extension,
+                          const std::shared_ptr<BinScans>& bins = nullptr) {
     if (extension == ".pcd") return [](const fs::path& file) { return readPcdScan(file.string()); };
     if (extension == ".ply") return [](const fs::path& file) { return readPlyScan(file.string()); };
     if (extension == ".las") return [](const fs::path& file) { return readLasScan(file.string()); };
-    if (extension == ".bin")
-        return [scans = BinScans()](const fs::path& file) mutable { return scans.read(file); };
+    if (extension == ".bin") return [bins](const fs::path& file) { return bins->read(file); };
     if (extension == ".txt" || extension == ".csv") return readTextScan;
     return {};
 }
@@ -105,7 +105,8 @@ FilesByExtension::value_type onlyKindOf(const FilesByExtension& files, const fs:
 }
 }  // namespace
 
-CloudFolder::CloudFolder(const fs::path& folder) : FilesReader("lidar") {
+CloudFolder::CloudFolder(const fs::path& folder, const std::string& binLayout)
+    : FilesReader("lidar") {
     auto [extension, files] = onlyKindOf(scansIn(folder), folder);
     std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
         return naturallyBefore(a.filename().string(), b.filename().string());
@@ -114,7 +115,8 @@ CloudFolder::CloudFolder(const fs::path& folder) : FilesReader("lidar") {
     setImu(imuBeside(folder));
     fixes_ = fixesBeside(folder);
     files_ = std::move(files);
-    readRecords_ = recordsReader(extension);
+    if (extension == ".bin") bins_ = std::make_shared<BinScans>(binLayout);
+    readRecords_ = recordsReader(extension, bins_);
     extension_ = extension;
     lookAtTimes();
 }
@@ -123,10 +125,10 @@ CloudFolder::CloudFolder(const fs::path& folder) : FilesReader("lidar") {
  *  read. */
 void CloudFolder::lookAtTimes() {
     constexpr std::size_t kScans = 8;  // some may be empty
-    if (extension_ == ".bin") return;
     try {
         for (std::size_t i = 0; i < std::min(kScans, files_.size()); ++i) {
             const auto records = readRecords_(files_[i]);
+            if (bins_ && !hasTimes(records.layout)) return;  // no file will have any
             if (!table_.look(records.layout, records.bytes.data(), records.bytes.size(),
                              records.count, times_.stamps_s[i]))
                 return;
@@ -136,9 +138,11 @@ void CloudFolder::lookAtTimes() {
 }
 
 Recording CloudFolder::recording() const {
+    const std::string layout = bins_ && bins_->layout() ? bins_->layout()->name : "";
     Recording recording;
-    recording.kind =
-        "folder of " + extension_ + " files" + (times_.nominal ? ", nominal times" : "");
+    recording.kind = "folder of " + extension_ + " files" +
+                     (layout.empty() || layout == "kitti" ? "" : ", layout " + layout) +
+                     (times_.nominal ? ", nominal times" : "");
     recording.pointTimes = pointTimes_;
     if (hasImu()) recording.imu = "imu.csv";
     recording.scans = files_.size();
@@ -168,6 +172,6 @@ earth::Fixes CloudFolder::takeFixes() {
 }
 
 std::unique_ptr<ScanReader> openCloudFolder(const ScanSource& source) {
-    return std::make_unique<CloudFolder>(source.path);
+    return std::make_unique<CloudFolder>(source.path, source.label);
 }
 }  // namespace delio::io

@@ -1,10 +1,12 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "files_reader.h"
+#include "formats/bin_cloud.h"
 #include "formats/point_records.h"
 #include "point_table.h"
 
@@ -13,8 +15,9 @@ namespace delio::io {
  *  no metadata, so meta() is empty; `stamp_s` is that of the source. */
 class CloudFolder : public FilesReader {
  public:
-    /** Throws Error if there are no such files or several kinds, and as timesOf(). */
-    explicit CloudFolder(const std::filesystem::path& folder);
+    /** `binLayout`: of .bin files (see BinScans). Throws Error if there are no such files or
+     *  several kinds, and as timesOf(). */
+    explicit CloudFolder(const std::filesystem::path& folder, const std::string& binLayout = "");
 
     const std::optional<DriveMeta>& meta() const override { return meta_; }
     Recording recording() const override;
@@ -30,6 +33,7 @@ class CloudFolder : public FilesReader {
     std::vector<std::filesystem::path> files_;
     std::string extension_;
     ScanTimes times_;
+    std::shared_ptr<BinScans> bins_;  //!< null: they are of another kind
     std::function<CloudRecords(const std::filesystem::path&)> readRecords_;
     PointTable table_;
     bool pointTimes_ = false;

@@ -6,18 +6,15 @@
 
 #include "core/portable_math.h"
 #include "delio/core/error.h"
+#include "forwarding_decoder.h"
 #include "hesai.h"
+#include "hesai_at128.h"
 #include "packet_bytes.h"
 #include "packet_clock.h"
-#include "packet_decoder.h"
 #include "turn_builder.h"
 
 namespace delio::io {
-namespace {
-constexpr double kTurn = 36000;  // of azimuths, 0.01 deg
-
-/** Returns of each laser that a packet has; they lie in consecutive blocks. Throws Error. */
-std::size_t returnsOf(std::uint8_t mode) {
+std::size_t returnsOfHesai(std::uint8_t mode) {
     switch (mode) {
         case 0x33:
         case 0x34:
@@ -39,6 +36,9 @@ std::size_t returnsOf(std::uint8_t mode) {
     std::snprintf(byte.data(), byte.size(), "0x%02X", mode);
     throw Error(std::string("a Hesai packet with the unknown return mode ") + byte.data());
 }
+
+namespace {
+constexpr double kTurn = 36000;  // of azimuths, 0.01 deg
 
 /** Seconds of the sensor's clock: Unix time where it was set. Years count from 1900, or from 2000
  *  where they would be too early. */
@@ -99,7 +99,7 @@ bool HesaiDecoder::add(const std::uint8_t* payload, std::size_t bytes, double re
     const HesaiModel* const model = hesaiModel(payload, bytes);
     if (!model) throw Error("a packet of " + std::to_string(bytes) + " bytes of an unknown Hesai");
     start(*model);
-    const std::size_t returns = returnsOf(payload[model->modeAt]);
+    const std::size_t returns = returnsOfHesai(payload[model->modeAt]);
     const double time_s = clock_.timeOf(clockOf(*model, payload), received_s);
     for (std::size_t b = 0; b + returns <= model->blocks; b += returns)
         addGroup(payload, b, returns, time_s);
@@ -130,7 +130,9 @@ void HesaiDecoder::addGroup(const std::uint8_t* packet, std::size_t b, std::size
     const HesaiFiring& times = model_->firing;
     const auto before = static_cast<int>(b / returns);
     const auto behind = static_cast<int>((model_->blocks - 1 - b) / returns);
-    const int block_ns = times.block_ns + times.next_ns * (times.ofLast ? -behind : before);
+    const bool isFine = times.fine_ns > 0 && packet[model_->stateAt] == 0;
+    const int next_ns = isFine ? times.fine_ns : times.next_ns;
+    const int block_ns = times.block_ns + next_ns * (times.ofLast ? -behind : before);
     turns_.block(azimuth / kTurn, time_s + 1e-9 * block_ns);
     const double angle = mrpt::DEG2RAD(0.01 * azimuth), unit_m = unitOf(packet);
     const double sine = portable::sin(angle), cosine = portable::cos(angle);
@@ -153,13 +155,31 @@ void HesaiDecoder::addGroup(const std::uint8_t* packet, std::size_t b, std::size
                         static_cast<float>(flat * (cosine * beam.cosine - sine * beam.sine)),
                         static_cast<float>(range * beam.sineUp),
                         static_cast<float>(measured[2]) / 255.0F, static_cast<std::uint16_t>(laser),
-                        1e-9F * static_cast<float>(laser_ns[laser])});
+                        1e-9F * static_cast<float>(isFine ? laser_ns[laser] % times.fine_ns
+                                                          : laser_ns[laser])});
         }
     }
 }
+/** Takes the first packet's kind for that of all. */
+class AnyHesai : public ForwardingDecoder {
+ public:
+    explicit AnyHesai(std::string anglesFile) : anglesFile_(std::move(anglesFile)) {}
+
+    bool takes(std::size_t bytes) const override { return isHesaiSize(bytes); }
+    bool add(const std::uint8_t* payload, std::size_t bytes, double received_s) override {
+        if (!decoder_ && isAt128(payload, bytes))
+            decoder_ = at128Decoder(anglesFile_);
+        else if (!decoder_)
+            decoder_ = std::make_unique<HesaiDecoder>(anglesFile_);
+        return decoder_->add(payload, bytes, received_s);
+    }
+
+ private:
+    std::string anglesFile_;
+};
 }  // namespace
 
 std::unique_ptr<PacketDecoder> hesaiDecoder(const std::string& anglesFile) {
-    return std::make_unique<HesaiDecoder>(anglesFile);
+    return std::make_unique<AnyHesai>(anglesFile);
 }
 }  // namespace delio::io

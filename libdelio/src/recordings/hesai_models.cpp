@@ -1,5 +1,7 @@
-#include "delio/core/error.h"
+#include <algorithm>
+
 #include "hesai.h"
+#include "hesai_at128.h"
 
 namespace delio::io {
 namespace {
@@ -265,27 +267,25 @@ bool fits(const HesaiModel& model, std::size_t bytes) {
            bytes == model.bytes + kSignature;
 }
 
-/** A Pandar128 or an OT128. */
-bool isOf128(std::size_t bytes) {
-    constexpr std::size_t kBytes = 861, kSignature = 32;
-    return bytes == kBytes || bytes == kBytes + kSignature;
+const std::vector<HesaiModel>& modelsWithParts() {
+    static const std::vector<HesaiModel> all = hesaiModelsWithParts();
+    return all;
 }
 }  // namespace
 
 bool isHesaiSize(std::size_t bytes) {
     for (const HesaiModel& model : models())
         if (fits(model, bytes)) return true;
-    return isOf128(bytes);
+    const auto& others = modelsWithParts();
+    return isAt128Size(bytes) ||
+           std::any_of(others.begin(), others.end(),
+                       [bytes](const HesaiModel& model) { return fitsWithParts(model, bytes); });
 }
 
 const HesaiModel* hesaiModel(const std::uint8_t* packet, std::size_t bytes) {
     if (!isHesaiSize(bytes)) return nullptr;
     const bool hasHeader = packet[0] == 0xEE && packet[1] == 0xFF;
     const bool isBlock = packet[0] == 0xFF && packet[1] == 0xEE;
-    if (hasHeader && isOf128(bytes) && packet[6] == 128)
-        throw Error(
-            "packets of the Hesai Pandar128 and OT128 are not supported; record PointCloud2 "
-            "messages with its driver instead");
     for (const HesaiModel& model : models()) {
         if (!fits(model, bytes)) continue;
         if (model.bodyAt == 0 ? !isBlock : !hasHeader) continue;
@@ -295,6 +295,6 @@ const HesaiModel* hesaiModel(const std::uint8_t* packet, std::size_t bytes) {
             (packet[counts] == model.lasers && packet[counts + 1] == model.blocks))
             return &model;
     }
-    return nullptr;
+    return hasHeader ? hesaiModelWithParts(modelsWithParts(), packet, bytes) : nullptr;
 }
 }  // namespace delio::io

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "delio/odometry/scan.h"
 #include "delio/recordings/scan_reader.h"
+#include "findings.h"
 
 namespace delio::io {
 /** Byte offsets of the fields in Ouster packets; numbers are little-endian. */
@@ -15,6 +17,7 @@ struct OusterLayout {
     std::size_t columnHeader = 0, columnFooter = 0;
     std::size_t pixel = 0;
     bool legacy = false;          //!< frame and status are in each column, not in the header
+    bool safety = false;          //!< the header is that of functional safety (FUSA)
     std::size_t rangeBytes = 4;   //!< of the pixel's first field
     std::uint32_t rangeMask = 0;  //!< of that
     std::uint32_t rangeUnit_mm = 1;
@@ -44,7 +47,11 @@ struct OusterInfo {
     double beamOut_m = 0, beamUp_m = 0;        //!< beam's origin from that of the lidar frame
     Eigen::Matrix4d lidarToSensor = Eigen::Matrix4d::Identity();
     Eigen::Matrix4d imuToSensor = Eigen::Matrix4d::Identity();
+    std::vector<int> pixelShifts;  //!< columns by which images shift each row; empty: not told
     OusterLayout layout;
+
+    /** e.g. "Ouster OS-1-128". */
+    std::string sensor() const { return product.empty() ? "Ouster" : "Ouster " + product; }
 
     std::size_t columnBytes() const {
         return layout.columnHeader + rows * layout.pixel + layout.columnFooter;
@@ -107,6 +114,7 @@ class OusterPacket {
 
     /** Of the sensor that sent it; none in the profile LEGACY. */
     OusterIds ids() const;
+    /** Its lower 16 bits. */
     std::uint16_t frameOf(std::size_t column) const;
     /** Its status says that it was measured. */
     bool valid(std::size_t column) const;
@@ -143,6 +151,32 @@ class OusterBeams {
     float beamOrigin_m_;                       //!< ranges count from the lidar's origin
     std::vector<Eigen::Vector3f> directions_;  //!< a pixel
     std::vector<Eigen::Vector3f> origins_;     //!< a column
+};
+
+/** Makes scans of the turns of one sensor. Points come column by column, so in the order of time,
+ *  and upper rows first; their intensity is the reflectivity, 255 being 1. Columns that were not
+ *  received and pixels without a return are left out. */
+class OusterScans {
+ public:
+    /** `info` has to live on. */
+    explicit OusterScans(const OusterInfo& info) : info_(info), beams_(info) {}
+
+    Scan scanOf(const OusterFrame& frame);
+    std::size_t made() const { return made_; }
+    /** From the sensor's clock to Unix time, seconds. */
+    double clockOffset_s() const { return clockOffset_s_.value_or(0); }
+    std::vector<std::string> findings() const;
+
+ private:
+    /** Unix time at which the turn began. */
+    double stampOf(const OusterFrame& frame, const std::optional<OusterTimes>& times);
+
+    const OusterInfo& info_;
+    OusterBeams beams_;
+    std::optional<double> clockOffset_s_;  //!< of a clock that does not keep Unix time
+    double delay_s_ = 0;                   //!< from a turn's begin to its recording
+    std::size_t made_ = 0;
+    Happened mended_, untimed_;
 };
 
 /** The json beside `recording` (a file or folder) that describes its Ouster: that of the same name,

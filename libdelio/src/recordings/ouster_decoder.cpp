@@ -1,18 +1,13 @@
-#include <mrpt/maps/CPointsMapXYZI.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <deque>
 #include <optional>
 
-#include "core/portable_math.h"
 #include "delio/core/error.h"
 #include "findings.h"
-#include "mrpt/clock.h"
 #include "ouster.h"
 #include "packet_decoder.h"
-#include "turn_times.h"
 
 namespace delio::io {
 namespace {
@@ -23,7 +18,7 @@ namespace {
 class OusterDecoder : public PacketDecoder {
  public:
     OusterDecoder(const std::string& json, const std::string& name)
-        : info_(readOusterInfo(json, name)), name_(name), beams_(info_) {}
+        : info_(readOusterInfo(json, name)), name_(name), maker_(info_) {}
 
     bool takes(std::size_t bytes) const override { return bytes == info_.packetBytes(); }
     bool add(const std::uint8_t* payload, std::size_t bytes, double received_s) override;
@@ -31,29 +26,22 @@ class OusterDecoder : public PacketDecoder {
     std::optional<Scan> take() override;
     bool addImu(const std::uint8_t* payload, std::size_t bytes) override;
     std::vector<ImuSample> takeImu() override;
-    std::string sensor() const override {
-        return info_.product.empty() ? "Ouster" : "Ouster " + info_.product;
-    }
+    std::string sensor() const override { return info_.sensor(); }
     std::vector<std::string> findings() const override;
 
  private:
     void leaveOut(const OusterIds& ids);
     Error foreign() const;
-    /** Unix time at which the turn began. */
-    double stampOf(const OusterFrame& frame, const std::optional<OusterTimes>& times);
     void endFrame(bool partial);
-    Scan scanOf(const OusterFrame& frame);
 
     OusterInfo info_;
     std::string name_;
-    OusterBeams beams_;
+    OusterScans maker_;
     std::optional<OusterFrame> frame_;
-    std::optional<double> clockOffset_s_;  //!< to Unix time, from a clock that does not keep it
-    double delay_s_ = 0;                   //!< from a turn's begin to its recording
-    bool first_ = true;                    //!< the recording may begin within this frame
-    std::size_t packets_ = 0, made_ = 0;   //!< of this sensor; scans
-    OusterIds foreignIds_;                 //!< of the first packet of another sensor
-    Happened foreign_, mended_, untimed_;
+    bool first_ = true;        //!< the recording may begin within this frame
+    std::size_t packets_ = 0;  //!< of this sensor
+    OusterIds foreignIds_;     //!< of the first packet of another sensor
+    Happened foreign_;
     std::deque<Scan> scans_;
     std::vector<OusterImu> imu_;  //!< that nobody took yet
 };
@@ -76,7 +64,7 @@ Error OusterDecoder::foreign() const {
 void OusterDecoder::leaveOut(const OusterIds& ids) {
     constexpr std::size_t kMost = 1000;
     if (foreign_.count == 0) foreignIds_ = ids;
-    foreign_.add(1, made_);
+    foreign_.add(1, maker_.made());
     if (packets_ == 0 && foreign_.count >= kMost) throw foreign();
 }
 
@@ -85,8 +73,7 @@ std::vector<std::string> OusterDecoder::findings() const {
     if (packets_ > 0 && foreign_.count > 0)
         findings.push_back("ignored " + foreign_.of("packet") + " of the Ouster with " +
                            textOf(foreignIds_) + ", which '" + name_ + "' does not describe");
-    if (mended_.count > 0) findings.push_back(interpolatedTimes(mended_.of("column")));
-    if (untimed_.count > 0) findings.push_back(noTimes(untimed_.of("turn")));
+    for (std::string& finding : maker_.findings()) findings.push_back(std::move(finding));
     return findings;
 }
 
@@ -135,11 +122,11 @@ bool OusterDecoder::addImu(const std::uint8_t* payload, std::size_t bytes) {
 /** The first scan shows how the sensor's clock is to be read. */
 std::vector<ImuSample> OusterDecoder::takeImu() {
     std::vector<ImuSample> samples;
-    if (made_ == 0) return samples;
+    if (maker_.made() == 0) return samples;
     Eigen::Isometry3d pose;
     pose.matrix() = info_.imuToSensor;
     for (const OusterImu& own : imu_)
-        samples.push_back({1e-9 * static_cast<double>(own.time_ns) + clockOffset_s_.value_or(0),
+        samples.push_back({1e-9 * static_cast<double>(own.time_ns) + maker_.clockOffset_s(),
                            own.rate, own.acceleration, pose});
     imu_.clear();
     return samples;
@@ -148,7 +135,7 @@ std::vector<ImuSample> OusterDecoder::takeImu() {
 void OusterDecoder::finish() {
     endFrame(true);
     if (packets_ == 0 && foreign_.count > 0) throw foreign();
-    if (packets_ == 0 || made_ > 0) return;
+    if (packets_ == 0 || maker_.made() > 0) return;
     const std::size_t turn =
         (info_.columnsUsed + info_.columnsPerPacket - 1) / info_.columnsPerPacket;
     if (packets_ < turn)
@@ -158,56 +145,10 @@ void OusterDecoder::finish() {
                 " Ouster packets: their columns are marked as invalid");
 }
 
-double OusterDecoder::stampOf(const OusterFrame& frame, const std::optional<OusterTimes>& times) {
-    constexpr std::uint64_t kUnix_ns = 1000000000ULL * 1000000000ULL;
-    if (!times) return frame.received_s - delay_s_;
-    double stamp_s = 1e-9 * static_cast<double>(times->start_ns);
-    if (times->start_ns < kUnix_ns) {
-        if (!clockOffset_s_) clockOffset_s_ = frame.received_s - stamp_s;
-        stamp_s += *clockOffset_s_;
-    }
-    delay_s_ = frame.received_s - stamp_s;
-    return stamp_s;
-}
-
 void OusterDecoder::endFrame(bool partial) {
     if (frame_ && (!partial || 2 * frame_->count >= info_.columnsUsed))
-        scans_.push_back(scanOf(*frame_));
+        scans_.push_back(maker_.scanOf(*frame_));
     frame_.reset();
-}
-
-Scan OusterDecoder::scanOf(const OusterFrame& frame) {
-    const auto times = timesOf(frame);
-    if (!times) untimed_.add(1, made_);
-    if (times && times->mended > 0) mended_.add(times->mended, made_);
-    ++made_;
-    std::size_t count = 0;
-    for (const std::uint32_t range_mm : frame.ranges_mm) count += range_mm > 0;
-    auto points = mrpt::maps::CPointsMapXYZI::Create();
-    points->resize(count);
-    Scan scan;
-    scan.rings.reserve(count);
-    if (times) scan.times_s.reserve(count);
-    std::size_t i = 0, received = 0;
-    for (std::size_t column = 0; column < info_.columns; ++column) {
-        if (!frame.received[column]) continue;
-        const auto since_s = static_cast<float>(times ? times->since_s[received++] : 0);
-        for (std::size_t row = 0; row < info_.rows; ++row) {
-            const std::size_t pixel = column * info_.rows + row;
-            if (frame.ranges_mm[pixel] == 0) continue;
-            const Eigen::Vector3f point = beams_.point(pixel, frame.ranges_mm[pixel]);
-            points->setPointFast(i, point.x(), point.y(), point.z());
-            points->setPointIntensity(i++,
-                                      static_cast<float>(frame.reflectivities[pixel]) / 255.0F);
-            scan.rings.push_back(static_cast<std::uint16_t>(row));
-            if (times) scan.times_s.push_back(since_s);
-        }
-    }
-    points->mark_as_modified();
-    scan.points = points;
-    scan.stamp_s = stampOf(frame, times);
-    scan.time = timeOf(scan.stamp_s);
-    return scan;
 }
 
 std::optional<Scan> OusterDecoder::take() {
@@ -248,38 +189,13 @@ std::optional<OusterImu> ousterImuOf(const std::uint8_t* payload, std::size_t by
                      M_PI / 180 * vectorAt(payload + kRate)};
 }
 
-std::optional<OusterTimes> timesOf(const OusterFrame& frame) {
-    constexpr double kTolerance = 0.02;  // real columns are within 0.0005 turns of an even course
-    std::vector<double> places, times_s;
-    std::vector<std::uint64_t> told_ns;
-    for (std::size_t column = 0; column < frame.received.size(); ++column) {
-        if (!frame.received[column]) continue;
-        places.push_back(static_cast<double>(column) / static_cast<double>(frame.received.size()));
-        told_ns.push_back(frame.times_ns[column]);
-    }
-    if (told_ns.empty()) return {};
-    auto sorted = told_ns;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    for (const std::uint64_t time_ns : told_ns)
-        times_s.push_back(1e-9 * static_cast<double>(static_cast<std::int64_t>(time_ns - *middle)));
-    const auto mended = mendTurnTimes(places, kTolerance, times_s);
-    if (!mended) return {};
-    const std::int64_t first_ns = std::llround(1e9 * times_s.front());
-    OusterTimes times;
-    times.start_ns = *middle + static_cast<std::uint64_t>(first_ns);
-    for (const double time_s : times_s)
-        times.since_s.push_back(1e-9 * static_cast<double>(std::llround(1e9 * time_s) - first_ns));
-    times.mended = *mended;
-    return times;
-}
-
 OusterIds OusterPacket::ids() const {
     if (info_.layout.legacy) return {};
     constexpr std::uint64_t k24Bits = 0xFFFFFF, k40Bits = 0xFFFFFFFFFF;
-    const auto bits = numberAt<std::uint64_t>(bytes_ + 4);
-    return {numberAt<std::uint64_t>(bytes_ + 7) & k40Bits,
-            static_cast<std::uint32_t>(bits & k24Bits)};
+    const bool safety = info_.layout.safety;
+    return {
+        numberAt<std::uint64_t>(bytes_ + (safety ? 11 : 7)) & k40Bits,
+        static_cast<std::uint32_t>(numberAt<std::uint64_t>(bytes_ + (safety ? 1 : 4)) & k24Bits)};
 }
 
 std::uint64_t OusterPacket::time_ns(std::size_t column) const {
@@ -291,7 +207,8 @@ std::size_t OusterPacket::place(std::size_t column) const {
 }
 
 std::uint16_t OusterPacket::frameOf(std::size_t column) const {
-    return numberAt<std::uint16_t>(info_.layout.legacy ? at(column) + 10 : bytes_ + 2);
+    if (info_.layout.legacy) return numberAt<std::uint16_t>(at(column) + 10);
+    return numberAt<std::uint16_t>(bytes_ + (info_.layout.safety ? 4 : 2));
 }
 
 bool OusterPacket::valid(std::size_t column) const {
@@ -318,28 +235,6 @@ void OusterPacket::copyTo(OusterFrame& frame, std::size_t column) const {
                                       ? *reflectivity
                                       : static_cast<std::uint8_t>(std::min<std::uint16_t>(
                                             255, numberAt<std::uint16_t>(reflectivity)));
-    }
-}
-
-OusterBeams::OusterBeams(const OusterInfo& info)
-    : rows_(info.rows),
-      beamOrigin_m_(static_cast<float>(std::hypot(info.beamOut_m, info.beamUp_m))) {
-    const Eigen::Matrix3d rotation = info.lidarToSensor.topLeftCorner<3, 3>();
-    const Eigen::Vector3d translation = info.lidarToSensor.topRightCorner<3, 1>();
-    for (std::size_t column = 0; column < info.columns; ++column) {
-        // It turns clockwise, angles count counter-clockwise.
-        const double turned =
-            2 * M_PI * (1 - static_cast<double>(column) / static_cast<double>(info.columns));
-        const Eigen::Vector3d origin(info.beamOut_m * portable::cos(turned),
-                                     info.beamOut_m * portable::sin(turned), info.beamUp_m);
-        origins_.emplace_back((rotation * origin + translation).cast<float>());
-        for (std::size_t row = 0; row < info.rows; ++row) {
-            const double angle = turned - info.azimuths[row], up = info.elevations[row];
-            const Eigen::Vector3d direction(portable::cos(angle) * portable::cos(up),
-                                            portable::sin(angle) * portable::cos(up),
-                                            portable::sin(up));
-            directions_.emplace_back((rotation * direction).cast<float>());
-        }
     }
 }
 }  // namespace delio::io

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -20,15 +21,48 @@ constexpr double kMetresPerMm = 1e-3;
 constexpr std::size_t kMostRows = 1024;
 const char* const kLegacy = "LEGACY";
 
-std::optional<OusterLayout> layoutOf(const std::string& profile) {
-    if (profile == kLegacy) return OusterLayout{0, 0, 16, 4, 12, true, 4, 0xFFFFF, 1, 4, 2};
-    if (profile == "RNG19_RFL8_SIG16_NIR16")
-        return OusterLayout{32, 32, 12, 0, 12, false, 4, 0x7FFFF, 1, 4, 1};
-    if (profile == "RNG19_RFL8_SIG16_NIR16_DUAL")
-        return OusterLayout{32, 32, 12, 0, 16, false, 4, 0x7FFFF, 1, 3, 1};
-    if (profile == "RNG15_RFL8_NIR8")
-        return OusterLayout{32, 32, 12, 0, 4, false, 2, 0x7FFF, 8, 2, 1};
-    return {};
+/** Of the first return; the second one of two lies behind it. */
+struct Profile {
+    const char* name;
+    std::size_t pixel;           //!< bytes
+    bool isCoarse;               //!< ranges have 15 bits, of 8 mm, not 19 bits of 1 mm
+    std::size_t reflectivityAt;  //!< bytes
+};
+constexpr std::array<Profile, 13> kProfiles{{
+    {"LEGACY", 12, false, 4},
+    {"RNG15_RFL8_NIR8", 4, true, 2},
+    {"RNG15_RFL8_WIN8", 4, true, 2},
+    {"RNG15_RFL8_NIR8_DUAL", 8, true, 2},
+    {"FUSA_RNG15_RFL8_NIR8_DUAL", 8, true, 2},
+    {"RNG15_RFL8_NIR8_ZONE16", 8, true, 2},
+    {"RNG19_RFL8_SIG16_NIR16", 12, false, 4},
+    {"RNG19_RFL8_SIG16_NIR16_ZONE16", 12, false, 4},
+    {"RNG19_RFL8_SIG16_NIR16_DUAL", 16, false, 3},
+    {"RNG19_RFL8_SIG16_ZONE16_DUAL", 16, false, 3},
+    {"RNG19_RFL8_SIG16_NIR16_RGB16", 16, false, 3},
+    {"RNG19_RFL8_SIG16_NIR16_RGB16_DUAL", 20, false, 3},
+    {"FIVE_WORD_PIXEL", 20, false, 3},
+}};
+
+std::optional<OusterLayout> layoutOf(const std::string& name) {
+    if (name == kLegacy) return OusterLayout{0, 0, 16, 4, 12, true, false, 4, 0xFFFFF, 1, 4, 2};
+    const auto profile = std::find_if(kProfiles.begin(), kProfiles.end(),
+                                      [&](const Profile& one) { return name == one.name; });
+    if (profile == kProfiles.end()) return {};
+    OusterLayout layout{32, 32, 12, 0, profile->pixel};
+    layout.safety = name.rfind("FUSA_", 0) == 0;
+    layout.rangeBytes = profile->isCoarse ? 2 : 4;
+    layout.rangeMask = profile->isCoarse ? 0x7FFF : 0x7FFFF;
+    layout.rangeUnit_mm = profile->isCoarse ? 8 : 1;
+    layout.reflectivityAt = profile->reflectivityAt;
+    return layout;
+}
+
+std::string supportedProfiles() {
+    std::string names;
+    for (const Profile& profile : kProfiles)
+        names += (names.empty() ? "" : ", ") + std::string(profile.name);
+    return names;
 }
 
 /** Reads keys at the top level or in one of several groups. */
@@ -97,10 +131,24 @@ std::vector<double> anglesOf(const Reader& reader, const std::string& key) {
     return angles;
 }
 
-std::size_t countOf(const Reader& reader, const std::string& key, std::int64_t most) {
-    const auto count = reader.get<std::int64_t>(key);
-    if (count < 1 || count > most) reader.refuse(key, "is out of range");
+/** A number of the file may be one that no whole number can hold, and is read as a double first. */
+std::size_t countOf(const Reader& reader, const std::string& key, double most) {
+    const auto count = reader.get<double>(key);
+    if (!(count >= 1 && count <= most)) reader.refuse(key, "is out of range");
     return static_cast<std::size_t>(count);
+}
+
+/** Whole numbers from `least` to `most`; nothing where the key is missing. */
+std::optional<std::vector<int>> wholeNumbersOf(const Reader& reader, const std::string& key,
+                                               double least, double most) {
+    const auto values = reader.find<std::vector<double>>(key);
+    if (!values) return {};
+    std::vector<int> numbers;
+    for (const double value : *values) {
+        if (!(value >= least && value <= most)) reader.refuse(key, "is out of range");
+        numbers.push_back(static_cast<int>(value));
+    }
+    return numbers;
 }
 
 /** "1024x10": columns and turns a second. */
@@ -151,18 +199,16 @@ void readBeams(const Reader& reader, OusterInfo& info) {
 }
 
 void readColumns(const Reader& reader, OusterInfo& info) {
-    constexpr std::int64_t kMost = 4096;
+    constexpr double kMost = 4096;
     const bool told = reader.find<Json>("columns_per_frame").has_value();
     info.columns = told ? countOf(reader, "columns_per_frame", kMost) : columnsOf(reader);
     if (reader.find<Json>("columns_per_packet"))
         info.columnsPerPacket = countOf(reader, "columns_per_packet", kMost);
     info.columnsUsed = info.columns;
-    const auto window = reader.find<std::vector<std::int64_t>>("column_window");
+    const auto columns = static_cast<int>(info.columns);
+    const auto window = wholeNumbersOf(reader, "column_window", 0, columns - 1);
     if (!window) return;
-    const auto columns = static_cast<std::int64_t>(info.columns);
-    if (window->size() != 2 || window->at(0) < 0 || window->at(1) < 0 || window->at(0) >= columns ||
-        window->at(1) >= columns)
-        reader.refuse("column_window", "does not hold two valid columns");
+    if (window->size() != 2) reader.refuse("column_window", "does not hold two valid columns");
     info.columnsUsed =
         static_cast<std::size_t>((window->at(1) - window->at(0) + columns) % columns + 1);
 }
@@ -180,26 +226,30 @@ OusterInfo readOusterInfo(const std::string& json, const std::string& name) {
         countOf(reader, "pixels_per_column", kMostRows) != info.rows)
         reader.refuse("beam_altitude_angles", "does not match pixels_per_column");
     readColumns(reader, info);
+    const auto columns = static_cast<double>(info.columns);
+    info.pixelShifts = wholeNumbersOf(reader, "pixel_shift_by_row", -columns, columns)
+                           .value_or(std::vector<int>{});
+    if (!info.pixelShifts.empty() && info.pixelShifts.size() != info.rows)
+        reader.refuse("pixel_shift_by_row", "does not match the number of beams");
     const auto profile = reader.find<std::string>("udp_profile_lidar").value_or(kLegacy);
     const auto layout = layoutOf(profile);
     if (!layout)
-        reader.refuse(
-            "udp_profile_lidar",
-            "is not supported: '" + profile +
-                "'; supported are LEGACY, RNG15_RFL8_NIR8 and RNG19_RFL8_SIG16_NIR16 (_DUAL)");
+        reader.refuse("udp_profile_lidar",
+                      "is not supported: '" + profile + "'; supported are " + supportedProfiles());
     info.layout = *layout;
+    if (const auto header = reader.find<std::string>("header_type"); header && !layout->legacy)
+        info.layout.safety = *header == "FUSA";
     return info;
 }
 
 bool isOusterPacketSize(std::size_t bytes) {
-    for (const char* const profile :
-         {kLegacy, "RNG15_RFL8_NIR8", "RNG19_RFL8_SIG16_NIR16", "RNG19_RFL8_SIG16_NIR16_DUAL"})
+    for (const Profile& profile : kProfiles)
         for (const std::size_t rows : {16U, 32U, 64U, 128U})
             for (const std::size_t columns : {4U, 8U, 16U}) {
                 OusterInfo info;
                 info.rows = rows;
                 info.columnsPerPacket = columns;
-                info.layout = *layoutOf(profile);
+                info.layout = *layoutOf(profile.name);
                 if (info.packetBytes() == bytes) return true;
             }
     return false;

@@ -188,6 +188,8 @@ std::optional<RecordedTimes> timesIn(const PointLayout& layout, const Values& va
 
 bool isLivox(const PointLayout& layout) { return find(layout, {"tag"}) && find(layout, {"line"}); }
 
+bool hasTimes(const PointLayout& layout) { return find(layout, kTimes) != nullptr; }
+
 Scan PointTable::scan(const PointLayout& layout, const std::uint8_t* data, std::size_t bytes,
                       std::size_t count, std::size_t rows, const ScanPlace& place) {
     check(layout, bytes, count);

@@ -19,6 +19,9 @@ struct ScanPlace {
  *  rings: a beam has no elevation of its own. */
 bool isLivox(const PointLayout& layout);
 
+/** True where its points have times. */
+bool hasTimes(const PointLayout& layout);
+
 /** Makes scans of such points: x y z; intensity (or `i`, `reflectivity`, `signal`); ring (or
  *  `channel`, `line`, `laser_id`); time (or `t`, `timestamp`, `time_stamp`, `offset_time`,
  *  `point_time_offset`, ...), whose unit and zero PointClock finds. One a drive. */

@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "delio/core/error.h"
+#include "forwarding_decoder.h"
 #include "hesai.h"
 #include "packet_decoder.h"
 #include "robosense.h"
@@ -23,7 +24,7 @@ std::unique_ptr<PacketDecoder> decoderFor(const std::string& maker, const std::s
 }
 
 namespace {
-class RecognisingDecoder : public PacketDecoder {
+class RecognisingDecoder : public ForwardingDecoder {
  public:
     explicit RecognisingDecoder(std::string sensorFile) : sensorFile_(std::move(sensorFile)) {}
 
@@ -45,17 +46,11 @@ class RecognisingDecoder : public PacketDecoder {
             throw Error("packets of " + std::to_string(other_) +
                         " bytes are of no LiDAR that is supported; inputs.md in DeLiO's "
                         "documentation lists these");
-        if (decoder_) decoder_->finish();
-    }
-    std::optional<Scan> take() override { return decoder_ ? decoder_->take() : std::nullopt; }
-    std::string sensor() const override { return decoder_ ? decoder_->sensor() : ""; }
-    std::vector<std::string> findings() const override {
-        return decoder_ ? decoder_->findings() : std::vector<std::string>{};
+        ForwardingDecoder::finish();
     }
 
  private:
     std::string sensorFile_, maker_;
-    std::unique_ptr<PacketDecoder> decoder_;
     std::size_t other_ = 0;  //!< bytes of a packet of no known maker
 };
 }  // namespace

@@ -39,6 +39,8 @@ std::unique_ptr<ScanReader> openFile(const ScanSource& source) {
             return openRos2Database(source);
         case FileKind::kMcap:
             return openMcap(source);
+        case FileKind::kOsf:
+            return openOsf(source);
         case FileKind::kRawlog:
             break;
     }
@@ -124,6 +126,12 @@ FileKind kindOf(const std::string& path) {
     if (begins(bytes, "#ROSBAG V2.0")) return FileKind::kRos1Bag;
     if (begins(bytes, "SQLite format 3")) return FileKind::kRos2Database;
     if (begins(bytes, "\x89MCAP")) return FileKind::kMcap;
+    if (bytes.size() == kBytes && begins(bytes.substr(8), "OSF$")) {
+        if (path != "-") return FileKind::kOsf;
+        throw Error(
+            "an .osf cannot be read from standard input, as its end describes it; give the "
+            "file (-i FILE.osf)");
+    }
     const std::string extension = fs::path(path).extension().string();
     for (const char* cloud : {".pcd", ".ply", ".las", ".bin", ".txt", ".csv"})
         if (extension == cloud)
@@ -131,7 +139,8 @@ FileKind kindOf(const std::string& path) {
     if (begins(bytes, "#ROSBAG"))
         throw Error("'" + path +
                     "' is a ROS bag of a version other than 2.0; convert it with rosbag fix");
-    for (const char* other : {".osf", ".zstd", ".laz"})
+    if (extension == ".osf") throw Error("'" + path + "' is not an OSF file: its begin is damaged");
+    for (const char* other : {".zstd", ".laz"})
         if (extension == other)
             throw Error("'" + path + "': " + other +
                         " files are not supported; inputs.md in DeLiO's documentation lists the "

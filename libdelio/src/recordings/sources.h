@@ -6,7 +6,7 @@
 #include "delio/recordings/scan_reader.h"
 
 namespace delio::io {
-enum class FileKind { kRawlog, kPcap, kRos1Bag, kRos2Database, kMcap };
+enum class FileKind { kRawlog, kPcap, kRos1Bag, kRos2Database, kMcap, kOsf };
 
 /** Format of a file by its first bytes; "-": standard input, from which nothing is consumed.
  *  Unrecognised files are treated as rawlogs, which have no magic number. Throws Error if the file
@@ -24,6 +24,10 @@ std::unique_ptr<ScanReader> openRos2Folder(const ScanSource& source);
 /** Reads a pcap or pcapng of a Velodyne, Hesai, RoboSense or Ouster (whose .json lies beside it, or
  *  is `sensorFile`). Path "-": standard input. Throws as openScans(). */
 std::unique_ptr<ScanReader> openPcap(const ScanSource& source);
+
+/** Ouster's own format: the turns of one of its sensors, whose label is its serial number. Throws
+ * as openScans(). */
+std::unique_ptr<ScanReader> openOsf(const ScanSource& source);
 
 /** True for a KITTI odometry sequence (velodyne/) or raw drive (velodyne_points/data/). */
 bool isKittiFolder(const std::filesystem::path& folder);

@@ -10,8 +10,8 @@
 #include "beam_angles.h"
 #include "core/portable_math.h"
 #include "delio/core/error.h"
+#include "forwarding_decoder.h"
 #include "packet_bytes.h"
-#include "packet_decoder.h"
 #include "turn_builder.h"
 #include "velodyne.h"
 
@@ -156,7 +156,7 @@ void Vls128Decoder::addBlock(const std::uint8_t* block, const std::uint8_t* firs
 }
 
 /** Takes the first packet's model for that of all. */
-class AnyVelodyne : public PacketDecoder {
+class AnyVelodyne : public ForwardingDecoder {
  public:
     explicit AnyVelodyne(std::string sensorFile) : sensorFile_(std::move(sensorFile)) {}
 
@@ -169,18 +169,9 @@ class AnyVelodyne : public PacketDecoder {
             decoder_ = smallVelodyneDecoder(sensorFile_);
         return decoder_->add(payload, bytes, received_s);
     }
-    void finish() override {
-        if (decoder_) decoder_->finish();
-    }
-    std::optional<Scan> take() override { return decoder_ ? decoder_->take() : std::nullopt; }
-    std::string sensor() const override { return decoder_ ? decoder_->sensor() : ""; }
-    std::vector<std::string> findings() const override {
-        return decoder_ ? decoder_->findings() : std::vector<std::string>{};
-    }
 
  private:
     std::string sensorFile_;
-    std::unique_ptr<PacketDecoder> decoder_;
 };
 }  // namespace
 

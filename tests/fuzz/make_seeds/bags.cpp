@@ -1,5 +1,7 @@
+#include "at128_packets.h"
 #include "bag_files.h"
 #include "fast_spinner.h"
+#include "osf_writer.h"
 #include "ouster_packets.h"
 #include "rosette.h"
 #include "seeds.h"
@@ -72,7 +74,9 @@ void otherPackets() {
         return text.append(packet.begin(), packet.end());
     };
     const std::string noTable = std::string("0") + '\0';
-    for (const auto& toy : test::hesaiToys()) {
+    auto hesai = test::hesaiToys();
+    hesai.push_back(test::hesai128Toy(true));
+    for (const auto& toy : hesai) {
         const std::string packet = timed(hesaiPacket(toy));
         writeText(seed("packets", toy.name), noTable + packet + packet);
         writeText(seed("packets", "table" + toy.name),
@@ -83,6 +87,13 @@ void otherPackets() {
         writeText(seed("packets", toy.name),
                   noTable + timed(test::robosenseDescription(toy)) + packet + packet);
     }
+    std::string at128 = "0";
+    for (int field = 0; field < 2; ++field) {
+        const auto packet = test::at128Packet(field, 100, 1.7e9);
+        at128.append(packet.begin(), packet.end());
+    }
+    writeText(seed("at128", "packets"), at128);
+    writeText(seed("at128", "file"), "1" + test::at128File());
     auto bank = velodynePacket();
     for (std::size_t b = 0; b < 12; ++b)
         bank[100 * b + 1] = static_cast<std::uint8_t>(0xEE - 0x11 * (b % 4));
@@ -124,7 +135,7 @@ test::Bytes ousterPacket(const std::string& profile, std::uint16_t frame, std::u
     const std::size_t head = toy.legacy() ? 0 : 32, columnHead = toy.legacy() ? 16 : 12;
     const std::size_t column = columnHead + 16 * toy.pixel() + (toy.legacy() ? 4 : 0);
     test::Bytes bytes(2 * head + 4 * column);
-    if (!toy.legacy()) test::putAt(bytes, 2, frame);
+    if (!toy.legacy()) test::putAt(bytes, toy.safety() ? 4 : 2, frame);
     for (std::uint16_t c = 0; c < 4; ++c) {
         const std::size_t at = head + c * column;
         test::putAt(bytes, at, toy.start_ns + (16ULL * frame + first + c) * 1000000);
@@ -155,8 +166,8 @@ void packets() {
     for (int i = 0; i < 3; ++i) pcap.add(velodyne, 1000 + 0.1 * i);
     behind(kNul, seed("pcap", "velodyne"),
            [&](const fs::path& file) { pcap.write(file.string()); });
-    for (const std::string profile :
-         {"LEGACY", "RNG19_RFL8_SIG16_NIR16", "RNG15_RFL8_NIR8", "RNG19_RFL8_SIG16_NIR16_DUAL"}) {
+    for (const std::string profile : {"LEGACY", "RNG19_RFL8_SIG16_NIR16", "RNG15_RFL8_NIR8",
+                                      "RNG19_RFL8_SIG16_NIR16_DUAL", "FUSA_RNG15_RFL8_NIR8_DUAL"}) {
         const std::string json = ousterJson(profile);
         std::string bytes;
         test::PcapWriter ouster;
@@ -177,9 +188,53 @@ void packets() {
            [&](const fs::path& file) { fragments.write(file.string()); });
 }
 
+/** Two turns of it in Ouster's own format. */
+void osf() {
+    const std::string profile = "RNG19_RFL8_SIG16_NIR16";
+    auto json = nlohmann::json::parse(ousterJson(profile));
+    json["data_format"]["pixel_shift_by_row"] = std::vector<int>(16, 3);
+    const auto info = io::readOusterInfo(json.dump(), "toy.json");
+    for (const auto& [name, coding] :
+         {std::pair{"png", test::FieldCoding::kPng}, {"zpng", test::FieldCoding::kZpng}}) {
+        test::OsfSensor sensor{json.dump(), {}};
+        for (std::uint16_t number = 0; number < 2; ++number) {
+            io::OusterFrame frame(info);
+            frame.number = number;
+            for (std::uint16_t first = 0; first < 16; first += 4) {
+                const auto bytes = ousterPacket(profile, number, first);
+                const io::OusterPacket packet(info, bytes.data());
+                for (std::size_t c = 0; c < 4; ++c) packet.copyTo(frame, c);
+            }
+            sensor.turns.push_back(test::osfTurn(info, frame, coding, 1'000'000'000));
+        }
+        writeText(seed("osf", name), test::osfFile({sensor}));
+    }
+}
+
+/** .bin files of records with rings and times. */
+void binLayouts() {
+    std::string boreas, avia, nclt;
+    for (int i = 0; i < 40; ++i) {
+        const auto x = static_cast<float>(i);
+        const float boreasPoint[6]{x, 2, 3, 0.5F, static_cast<float>(i % 8), 1e-3F * x};
+        boreas.append(reinterpret_cast<const char*>(boreasPoint), sizeof(boreasPoint));
+        avia.append(reinterpret_cast<const char*>(boreasPoint), 12);
+        const std::uint8_t numbers[7]{
+            9, 0, static_cast<std::uint8_t>(i % 6), 0, static_cast<std::uint8_t>(i), 0, 0};
+        avia.append(reinterpret_cast<const char*>(numbers), sizeof(numbers));
+        const std::uint16_t nclts[4]{20000, static_cast<std::uint16_t>(21000 + i), 19000,
+                                     static_cast<std::uint16_t>(i % 32 << 8)};
+        nclt.append(reinterpret_cast<const char*>(nclts), sizeof(nclts));
+    }
+    writeText(seed("clouds", "boreas"), "2" + boreas);
+    writeText(seed("clouds", "avia"), "2" + avia);
+    writeText(seed("clouds", "nclt"), "2" + nclt);
+}
 }  // namespace
 
 void seedBags() {
+    osf();
+    binLayouts();
     bags();
     messages();
     otherPackets();

@@ -279,18 +279,30 @@ TEST_F(CloudFolder, BinWithAndWithoutRings) {
     }
 }
 
-// 16 points of 28 bytes (x y z intensity, then whole numbers) are as many bytes as 28 of 16.
+// 16 points of 36 bytes (x y z intensity, then whole numbers) are as many bytes as 36 of 16.
 TEST_F(CloudFolder, BinOfAnotherLayoutIsRefused) {
     std::string bytes;
     for (std::uint32_t i = 0; i < 16; ++i)
-        bytes += raw(Xyzi{0.5F, 1, 2, 30}) + raw(1000000 * i, 1U + i, 512 * i);
-    ASSERT_EQ(bytes.size(), 448U);
+        bytes += raw(Xyzi{0.5F, 1, 2, 30}) + raw(1U + i, 2U + i, 512 * i, 3U + i, 7U);
+    ASSERT_EQ(bytes.size(), 576U);
     writeText(scans_ / "0.bin", bytes);
-    expectError(error(), {(scans_ / "0.bin").string(), "28 bytes", ".pcd"});
+    expectError(error(), {(scans_ / "0.bin").string(), "36 bytes", ".pcd", "--sensor-label"});
     fs::create_directories(folder_ / "seq" / "velodyne");
     writeText(folder_ / "seq" / "velodyne" / "000000.bin", bytes);
     const auto kitti = io::openKittiFolder({folder_ / "seq", "", "", ""});
-    expectError(errorOf([&] { kitti->next(); }), {"000000.bin", "28 bytes"});
+    expectError(errorOf([&] { kitti->next(); }), {"000000.bin", "36 bytes"});
+}
+
+// A KITTI folder has KITTI's layout.
+TEST_F(CloudFolder, KnownLayoutInAKittiFolderIsRefused) {
+    std::string bytes;
+    for (int i = 0; i < 64; ++i)
+        bytes +=
+            raw(Xyzi{0.5F, 1, 2, 30}, static_cast<float>(i % 8), 1e-3F * static_cast<float>(i));
+    fs::create_directories(folder_ / "seq" / "velodyne");
+    writeText(folder_ / "seq" / "velodyne" / "000000.bin", bytes);
+    const auto kitti = io::openKittiFolder({folder_ / "seq", "", "", ""});
+    expectError(errorOf([&] { kitti->next(); }), {"000000.bin", "24 bytes", "layout boreas"});
 }
 
 TEST_F(CloudFolder, EndsAtAFault) {

@@ -28,7 +28,7 @@ TEST(OpenScans, RefusesWhatIsNoRecording) {
     test::writeText(folder / "empty.bag", "");
     EXPECT_NE(refusal(folder / "none").find("no such file or folder"), std::string::npos);
     EXPECT_NE(refusal(folder / "a.pcd").find("give the folder"), std::string::npos);
-    EXPECT_NE(refusal(folder / "a.osf").find(".osf files are not supported"), std::string::npos);
+    EXPECT_NE(refusal(folder / "a.osf").find("is not an OSF file"), std::string::npos);
     EXPECT_NE(refusal(folder / "old.bag").find("a version other than 2.0"), std::string::npos);
     EXPECT_NE(refusal(folder / "empty.bag").find("is empty"), std::string::npos);
     std::filesystem::create_directory(folder / "empty");

@@ -84,7 +84,10 @@ void expectPoints(const Scan& scan, const HesaiToy& toy, std::size_t firstShot,
 
 TEST(PacketsHesai, EveryModelAndReturnMode) {
     const TemporaryFolder folder;
-    for (HesaiToy toy : test::hesaiToys())
+    auto toys = test::hesaiToys();
+    toys.push_back(test::hesai128Toy(false));
+    toys.push_back(test::hesai128Toy(true));
+    for (HesaiToy toy : toys)
         for (const int mode : {0x37, 0x39}) {
             SCOPED_TRACE(toy.name + " " + std::to_string(mode));
             toy.mode = static_cast<std::uint8_t>(mode);
@@ -121,6 +124,69 @@ TEST(PacketsHesai, LasersOfAQt128TakeTurns) {
     // Laser 40 fires 33.992 us after a block of the first kind, laser 8 8.648 us after the next
     // one.
     EXPECT_NEAR(timeOf(8) - timeOf(40), 1e-6 * (111.11 + 8.648 - 33.992), 1e-7);
+}
+
+/** The first turn of a drive, by the model's default angles. */
+Scan firstScanOf(const HesaiToy& toy) {
+    const auto decoder = io::hesaiDecoder("");
+    auto scans = scansOf(*decoder, test::hesaiDrive(toy, 1.6));
+    EXPECT_EQ(decoder->sensor(), "Hesai " + toy.name);
+    return scans.at(0);
+}
+
+double elevationOf(const Scan& scan, std::size_t i) {
+    float x = 0, y = 0, z = 0;
+    scan.points->getPoint(i, x, y, z);
+    return std::atan2(double{z}, std::hypot(double{x}, double{y})) * 180 / M_PI;
+}
+
+TEST(PacketsHesai, StatusTellsAPandar128FromAnOt128) {
+    for (const bool isOt128 : {false, true}) {
+        const Scan scan = firstScanOf(test::hesai128Toy(isOt128));
+        EXPECT_NEAR(elevationOf(scan, 0), isOt128 ? 14.985 : 14.436, 1e-3);
+        EXPECT_NEAR(elevationOf(scan, 127), isOt128 ? -24.765 : -25.016, 1e-3);
+        // Lasers 1 and 4 of Hesai's files of firing times.
+        EXPECT_NEAR(scan.times_s[0] - scan.times_s[3],
+                    isOt128 ? 46.645e-6 - 6.289e-6 : 4.436e-6 - 2.431e-6, 1e-8);
+        EXPECT_NEAR(scan.times_s[128] - scan.times_s[0], 55.556e-6, 3e-7);
+    }
+}
+
+TEST(PacketsHesai, HighResolutionOfAnOt128) {
+    HesaiToy toy = test::hesai128Toy(true);
+    toy.state = 0;
+    toy.step = 10;
+    toy.next_us = 27.778;
+    const Scan scan = firstScanOf(toy);
+    EXPECT_EQ(scan.points->size(), 3600U * 128);
+    EXPECT_NEAR(scan.times_s[0] - scan.times_s[3], 18.867e-6 - 6.289e-6, 1e-8);
+    // A Unix time in a double is good to 0.24 us.
+    EXPECT_NEAR(scan.times_s[128] - scan.times_s[0], 27.778e-6, 3e-7);
+}
+
+TEST(PacketsHesai, PartsOfAPacketOfAnOt128) {
+    // Without functional safety, number and IMU: 17, 4 and 22 bytes less; with a signature.
+    HesaiToy toy = test::hesai128Toy(true);
+    toy.flags = 0;
+    toy.bytes = 818;
+    toy.stateAt -= 17;
+    toy.modeAt -= 17;
+    toy.dateAt -= 17;
+    toy.clockAt -= 17;
+    EXPECT_EQ(firstScanOf(toy).points->size(), 1800U * 128);
+    toy.flags = 8;
+    toy.bytes = 850;
+    EXPECT_EQ(firstScanOf(toy).points->size(), 1800U * 128);
+    // Confidences: a byte behind each return.
+    toy = test::hesai128Toy(true);
+    toy.flags |= 0x10;
+    toy.returnBytes = 4;
+    for (std::size_t* at : {&toy.bytes, &toy.stateAt, &toy.modeAt, &toy.dateAt, &toy.clockAt})
+        *at += 256;
+    EXPECT_EQ(firstScanOf(toy).points->size(), 1800U * 128);
+    toy.flags = 7;
+    const auto packets = test::hesaiDrive(toy, 0.1);
+    EXPECT_NE(faultOf(packets).find("1117 bytes of an unknown Hesai"), std::string::npos);
 }
 
 TEST(PacketsHesai, ReturnsThatOnlyRepeatAreNone) {
@@ -174,11 +240,12 @@ TEST(PacketsHesai, WhatCannotBeDecodedIsRefused) {
     has(faultOf(changed), "1080 bytes of an unknown Hesai");
     packets.resize(80);
     has(faultOf(packets), "of 360 degrees in 640 blocks of a Hesai PandarXT-32");
-    Bytes large(861);
-    large[0] = 0xEE;
-    large[1] = 0xFF;
-    large[6] = 128;
-    has(faultOf({{large, kBegin_s}}), "Pandar128 and OT128 are not supported");
+    auto toy128 = test::hesai128Toy(true);
+    toy128.status = 137;
+    has(faultOf(test::hesaiDrive(toy128, 0.1)), "Hesai JT128 are not supported");
+    toy128.status = 128;
+    toy128.lasers = 90;
+    has(faultOf(test::hesaiDrive(toy128, 0.1)), "861 bytes of an unknown Hesai");
     EXPECT_FALSE(io::hesaiDecoder("")->takes(1079));
     EXPECT_FALSE(io::hesaiDecoder("")->takes(0));
 }

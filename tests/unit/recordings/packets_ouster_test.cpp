@@ -7,6 +7,7 @@
 
 #include "delio/core/error.h"
 #include "ouster_packets.h"
+#include "recordings/ouster.h"
 #include "recordings/packet_decoder.h"
 
 namespace {
@@ -49,7 +50,11 @@ Eigen::Vector3d expected(std::size_t row, std::size_t column, double range) {
 
 TEST(PacketsOuster, PointsOfEveryProfile) {
     for (const char* const profile :
-         {"LEGACY", "RNG15_RFL8_NIR8", "RNG19_RFL8_SIG16_NIR16", "RNG19_RFL8_SIG16_NIR16_DUAL"}) {
+         {"LEGACY", "RNG15_RFL8_NIR8", "RNG15_RFL8_WIN8", "RNG15_RFL8_NIR8_DUAL",
+          "FUSA_RNG15_RFL8_NIR8_DUAL", "RNG15_RFL8_NIR8_ZONE16", "RNG19_RFL8_SIG16_NIR16",
+          "RNG19_RFL8_SIG16_NIR16_ZONE16", "RNG19_RFL8_SIG16_NIR16_DUAL",
+          "RNG19_RFL8_SIG16_ZONE16_DUAL", "RNG19_RFL8_SIG16_NIR16_RGB16",
+          "RNG19_RFL8_SIG16_NIR16_RGB16_DUAL", "FIVE_WORD_PIXEL"}) {
         const OusterToy toy{profile};
         const auto decoder = decoderOf(toy);
         addTurn(*decoder, toy, 65535);
@@ -134,6 +139,26 @@ TEST(PacketsOuster, LessThanHalfATurnSaysSo) {
     for (std::size_t c = 0; c < 16; ++c) packet[32 + 204 * c + 10] = 0;
     for (int i = 0; i < 32; ++i) unmeasured->add(packet.data(), packet.size(), kNow_s);
     EXPECT_NE(faultOf(*unmeasured).find("marked as invalid"), std::string::npos);
+}
+
+TEST(PacketsOuster, HeaderOfFunctionalSafety) {
+    OusterToy toy{"FUSA_RNG15_RFL8_NIR8_DUAL"};
+    toy.serial = 992137000142;
+    toy.initialization = 9599938;
+    auto json = toy.json();
+    const io::OusterInfo info = io::readOusterInfo(json.dump(), "toy.json");
+    const Bytes bytes = toy.packet(300, 2);
+    ASSERT_EQ(info.packetBytes(), bytes.size());
+    const io::OusterPacket packet(info, bytes.data());
+    EXPECT_EQ(packet.ids().serial, toy.serial);
+    EXPECT_EQ(packet.ids().initialization, toy.initialization);
+    EXPECT_EQ(packet.frameOf(0), 300);
+    EXPECT_EQ(packet.place(3), 35U);
+    // Firmware 3.2 names the header apart from the profile.
+    json["data_format"]["udp_profile_lidar"] = "RNG15_RFL8_NIR8_DUAL";
+    EXPECT_FALSE(io::readOusterInfo(json.dump(), "toy.json").layout.safety);
+    json["data_format"]["header_type"] = "FUSA";
+    EXPECT_TRUE(io::readOusterInfo(json.dump(), "toy.json").layout.safety);
 }
 
 /** Whether packets of `sent` go with the json of `described`. */
@@ -323,6 +348,18 @@ TEST(PacketsOuster, WrongDescriptionsNameTheKey) {
     json = OusterToy().json();
     json["data_format"]["udp_profile_lidar"] = "RNG99";
     EXPECT_NE(faultOf(json.dump()).find("RNG99"), std::string::npos);
+    for (const char* const key :
+         {"columns_per_frame", "columns_per_packet", "column_window", "pixel_shift_by_row"})
+        for (const double number : {1.5e36, -1.5e36}) {
+            json = OusterToy().json();
+            if (std::string(key).find("per_") != std::string::npos)
+                json["data_format"][key] = number;
+            else
+                json["data_format"][key] = std::vector<double>(16, number);
+            EXPECT_NE(faultOf(json.dump()).find(std::string(key) + " is out of range"),
+                      std::string::npos)
+                << faultOf(json.dump());
+        }
     json = OusterToy().json();
     json["lidar_to_sensor_transform"] = {1, 2};
     EXPECT_NE(faultOf(json.dump()).find("lidar_to_sensor_transform"), std::string::npos);

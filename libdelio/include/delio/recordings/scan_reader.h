@@ -88,12 +88,14 @@ class ScanReader {
 /** A recording and the settings to open it. */
 struct ScanSource {
     /** A rawlog (see RawlogReader), KITTI odometry or raw folder, folder of .pcd, .ply, .bin, .txt
-     *  or .csv, ROS 1 .bag, ROS 2 .db3, .mcap or the folder of either, pcap of a Velodyne or
-     *  Ouster; the format is detected from the content. "-": a rawlog or pcap from standard input.
+     *  or .csv, ROS 1 .bag, ROS 2 .db3, .mcap or the folder of either, pcap of a Velodyne, Ouster,
+     *  Hesai or RoboSense, .osf of an Ouster; the format is detected from the content. "-": a
+     * rawlog or pcap from standard input.
      */
     std::string path;
-    /** The sensor to read: a rawlog's sensorLabel, a bag's topic. Empty: that of the first scan of
-     *  a rawlog; of a bag its only one. */
+    /** The sensor to read: a rawlog's sensorLabel, a bag's topic, the serial number in an .osf; of
+     * a folder of .bin files the layout of their points. Empty: that of the first scan of a rawlog;
+     * of a bag its only one; of an .osf its first; the layout that the first file has. */
     std::string label;
     /** Where the files lie that a rawlog keeps outside of itself; empty: beside it. */
     std::string imagesFolder;

@@ -1,0 +1,113 @@
+#include <mrpt/maps/CPointsMapXYZI.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/portable_math.h"
+#include "mrpt/clock.h"
+#include "ouster.h"
+#include "turn_times.h"
+
+namespace delio::io {
+std::vector<std::string> OusterScans::findings() const {
+    std::vector<std::string> findings;
+    if (mended_.count > 0) findings.push_back(interpolatedTimes(mended_.of("column")));
+    if (untimed_.count > 0) findings.push_back(noTimes(untimed_.of("turn")));
+    return findings;
+}
+
+double OusterScans::stampOf(const OusterFrame& frame, const std::optional<OusterTimes>& times) {
+    constexpr std::uint64_t kUnix_ns = 1000000000ULL * 1000000000ULL;
+    if (!times) return frame.received_s - delay_s_;
+    double stamp_s = 1e-9 * static_cast<double>(times->start_ns);
+    if (times->start_ns < kUnix_ns) {
+        if (!clockOffset_s_) clockOffset_s_ = frame.received_s - stamp_s;
+        stamp_s += *clockOffset_s_;
+    }
+    delay_s_ = frame.received_s - stamp_s;
+    return stamp_s;
+}
+
+Scan OusterScans::scanOf(const OusterFrame& frame) {
+    const auto times = timesOf(frame);
+    if (!times) untimed_.add(1, made_);
+    if (times && times->mended > 0) mended_.add(times->mended, made_);
+    ++made_;
+    std::size_t count = 0;
+    for (const std::uint32_t range_mm : frame.ranges_mm) count += range_mm > 0;
+    auto points = mrpt::maps::CPointsMapXYZI::Create();
+    points->resize(count);
+    Scan scan;
+    scan.rings.reserve(count);
+    if (times) scan.times_s.reserve(count);
+    std::size_t i = 0, received = 0;
+    for (std::size_t column = 0; column < info_.columns; ++column) {
+        if (!frame.received[column]) continue;
+        const auto since_s = static_cast<float>(times ? times->since_s[received++] : 0);
+        for (std::size_t row = 0; row < info_.rows; ++row) {
+            const std::size_t pixel = column * info_.rows + row;
+            if (frame.ranges_mm[pixel] == 0) continue;
+            const Eigen::Vector3f point = beams_.point(pixel, frame.ranges_mm[pixel]);
+            points->setPointFast(i, point.x(), point.y(), point.z());
+            points->setPointIntensity(i++,
+                                      static_cast<float>(frame.reflectivities[pixel]) / 255.0F);
+            scan.rings.push_back(static_cast<std::uint16_t>(row));
+            if (times) scan.times_s.push_back(since_s);
+        }
+    }
+    points->mark_as_modified();
+    scan.points = points;
+    scan.stamp_s = stampOf(frame, times);
+    scan.time = timeOf(scan.stamp_s);
+    return scan;
+}
+
+std::optional<OusterTimes> timesOf(const OusterFrame& frame) {
+    constexpr double kTolerance = 0.02;  // real columns are within 0.0005 turns of an even course
+    std::vector<double> places, times_s;
+    std::vector<std::uint64_t> told_ns;
+    for (std::size_t column = 0; column < frame.received.size(); ++column) {
+        if (!frame.received[column]) continue;
+        places.push_back(static_cast<double>(column) / static_cast<double>(frame.received.size()));
+        told_ns.push_back(frame.times_ns[column]);
+    }
+    if (told_ns.empty()) return {};
+    auto sorted = told_ns;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    for (const std::uint64_t time_ns : told_ns)
+        times_s.push_back(1e-9 * static_cast<double>(static_cast<std::int64_t>(time_ns - *middle)));
+    const auto mended = mendTurnTimes(places, kTolerance, times_s);
+    if (!mended) return {};
+    const std::int64_t first_ns = std::llround(1e9 * times_s.front());
+    OusterTimes times;
+    times.start_ns = *middle + static_cast<std::uint64_t>(first_ns);
+    for (const double time_s : times_s)
+        times.since_s.push_back(1e-9 * static_cast<double>(std::llround(1e9 * time_s) - first_ns));
+    times.mended = *mended;
+    return times;
+}
+
+OusterBeams::OusterBeams(const OusterInfo& info)
+    : rows_(info.rows),
+      beamOrigin_m_(static_cast<float>(std::hypot(info.beamOut_m, info.beamUp_m))) {
+    const Eigen::Matrix3d rotation = info.lidarToSensor.topLeftCorner<3, 3>();
+    const Eigen::Vector3d translation = info.lidarToSensor.topRightCorner<3, 1>();
+    for (std::size_t column = 0; column < info.columns; ++column) {
+        // It turns clockwise, angles count counter-clockwise.
+        const double turned =
+            2 * M_PI * (1 - static_cast<double>(column) / static_cast<double>(info.columns));
+        const Eigen::Vector3d origin(info.beamOut_m * portable::cos(turned),
+                                     info.beamOut_m * portable::sin(turned), info.beamUp_m);
+        origins_.emplace_back((rotation * origin + translation).cast<float>());
+        for (std::size_t row = 0; row < info.rows; ++row) {
+            const double angle = turned - info.azimuths[row], up = info.elevations[row];
+            const Eigen::Vector3d direction(portable::cos(angle) * portable::cos(up),
+                                            portable::sin(angle) * portable::cos(up),
+                                            portable::sin(up));
+            directions_.emplace_back((rotation * direction).cast<float>());
+        }
+    }
+}
+}  // namespace delio::io
