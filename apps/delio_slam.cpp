@@ -78,7 +78,6 @@ void play(SlamCommandLine& line, run::Playback& playback, run::Run& run, PoseOut
 std::unique_ptr<io::ScanReader> openInput(SlamCommandLine& line, const std::string& input) {
     if (!isLive(line)) return io::openScans(sourceFor(line, input));
     cli::catchInterrupts();  // the recorded packets are worth writing
-    cli::inform("waiting for packets at " + input);
     try {
         return io::openScans(sourceFor(line, input));
     } catch (const Error&) {

@@ -122,7 +122,7 @@ void LiveSource::listen(std::uint16_t port) {
 }
 
 bool LiveSource::isOver(double now_s) {
-    constexpr double kPatience_s = 5;
+    constexpr double kPatience_s = 3;
     if (stopped_ || (settings_.isEnded && settings_.isEnded())) return true;
     if (packets_ > 0) return settings_.idle_s > 0 && now_s - latest_s_ > settings_.idle_s;
     if (now_s - begin_s_ > kPatience_s && !std::exchange(hasWarned_, true))
