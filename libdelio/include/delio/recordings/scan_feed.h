@@ -20,8 +20,8 @@ class ScanFeed {
  public:
     /** A scan, and the IMU samples that were added before it and after the scan before. */
     struct Item {
-        Scan scan;
-        std::vector<ImuSample> imu;
+        Scan scan;                         //!< as it was added
+        std::vector<ImuSample> imu;        //!< in the order in which they were added
         std::optional<double> received_s;  //!< Unix time at which the sensor's last packet came
     };
 

@@ -87,10 +87,11 @@ class Run {
     /** Pose of the vehicle at the latest scan. */
     struct Pose {
         double stamp_s = 0;  //!< of the scan
+        /** Maps coordinates of the vehicle to those of the frame. */
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
         bool isInMap = false;  //!< in the frame of the stored map; otherwise of the first scan
     };
-    Pose latestPose() const;
+    Pose latestPose() const;  //!< after a scan was processed
 
     /** Records a warning for the summary and calls RunSettings::onWarning. */
     void warn(const std::string& text);

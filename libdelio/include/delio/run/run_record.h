@@ -69,7 +69,7 @@ RunRow rowOf(const Scan& scan, const ScanReport& report, double read_ms, const R
 
 /** A drive of a live sensor. */
 struct LiveRecord {
-    io::LiveReport sensor;
+    io::LiveReport sensor;  //!< at its end
     /** From the last packet of each processed scan to its pose. */
     std::vector<double> latency_ms;
 };
