@@ -13,7 +13,7 @@ Playback::Playback(io::ScanReader& reader, PlaybackSettings settings)
     : reader_(reader), settings_(std::move(settings)) {
     Stopwatch watch;
     now_ = read(settings_.start);
-    read_ms_ = watch.lap_ms();
+    read_ms_ = now_.received_s ? 0 : watch.lap_ms();
 }
 
 Playback::Reading Playback::read(std::size_t passedOver) {
@@ -41,7 +41,8 @@ void Playback::processAll(Run& run, const OnScan& onScan) {
         if (isLast || isInterrupted()) break;
         Stopwatch watch;
         now_ = next.get();
-        read_ms_ = watch.lap_ms();
+        // One waits for a live sensor, whatever the time that reading takes.
+        read_ms_ = now_.received_s ? 0 : watch.lap_ms();
     }
 }
 
