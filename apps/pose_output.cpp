@@ -37,8 +37,11 @@ std::string jsonOf(const run::Run::Pose& now, const run::RunRow& row,
 }  // namespace
 
 PoseOutput::PoseOutput(const std::string& format, const std::string& target) : format_(format) {
-    // A reader that ends does not end the drive.
-    if (!format_.empty()) std::signal(SIGPIPE, SIG_IGN);
+    if (!format_.empty()) {
+        // A reader that ends does not end the drive, and one that waits does not delay warnings.
+        std::signal(SIGPIPE, SIG_IGN);
+        std::cerr.tie(nullptr);
+    }
     if (!target.empty()) connect(target);
 }
 

