@@ -50,6 +50,12 @@ Eigen::Isometry3d ScanTrajectory::at(double time_s) const {
     return poses_[i] * motions_[i].after(time_s - times_s_[i]);
 }
 
+ScanTrajectory placed(const Eigen::Isometry3d& pose, const ScanTrajectory& trajectory) {
+    auto poses = trajectory.poses();
+    for (auto& at : poses) at = pose * at;
+    return {trajectory.times_s(), poses};
+}
+
 ScanTrajectory ScanTrajectory::seenFrom(double time_s) const {
     ScanTrajectory seen = *this;
     const Eigen::Isometry3d back = at(time_s).inverse();

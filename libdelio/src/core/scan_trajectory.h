@@ -48,6 +48,9 @@ class ScanTrajectory {
     std::vector<Twist> motions_;  //!< on from each pose but the last
 };
 
+/** The trajectory in a frame in which its own frame at rest has this pose. */
+ScanTrajectory placed(const Eigen::Isometry3d& pose, const ScanTrajectory& trajectory);
+
 /** A trajectory, for those who ask often: poses at times so close to each other that what lies
  * between is their weighted mean. */
 class PoseTable {

@@ -15,22 +15,6 @@ Eigen::Isometry3d inverseOf(const Eigen::Matrix3f& rotation) {
     return Eigen::Isometry3d(rotation.transpose().cast<double>());
 }
 
-/** Every step has the same stages, whether the scan went through them or not. */
-std::vector<Named> noTimes() {
-    return {{"preprocess", 0}, {"undistort", 0}, {"thinning", 0},  {"points", 0},
-            {"dynamic", 0},    {"planes", 0},    {"map_update", 0}};
-}
-
-/** Pose at a time that may lie outside the scan: there the motion goes on at its mean twist, as a
- *  bent motion cannot be extrapolated. */
-Eigen::Isometry3d atStamp(const ScanTrajectory& motion, double stamp_s) {
-    const double first_s = motion.times_s().front(), last_s = motion.times_s().back();
-    const double inside_s = std::clamp(stamp_s, first_s, last_s);
-    if (inside_s == stamp_s || first_s == last_s) return motion.at(stamp_s);
-    const auto mean = Twist::of(motion.at(first_s).inverse() * motion.at(last_s), last_s - first_s);
-    return motion.at(inside_s) * mean.after(stamp_s - inside_s);
-}
-
 /** Over a long time a vehicle goes on turning, but not tilting. */
 Eigen::Isometry3d withoutTilt(const Eigen::Isometry3d& increment, const Eigen::Matrix3f& upright) {
     const Eigen::Vector3d up = upright.row(2).transpose().cast<double>();
@@ -89,17 +73,14 @@ Step PlaneOdometry::process(const Scan& scan) {
         if (isEmpty) upright_ = uprightOf(scan.sensorPose, cloud.points);
     }
     const Arrival arrival = arrivals_.take(scan, scan.stamp_s - cloud.stamp_s);
+    time_s_ = arrivals_.sinceStart_s();
     const Interval& interval = arrival.interval;
     unregistered_s_ += interval.elapsed_s;
     advanceGyro(cloud, scan);
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
     step.interrupted = !isEmpty && interval.kind == IntervalKind::kUnknown;
-    if (step.interrupted) {
-        constexpr double kLongest_s = 3.5;  // longer, the motion is not extrapolated
-        if (interval.elapsed_s > kLongest_s) prediction_.forget();
-        state_ = lostFrom(std::move(state_), missesOf(state_));
-    }
+    if (step.interrupted) interrupt(interval.elapsed_s);
     if (!isEmpty) step.reason = reasonToSkip(arrival, prediction_);
 
     const bool motionWasKnown = !isLost(state_);
@@ -108,7 +89,8 @@ Step PlaneOdometry::process(const Scan& scan) {
     else if (!step.reason.empty())
         skip(cloud, interval, step);
     else
-        track(cloud, interval, step);
+        track(cloud, attemptToTrack(cloud, interval, step), step);
+    retraceStart(cloud, step);
     carryToStamp(cloud.stamp_s, !motionWasKnown && !step.predicted && !step.interrupted, step);
     settleWindow(step);
     correctPast(step);
@@ -127,6 +109,13 @@ Step PlaneOdometry::process(const Scan& scan) {
     return step;
 }
 
+/** After a pause, or a clock that was set. */
+void PlaneOdometry::interrupt(double elapsed_s) {
+    constexpr double kLongest_s = 3.5;  // longer, the motion is not extrapolated
+    if (elapsed_s > kLongest_s) prediction_.forget();
+    state_ = lostFrom(std::move(state_), missesOf(state_));
+}
+
 /** A degenerate scan is not lost while the motion is known. */
 bool PlaneOdometry::isLostAfter(const Step& step) const {
     constexpr unsigned kPatience = 3;
@@ -135,15 +124,19 @@ bool PlaneOdometry::isLostAfter(const Step& step) const {
     return step.predicted && missesOf(state_) > 0;
 }
 
-/** The method: a scan against the map of earlier scans. */
-void PlaneOdometry::track(const PointCloud& cloud, const Interval& interval, Step& step) {
+/** The scan placed by points. */
+PlaneOdometry::Attempt PlaneOdometry::attemptToTrack(const PointCloud& cloud,
+                                                     const Interval& interval, Step& step) {
     // After scans that were not registered, the motion since the last registered one counts.
-    const double since_s = arrivals_.sinceStart_s() - reference_.time_s;
+    const double since_s = time_s_ - reference_.time_s;
+    return step.interrupted && prediction_.hasMotion()
+               ? attemptAfterPause(cloud, interval, since_s, step)
+               : attemptWithGyro(cloud, interval.duration_s, since_s, !step.interrupted, step);
+}
 
-    Attempt attempt =
-        step.interrupted && prediction_.hasMotion()
-            ? attemptAfterPause(cloud, interval, since_s, step)
-            : attemptWithGyro(cloud, interval.duration_s, since_s, !step.interrupted, step);
+/** The method: a scan against the map of earlier scans. */
+void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) {
+    const double since_s = time_s_ - reference_.time_s;
     auto& [predicted, extrapolated, motion, view, voxels, sight, placement] = attempt;
     motion_ = motion;
     const PointEstimate& placed = placement.estimate;
@@ -294,8 +287,7 @@ Placement PlaneOdometry::registerByPoints(const ScanView& view, const Expectatio
 /** From the thinned scan, whose pose is known by points. */
 void PlaneOdometry::removeDynamicObjects(const VoxelNumbers& voxels, DynamicObjects::Sight sight,
                                          const Eigen::Isometry3d& pose, ScanView& view) {
-    const auto dynamic =
-        dynamics_.detect(std::move(sight), pose * inverseOf(upright_), arrivals_.sinceStart_s());
+    const auto dynamic = dynamics_.detect(std::move(sight), pose * inverseOf(upright_), time_s_);
     map_.erase(dynamics_.unmasked());
     for (std::size_t i = 0; i < view.dynamic.size(); ++i)
         view.dynamic[i] = dynamic[voxels.ofPoint[i]];
@@ -449,12 +441,11 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, ScanView& view, Step& 
  * time. `hasFoundMotion`: the motion, which was not known before, is that of the scan before, too.
  */
 void PlaneOdometry::carryToStamp(double stamp_s, bool hasFoundMotion, Step& step) {
-    const double time_s = arrivals_.sinceStart_s();
     const Eigen::Isometry3d moved = atStamp(motion_, stamp_s);
     Eigen::Isometry3d before = stamped_.pose;
     if (hasFoundMotion && !start_ && stamped_.stamp_s != 0)
-        before = pose_ * atStamp(motion_, stamped_.time_s + stamped_.stamp_s - time_s);
-    stamped_ = {pose_ * moved, stamp_s, time_s};
+        before = pose_ * atStamp(motion_, stamped_.time_s + stamped_.stamp_s - time_s_);
+    stamped_ = {pose_ * moved, stamp_s, time_s_};
     step.increment.pose = normalised(before.inverse() * stamped_.pose);
     if (stamp_s == 0) return;
     const Eigen::Isometry3f toStamp = moved.inverse().cast<float>();
@@ -471,10 +462,12 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     map_.clear(upAt(pose_));
     waiting_.reset();
     start_.reset();
+    beginning_.clear();
+    if (isSkewed) beginning_.push_back({{cloud, time_s_, Twist{}}, {}});
     dynamics_.clear();
     usualInlierRatio_ = 0;
     map_.addScan(view.fine, pose_);
-    reference_ = {view.points, pose_, arrivals_.sinceStart_s()};
+    reference_ = {view.points, pose_, time_s_};
     if (!map_.isUsable()) {
         state_ = Empty{true};
         return view;
@@ -488,7 +481,7 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
 
 /** At pose_, while the next scan is thinned. */
 void PlaneOdometry::insertLater(ScanView& view) {
-    reference_ = {view.points, pose_, arrivals_.sinceStart_s()};
+    reference_ = {view.points, pose_, time_s_};
     waiting_ = PlacedPoints{std::move(view.fine), pose_};
 }
 

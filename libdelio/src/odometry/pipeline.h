@@ -45,8 +45,8 @@ class PlaneOdometry : public Odometry {
 
  private:
     void begin(const PointCloud& cloud, Step& step);
-    void track(const PointCloud& cloud, const Interval& interval, Step& step);
     void skip(const PointCloud& cloud, const Interval& interval, Step& step);
+    void interrupt(double elapsed_s);
 
     /** A scan placed by points, from one guess of the motion. */
     struct Attempt {
@@ -64,6 +64,8 @@ class PlaneOdometry : public Odometry {
                    placement.estimate.inlierRatio > other.placement.estimate.inlierRatio;
         }
     };
+    void track(const PointCloud& cloud, Attempt attempt, Step& step);
+    Attempt attemptToTrack(const PointCloud& cloud, const Interval& interval, Step& step);
     Attempt attemptBy(const PointCloud& cloud, const Expectation& expected,
                       const ScanTrajectory& motion, Step& step);
     Attempt attemptAsPredicted(const PointCloud& cloud, double duration_s, double since_s,
@@ -83,6 +85,12 @@ class PlaneOdometry : public Odometry {
         const auto* first = std::get_if<FirstScan>(&state_);
         return first && first->skewed;
     }
+
+    // The first scans of a map, once more (pipeline_retrace.cpp).
+    struct Latest;
+    void retraceStart(const PointCloud& cloud, const Step& step);
+    void turnBack(const PlaneOdometry& ahead, std::size_t first);
+    std::optional<ScanTrajectory> stepBack(const Latest& scan);
 
     // The rotation by a gyroscope (pipeline_gyro.cpp).
     void advanceGyro(const PointCloud& cloud, const Scan& scan);
@@ -181,6 +189,7 @@ class PlaneOdometry : public Odometry {
 
     TrackingState state_;
     Arrivals arrivals_;
+    double time_s_ = 0;  //!< of the latest scan, since the start
     LocalMap map_;
     DynamicObjects dynamics_;
     ReferenceScan reference_;
@@ -198,6 +207,14 @@ class PlaneOdometry : public Odometry {
         ScanTrajectory trajectory{Twist{}};
     };
     std::optional<Latest> latest_;
+    ScanTrajectory trajectoryOfLatest() const { return placed(pose_, motion_); }
+    /** A scan near the begin of the map, and what of it is in the map if it is not the first. */
+    struct BeginningScan {
+        Latest scan;
+        std::optional<PlacedPoints> points;
+    };
+    /** The first scans of the map, oldest first, until they are registered again. */
+    std::vector<BeginningScan> beginning_;
     /** The latest scans, where the motion changes faster than it can be predicted. */
     ScanWindow window_;
     /** The window holds all scans of the map: each scan more corrects the earlier ones. */

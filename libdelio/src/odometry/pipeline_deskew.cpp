@@ -3,10 +3,6 @@
 #include "odometry/pipeline.h"
 
 namespace delio::odometry {
-namespace {
-constexpr double kNoise = 0.02;  //!< of an inlier ratio
-}
-
 ScanTrajectory PlaneOdometry::refined(const ScanTrajectory& start, const KnownEnds& known,
                                       const PointCloud& cloud, const ScanView& view) const {
     return refinedTrajectory(map_.planes(), start, known.since_s, cloud, view,
@@ -15,6 +11,7 @@ ScanTrajectory PlaneOdometry::refined(const ScanTrajectory& start, const KnownEn
 
 /** The scan that the map began with, which is all there is in it, as seen on this trajectory. */
 void PlaneOdometry::deskewFirst(const PointCloud& first, const ScanTrajectory& trajectory) {
+    beginning_.front().scan.trajectory = placed(reference_.pose, trajectory);
     ScanView view = undistorted(first, trajectory);
     odometry::thin(view, options_.spacing.map_spacing, options_.spacing.scan_spacing);
     map_.clear(upAt(reference_.pose));
@@ -61,10 +58,10 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewByMotion(const KnownEnds& k
     auto best = along(refined(constant, known, cloud, view));
     for (unsigned round = 1; round < mostRounds && best; ++round) {
         auto next = along(refined(best->trajectory, known, cloud, view));
-        if (!next || next->inlierRatio < best->inlierRatio + kNoise) break;
+        if (!next || next->inlierRatio < best->inlierRatio + kInlierNoise) break;
         best = std::move(next);
     }
-    return best && best->inlierRatio >= inlierRatio - kNoise ? best : along(constant);
+    return best && best->inlierRatio >= inlierRatio - kInlierNoise ? best : along(constant);
 }
 
 /** De-skews the scan by the motion that was found and registers it again: by a motion of varying
@@ -76,7 +73,7 @@ void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double 
         reference_.pose, since_s, estimate.pose(), upright_, isPlacedByStanding(isGuessing()),
         motion()};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
-        return found && found->inlierRatio >= inlierRatio - kNoise;
+        return found && found->inlierRatio >= inlierRatio - kInlierNoise;
     };
     std::optional<ScanOnTrajectory> found;
     const auto* first = std::get_if<FirstScan>(&state_);

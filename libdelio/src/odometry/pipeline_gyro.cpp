@@ -16,8 +16,7 @@ std::pair<double, double> endsOf(const PointCloud& cloud) {
 void PlaneOdometry::advanceGyro(const PointCloud& cloud, const Scan& scan) {
     usesGyro_ = false;
     if (gyro_.isEmpty()) return;
-    gyro_.advance({arrivals_.sinceStart_s(), scan.stamp_s - cloud.stamp_s, endsOf(cloud).second},
-                  scan.sensorPose);
+    gyro_.advance({time_s_, scan.stamp_s - cloud.stamp_s, endsOf(cloud).second}, scan.sensorPose);
 }
 
 /** The scan placed by points, where the gyroscope predicts the rotation and the latest scans the
@@ -26,8 +25,7 @@ std::optional<PlaneOdometry::Attempt> PlaneOdometry::attemptByGyro(const PointCl
                                                                    double duration_s,
                                                                    double since_s, Step& step) {
     if (!gyro_.isTrusted()) return {};
-    const double time_s = arrivals_.sinceStart_s();
-    const auto turned = gyro_.rotation(time_s - duration_s, time_s);
+    const auto turned = gyro_.rotation(time_s_ - duration_s, time_s_);
     if (!turned) return {};
     const auto end = extrapolation_;  // is used once
     const Extrapolation extrapolation = predictMotion(duration_s);
@@ -39,7 +37,7 @@ std::optional<PlaneOdometry::Attempt> PlaneOdometry::attemptByGyro(const PointCl
     std::optional<ScanTrajectory> motion(extrapolation.motion());
     if (first_s < last_s)
         motion = gyro_.trajectory(Eigen::Isometry3d::Identity(), extrapolation.motion().velocity,
-                                  time_s, first_s, last_s);
+                                  time_s_, first_s, last_s);
     if (!motion) return {};
     usesGyro_ = true;
     const auto attempt = [&](bool isGuess) {
@@ -76,16 +74,14 @@ std::optional<ScanTrajectory> PlaneOdometry::trajectoryByGyro(const KnownEnds& k
     if (!usesGyro_) return {};
     const Eigen::Vector3d velocity =
         (known.pose.translation() - known.reference.translation()) / known.since_s;
-    return gyro_.trajectory(known.pose, velocity, arrivals_.sinceStart_s(), -known.since_s,
-                            endsOf(cloud).second);
+    return gyro_.trajectory(known.pose, velocity, time_s_, -known.since_s, endsOf(cloud).second);
 }
 
 /** After a scan that was registered, at pose_, before it becomes the reference. */
 void PlaneOdometry::learnFromGyro(const Eigen::Isometry3d& predicted, double since_s) {
     if (!usesGyro_) return;
     gyroKernel_.observe(pose_, predicted);
-    const double time_s = arrivals_.sinceStart_s();
-    const auto turned = gyro_.rotation(time_s - since_s, time_s);
+    const auto turned = gyro_.rotation(time_s_ - since_s, time_s_);
     if (!turned) return;
     const Eigen::Isometry3d even = isometry(*turned, prediction_.predict(since_s).translation());
     gyroUnevenness_.observe(reference_.pose.inverse() * pose_, even);

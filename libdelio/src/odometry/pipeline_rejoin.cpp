@@ -14,7 +14,7 @@ void PlaneOdometry::leaveMap() {
                     reference_,
                     said_ * stamped_.pose.inverse(),
                     usualInlierRatio_,
-                    arrivals_.sinceStart_s(),
+                    time_s_,
                     0,
                     {}};
 }

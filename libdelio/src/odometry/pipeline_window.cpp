@@ -12,10 +12,9 @@ bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const 
                                  Step& step) {
     const StageTimer timer(step, "undistort");
     constexpr double kFastestHand_mps = 5;
-    const double time_s = arrivals_.sinceStart_s();
     if (!window_.isEmpty()) {
         if (window_.isFull()) start_.reset();
-        if (!window_.add(cloud, time_s)) endWindow();
+        if (!window_.add(cloud, time_s_)) endWindow();
         return !window_.isEmpty();
     }
     if (const auto* first = std::get_if<FirstScan>(&state_); first && first->skewed) {
@@ -24,13 +23,13 @@ bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const 
         if (found.estimate.valid) guess = Twist::of(at.inverse() * found.estimate.pose, since_s);
         if (found.isLikely && guess.velocity.norm() > kFastestHand_mps) return false;
         window_.begin(*first->skewed, reference_.time_s, ScanTrajectory({0, 1}, {at, at}));
-        if (window_.addSecond(cloud, time_s, guess, found.isLikely))
+        if (window_.addSecond(cloud, time_s_, guess, found.isLikely))
             start_ = Start{stamped_.time_s + stamped_.stamp_s};
         else
             window_.clear();
     } else if (latest_ && prediction_.predict(1).translation().norm() < kFastestHand_mps) {
         window_.begin(latest_->cloud, latest_->time_s, latest_->trajectory);
-        if (!window_.add(cloud, time_s)) endWindow();
+        if (!window_.add(cloud, time_s_)) endWindow();
     }
     return !window_.isEmpty();
 }
@@ -39,12 +38,11 @@ bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const 
 PlaneOdometry::Attempt PlaneOdometry::attemptInWindow(const PointCloud& cloud, double since_s,
                                                       Step& step) {
     if (start_) beginMapAgain();
-    const double time_s = arrivals_.sinceStart_s();
-    const Eigen::Isometry3d pose = window_.trajectory().at(time_s);
+    const Eigen::Isometry3d pose = window_.trajectory().at(time_s_);
     Expectation expected = expectation(pose, false, since_s, true);
     expected.isShaken = expected.isPlacedByStanding = false;
     expected.kernel_m = options_.points.least_kernel;
-    return attemptBy(cloud, expected, window_.trajectory().seenFrom(time_s), step);
+    return attemptBy(cloud, expected, window_.trajectory().seenFrom(time_s_), step);
 }
 
 /** The better of `first` and of the scan where the window finds it from other rates of turn. */
@@ -94,9 +92,6 @@ void PlaneOdometry::endWindow() {
 void PlaneOdometry::keep(PointCloud cloud, const Step& step) {
     latest_.reset();
     if (cloud.times_s.empty() || step.predicted || step.interrupted || !window_.isEmpty()) return;
-    std::vector<Eigen::Isometry3d> poses;
-    for (const auto& pose : motion_.poses()) poses.push_back(pose_ * pose);
-    latest_ = Latest{std::move(cloud), arrivals_.sinceStart_s(),
-                     ScanTrajectory(motion_.times_s(), poses)};
+    latest_ = Latest{std::move(cloud), time_s_, trajectoryOfLatest()};
 }
 }  // namespace delio::odometry

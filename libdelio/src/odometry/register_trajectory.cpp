@@ -172,4 +172,12 @@ Extrapolation::Extrapolation(const ScanTrajectory& trajectory, double over_s)
     : end_s_(trajectory.times_s().back()),
       end_(trajectory.poses().back()),
       motion_(Twist::of(trajectory.at(end_s_ - over_s).inverse() * end_, over_s)) {}
+
+Eigen::Isometry3d atStamp(const ScanTrajectory& motion, double stamp_s) {
+    const double first_s = motion.times_s().front(), last_s = motion.times_s().back();
+    const double inside_s = std::clamp(stamp_s, first_s, last_s);
+    if (inside_s == stamp_s || first_s == last_s) return motion.at(stamp_s);
+    const auto mean = Twist::of(motion.at(first_s).inverse() * motion.at(last_s), last_s - first_s);
+    return motion.at(inside_s) * mean.after(stamp_s - inside_s);
+}
 }  // namespace delio::odometry

@@ -14,6 +14,10 @@
 #include "odometry/tuning.h"
 
 namespace delio::odometry {
+/** Pose at a time that may lie outside the scan: there the motion goes on at its mean twist, as a
+ *  bent motion cannot be extrapolated. */
+Eigen::Isometry3d atStamp(const ScanTrajectory& motion, double stamp_s);
+
 /** Points as a moving sensor saw them, one after the other. */
 struct TimedPoints {
     Eigen::Matrix3Xd points;      //!< metres, sensor's frame at each point's own time

@@ -1,5 +1,6 @@
 #pragma once
 #include <string_view>
+#include <vector>
 
 #include "core/estimates.h"
 #include "delio/core/stopwatch.h"
@@ -8,6 +9,10 @@
 namespace delio::odometry {
 /** The quality of the registration that gave both estimates. */
 Quality qualityOf(const RotationEstimate& rotation, const TranslationEstimate& translation);
+
+/** Zero for each stage: every step has the same stages, whether the scan went through them or not.
+ */
+std::vector<Named> noTimes();
 
 /** Adds the time of its own life to that of a stage in Step::times_ms. */
 class StageTimer {

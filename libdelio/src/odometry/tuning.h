@@ -31,6 +31,9 @@ struct LocalMapTuning {
     double probe = 0.5;
 };
 
+/** Inlier ratios that differ by less are equally good. */
+constexpr double kInlierNoise = 0.02;
+
 /** Which points are one segment. */
 struct SegmentTuning {
     double cell = 0.4;          //!< of the ground plane; points in cells that touch are connected

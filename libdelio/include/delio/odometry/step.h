@@ -65,8 +65,9 @@ struct Step {
     /** Maps the sensor's frame at this scan to that at the scan before; identity for the first.
      *  The covariance of a predicted one is the motion model's. */
     Increment increment;
-    /** Earlier scans that are now known to have been elsewhere, oldest first: after a start in
-     *  motion and after a loss. `increment` leads from where the scan before was said to be. */
+    /** Earlier scans that are now known to have been elsewhere, oldest first: after the
+     *  first scans of a map, after a start in motion, and after a loss. `increment` leads from
+     * where the scan before was said to be. */
     std::vector<CorrectedPose> corrected;
     bool predicted = false;  //!< the scan could not be registered: `increment` is the prediction
     std::string reason;      //!< why; empty where it was registered

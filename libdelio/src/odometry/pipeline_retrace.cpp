@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <utility>
+
+#include "odometry/pipeline.h"
+#include "odometry/preprocess.h"
+#include "odometry/reporting.h"
+
+namespace delio::odometry {
+namespace {
+/** The scan as a sensor that moves backwards through time takes it. */
+PointCloud reversed(PointCloud cloud) {
+    for (float& time_s : cloud.times_s) time_s = -time_s;
+    cloud.stamp_s = -cloud.stamp_s;
+    return cloud;
+}
+
+ScanTrajectory reversed(const ScanTrajectory& trajectory) {
+    auto times_s = trajectory.times_s();
+    auto poses = trajectory.poses();
+    for (double& time_s : times_s) time_s = -time_s;
+    std::reverse(times_s.begin(), times_s.end());
+    std::reverse(poses.begin(), poses.end());
+    return {times_s, poses};
+}
+}  // namespace
+
+/** The first scans of a map were registered to few others, and while the motion was not known. As
+ *  soon as more scans have followed, the first ones are registered again, to those and backwards in
+ *  time, with a motion that is known. */
+void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
+    constexpr std::size_t kFirst = 4, kLater = 4;
+    if (beginning_.empty() || beginning_.back().scan.time_s == time_s_) return;
+    const bool isTracking = std::holds_alternative<Tracking>(state_) && waiting_;
+    const bool isKnown = isTracking || beginning_.size() < kFirst;
+    if (!isKnown || !step.reason.empty() || usesGyro_ || left_ || cloud.times_s.empty())
+        return beginning_.clear();
+    beginning_.push_back({{cloud, time_s_, trajectoryOfLatest()}, waiting_});
+    if (start_)
+        for (auto& [scan, points] : beginning_)
+            scan.trajectory = placed(window_.trajectory().at(scan.time_s),
+                                     window_.trajectory().seenFrom(scan.time_s));
+    if (beginning_.size() < kFirst + kLater) return;
+    PlaneOdometry back(given_);
+    back.turnBack(*this, kFirst);
+    const std::size_t known = past_.size() + 1 - beginning_.size();
+    std::vector<ScanTrajectory> trajectories(kFirst + 1, beginning_[kFirst].scan.trajectory);
+    for (std::size_t i = kFirst; i-- > 0;) {
+        const auto found = back.stepBack(beginning_[i].scan);
+        if (!found) return beginning_.clear();
+        trajectories[i] = *found;
+    }
+    // The trajectory of a scan is known best between its time and that of the scan after it.
+    for (std::size_t i = 0, k = 0; i < kFirst; ++i) {
+        PastScan& scan = past_[known + i];
+        while (k < kFirst && beginning_[k + 1].scan.time_s <= scan.stamp_s) ++k;
+        scan.pose = atStamp(trajectories[k], scan.stamp_s - beginning_[k].scan.time_s);
+        scan.isCorrected = true;
+    }
+    beginning_.clear();
+    back.insertWaiting();
+    map_ = std::move(back.map_);
+    waiting_.reset();
+    if (known > 0) return;
+    // The drive begins where it began: the next step leads to where the sensor is now.
+    stamped_.pose = past_.front().pose * said_;
+    for (auto& scan : past_) scan.isCorrected = true;
+}
+
+/** Begins with the scans from number `first` on that follow a start, in reverse order. */
+void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
+    upright_ = ahead.upright_;
+    takeScale(ahead.scale_);
+    kernel_ = ahead.kernel_;
+    unevenness_ = ahead.unevenness_;
+    usualInlierRatio_ = ahead.usualInlierRatio_;
+    const auto& scans = ahead.beginning_;
+    map_.clear(ahead.upAt(scans[first].points->pose));
+    for (std::size_t i = scans.size(); i-- > first;) {
+        const auto& [fine, pose] = *scans[i].points;
+        map_.addScan(fine, pose);
+        if (i + 1 < scans.size())
+            prediction_.observe(scans[i + 1].points->pose.inverse() * pose,
+                                scans[i + 1].scan.time_s - scans[i].scan.time_s);
+    }
+    const Latest& next = scans[first].scan;
+    pose_ = scans[first].points->pose;
+    time_s_ = -next.time_s;
+    latest_ = Latest{reversed(next.cloud), time_s_, reversed(next.trajectory)};
+    motion_ = latest_->trajectory.seenFrom(0);
+    reference_ = {undistorted(latest_->cloud, motion_).points, pose_, time_s_};
+    state_ = Tracking{};
+}
+
+/** Registers the scan before the latest one, from where the motion leads and from where it was
+ * found before. The sensor's trajectory during it (sensor to map, times from the scan's); nothing
+ * where the scan is not found, or fitted clearly better before. */
+std::optional<ScanTrajectory> PlaneOdometry::stepBack(const Latest& scan) {
+    PointCloud cloud = reversed(scan.cloud);
+    const double duration_s = -scan.time_s - time_s_;
+    time_s_ = -scan.time_s;
+    Step step;
+    step.times_ms = noTimes();
+    step.deskewed = true;
+    Attempt attempt = attemptToTrack(cloud, {IntervalKind::kUsual, duration_s, duration_s}, step);
+    const ScanTrajectory before = reversed(scan.trajectory);
+    Attempt asBefore = attemptBy(cloud, expectation(before.at(0), false, duration_s, true),
+                                 before.seenFrom(0), step);
+    const double found = attempt.placement.estimate.inlierRatio;
+    const bool wasBetter = asBefore.isBetterThan(attempt);
+    // The window's trajectory is the one of `attempt`.
+    if (!window_.isEmpty() && wasBetter &&
+        asBefore.placement.estimate.inlierRatio > found + kInlierNoise)
+        return {};
+    track(cloud, std::move(wasBetter && window_.isEmpty() ? asBefore : attempt), step);
+    if (!step.reason.empty()) return {};
+    settleWindow(step);
+    keep(std::move(cloud), step);
+    return reversed(trajectoryOfLatest());
+}
+}  // namespace delio::odometry
