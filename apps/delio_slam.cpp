@@ -21,6 +21,7 @@
 #include "live_view.h"
 #include "output_folder.h"
 #include "overlap.h"
+#include "pose_output.h"
 #include "run_table.h"
 #include "several_drives.h"
 #include "slam_command_line.h"
@@ -40,7 +41,8 @@ run::PlaybackSettings playbackOf(SlamCommandLine& line) {
     settings.fixes = line.gnss.getValue();
     if (line.antenna.isSet()) settings.antenna = antennaIn(line.antenna.getValue());
     settings.readAhead = line.threads.getValue() != 1;
-    settings.isInterrupted = [] { return cli::interrupted(); };
+    // A signal ends a live drive at its source: what was received is processed.
+    if (!isLive(line)) settings.isInterrupted = cli::interrupted;
     return settings;
 }
 
@@ -62,58 +64,79 @@ std::shared_ptr<LiveView> liveViewFor(SlamCommandLine& line, const Options& opti
                 (start > 0 ? " after --start " + std::to_string(start) : ""));
 }
 
-void play(SlamCommandLine& line, run::Playback& playback, run::Run& run) {
+void play(SlamCommandLine& line, run::Playback& playback, run::Run& run, PoseOutput& poses) {
     cli::Progress progress("scans", line.count.getValue());
     std::size_t done = 0;
-    playback.play(run, [&](const run::RunRow& row, std::optional<double> fraction) {
+    playback.play(run, [&](const run::RunRow& row, const run::Playback::Progress& now) {
+        poses.add(run, row, now);
         if (line.verbose.getValue()) cli::inform(describe(row));
-        progress.update(++done, fraction);
+        progress.update(++done, now.fraction);
     });
+}
+
+/** The reader of `input`; null where a signal ended a live drive before its first scan. */
+std::unique_ptr<io::ScanReader> openInput(SlamCommandLine& line, const std::string& input) {
+    if (!isLive(line)) return io::openScans(sourceFor(line, input));
+    cli::catchInterrupts();  // the recorded packets are worth writing
+    try {
+        return io::openScans(sourceFor(line, input));
+    } catch (const Error&) {
+        if (!cli::interrupted()) throw;
+        return nullptr;
+    }
 }
 
 /** Finishes a run after its last scan and writes its results to `folder`, which is moved to `place`
  *  later. Returns what is missing, or an empty text. */
-std::string finish(const std::string& input, const std::string& folder, const std::string& place,
-                   run::Run& run) {
+std::string finish(SlamCommandLine& line, const std::string& input, const std::string& folder,
+                   const std::string& place, run::Run& run) {
     const auto& record = run.record();
     const bool anyUsed = record.predicted() < record.rows.size();
     if (!anyUsed)
         run.fail("no scan of '" + input + "' could be used: " + record.rows.front().reason);
-    run.finish(record.fault.empty() && !cli::interrupted());
+    run.finish(record.fault.empty() && (isLive(line) || !cli::interrupted()));
     malloc_trim(0);  // pictures take a lot
     std::string fault = run::RunFolder(folder).write(record, anyUsed ? run.maps() : run::RunMaps{},
                                                      picture::illustrate);
-    printTable(record, place, std::cout);
+    printTable(record, place, line.poses.isSet() ? std::cerr : std::cout);
     return fault;
+}
+
+/** The run of a drive, before its first scan. */
+void prepare(SlamCommandLine& line, const io::ScanReader& reader, run::Run& run) {
+    cli::inform("reading " + describe(reader.recording()));
+    if (!reader.meta())
+        run.warn(
+            "unknown sensor model: no vertical correction is applied (normal unless this is KITTI "
+            "data; see meta.md)");
+    run.readSideFiles(reader.calibration(), reader.truth(), line.truth.getValue(),
+                      line.truthFrame.getValue() == "cam0");
 }
 
 /** One drive, from `input` to the folder `settings.folder`; see SlamDrive. */
 DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunSettings settings,
                       const std::string& place) {
+    PoseOutput poses(line.poses.getValue(), line.publish.getValue());
     const std::string name = io::nameOfDrive(input);
-    const auto reader = io::openScans(sourceFor(line, input));
+    auto reader = openInput(line, input);
+    if (!reader) return {cli::kExitInterrupted};
     const Options options = optionsFor(line, reader->meta());
     run::Playback playback(*reader, playbackOf(line));
     if (playback.isEmpty() && !cli::interrupted()) failWithoutScans(line, input, *reader);
     cli::catchInterrupts();  // from here on there is something to write
-    if (cli::interrupted()) return {cli::kExitInterrupted};
+    if (playback.isEmpty() || (cli::interrupted() && !isLive(line))) return {cli::kExitInterrupted};
     settings.sensorLabel = reader->label();
     settings.drive = name;
-    cli::inform("reading " + describe(reader->recording()));
     run::Run run(options, settings);
-    if (!reader->meta())
-        run.warn(
-            "unknown sensor model: no vertical correction is applied (normal unless this is KITTI "
-            "data; see meta.md)");
-    run.readSideFiles(reader->calibration(), reader->truth(), line.truth.getValue(),
-                      line.truthFrame.getValue() == "cam0");
+    prepare(line, *reader, run);
     const auto view = liveViewFor(line, options, run);
-    play(line, playback, run);
+    play(line, playback, run, poses);
+    reader.reset();  // a live sensor's recording is written
     // Not even the first one: there is nothing to write.
     if (run.record().rows.empty()) throw Error(run.record().fault);
-    const std::string fault = finish(input, settings.folder, place, run);
+    const std::string fault = finish(line, input, settings.folder, place, run);
     if (!fault.empty()) throw Error(fault);
-    if (cli::interrupted()) {
+    if (cli::interrupted() && !isLive(line)) {
         cli::inform("interrupted; the results cover the first " +
                     std::to_string(run.record().rows.size()) + " scans");
         return {cli::kExitInterrupted, run.record().extended, false};
@@ -140,6 +163,7 @@ void checkFolders(SlamCommandLine& line) {
     auto read = line.input.getValue();
     auto written = run::RunFolder(line.output.getValue()).files();
     const std::string map = line.map.isSet() ? run::storedMapIn(line.map.getValue()) : "";
+    if (line.record.isSet()) written.push_back(line.record.getValue());
     if (read.size() > 1) written = filesOfSeveral(read, map, line.output.getValue());
     for (auto* file : {&line.truth, &line.sensorInfo, &line.gnss}) read.push_back(file->getValue());
     cli::refuseOverlap(read, written);
@@ -170,7 +194,7 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
                                       threads > 0 ? threads : std::thread::hardware_concurrency());
     const auto& inputs = line.input.getValue();
     for (const auto& input : inputs)
-        if (input != "-" && !fs::exists(input))
+        if (input != "-" && !io::isLive(input) && !fs::exists(input))
             throw Error("cannot read '" + input + "': no such file or folder");
     checkFolders(line);
     const OutputFolder folder(line.output.getValue(), line.force.getValue());

@@ -97,6 +97,13 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
     const auto latency = run::latencyOf(record.rows);
     row("time per scan", format("%.1f ms mean, %.1f ms p95, %.1f ms worst", record.msPerScan(),
                                 latency[1].second, latency[2].second));
+    if (record.live) {
+        const auto live = run::liveFiguresOf(*record.live);
+        row("latency", format("%.1f ms median, %.1f ms p99, %.1f ms worst", live[4].second,
+                              live[5].second, live[6].second));
+        row("packets", format("%zu, lost %zu; scans dropped %zu", record.live->sensor.packets,
+                              record.live->sensor.lostPackets, record.live->sensor.droppedScans));
+    }
     row("peak memory", format("%.0f MB", run::peakMemory_mb()));
     if (record.metrics && record.metricsBefore) {
         const Rows after = rowsOf(*record.metrics), before = rowsOf(*record.metricsBefore);

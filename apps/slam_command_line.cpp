@@ -63,6 +63,7 @@ cli::HelpText slamHelp() {
         {Folder::kLoops, "per compared pair of places: result and reason"},
         {Folder::kLocalisation, "with --map: pose of each scan in that map"},
         {Folder::kJoints, "with --extend: edges between the two maps"},
+        {Folder::kPackets, "of a live sensor: its packets, to run the drive again"},
         {Folder::kSummary, "summary of the run"},
         {Folder::kConfig, "all options used, for -c"},
         {Folder::kDrives, "with several drives: which map each is in"},
@@ -114,8 +115,23 @@ run::RunSettings settingsFor(SlamCommandLine& line, int argc, char** argv) {
     return settings;
 }
 
+bool isLive(SlamCommandLine& line) {
+    return line.input.getValue().size() == 1 && io::isLive(line.input.getValue().front());
+}
+
 io::ScanSource sourceFor(SlamCommandLine& line, const std::string& input) {
-    return {input, line.label.getValue(), line.images.getValue(), line.sensorInfo.getValue()};
+    io::ScanSource source{input, line.label.getValue(), line.images.getValue(),
+                          line.sensorInfo.getValue()};
+    if (!io::isLive(input)) return source;
+    const fs::path folder = line.output.getValue();
+    source.live.record =
+        line.record.isSet() ? line.record.getValue() : (folder / run::RunFolder::kPackets).string();
+    if (line.noRecord.getValue()) source.live.record.clear();
+    source.live.idle_s = line.idle.getValue();
+    source.live.mostWaiting = line.queue.getValue();
+    source.live.isEnded = cli::interrupted;
+    source.live.onWarning = cli::warn;
+    return source;
 }
 
 bool isGraph(const std::string& input) { return fs::path(input).extension() == ".g2o"; }
@@ -135,7 +151,19 @@ std::string contradictionIn(SlamCommandLine& line) {
         return "--keep-dynamic and --no-map exclude each other";
     if (line.noMap.isSet() && (line.extend.isSet() || inputs.size() > 1))
         return "--no-map cannot be used when drives are joined to a map";
+    for (const TCLAP::Arg* arg : std::initializer_list<const TCLAP::Arg*>{
+             &line.record, &line.noRecord, &line.idle, &line.queue})
+        if (arg->isSet() && !isLive(line))
+            return "--" + arg->getName() + " needs a live sensor: -i udp://[ADDRESS:]PORT";
+    if (line.record.isSet() && line.noRecord.isSet())
+        return "--record and --no-record exclude each other";
+    if (!(line.idle.getValue() >= 0)) return "--idle must be 0 or more";
+    if (line.queue.getValue() == 0) return "--queue must be at least 1";
     if (inputs.size() < 2) return "";
+    if (line.poses.isSet() || line.publish.isSet())
+        return "--poses and --publish cannot be used with several drives";
+    for (const auto& input : inputs)
+        if (io::isLive(input)) return "a live sensor must be the only input";
     if (line.map.isSet() && !line.extend.isSet())
         return "several drives with --map also need --extend";
     if (line.truth.isSet() || line.images.isSet() || line.sensorInfo.isSet() ||

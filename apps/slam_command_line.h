@@ -23,8 +23,9 @@ struct SlamCommandLine {
     explicit SlamCommandLine(bool runs)
         : input("i", "input",
                 "Recording: rawlog, KITTI folder, folder of clouds, ROS bag, MCAP, pcap, or \"-\" "
-                "for a rawlog or pcap from a pipe; or a posegraph.g2o to optimise again. Several "
-                "recordings are joined into one map where they overlap",
+                "for a rawlog or pcap from a pipe; udp://[ADDRESS:]PORT for a live sensor; or a "
+                "posegraph.g2o to optimise again. Several recordings are joined into one map where "
+                "they overlap",
                 runs, "IN", cmd),
           output("o", "output", "Folder for the results", runs, "", "OUTDIR", cmd) {}
 
@@ -114,6 +115,39 @@ struct SlamCommandLine {
         cmd};
     Switch noLoops{"", "no-loops", "Do not search for loop closures", cmd};
     Switch noGraph{"", "no-graph", "Skip pose-graph optimisation and loop closures", cmd};
+    std::vector<std::string> formats{"tum", "json"};
+    TCLAP::ValuesConstraint<std::string> formatNames{formats};
+    Text poses{
+        "",
+        "poses",
+        "Print each pose on stdout as it is found: TUM lines or JSON lines; the summary goes "
+        "to stderr",
+        false,
+        "",
+        &formatNames,
+        cmd};
+    Text publish{"",    "publish", "Send each pose as it is found: a JSON line per datagram",
+                 false, "",        "udp://HOST:PORT",
+                 cmd};
+    Text record{"",    "record", "Live sensor: pcap for its packets; default: OUTDIR/packets.pcap",
+                false, "",       "FILE",
+                cmd};
+    Switch noRecord{"", "no-record", "Live sensor: do not record its packets", cmd};
+    TCLAP::ValueArg<double> idle{
+        "",
+        "idle",
+        "Live sensor: end the drive after so long without a packet, seconds; 0: never",
+        false,
+        0,
+        "SECONDS",
+        cmd};
+    Number queue{"",
+                 "queue",
+                 "Live sensor: scans that may wait; where there are more, the oldest is dropped",
+                 false,
+                 {5},
+                 "N",
+                 cmd};
     Switch gui{"", "gui", "Show progress in a window", cmd};
     Switch force{"", "force", "Overwrite existing files", cmd};
     Switch verbose{"", "verbose", "Print a line per scan, and full error texts", cmd};
@@ -133,6 +167,9 @@ void printConfig(SlamCommandLine& line);
 run::RunSettings settingsFor(SlamCommandLine& line, int argc, char** argv);
 
 io::ScanSource sourceFor(SlamCommandLine& line, const std::string& input);
+
+/** The only input is a live sensor. */
+bool isLive(SlamCommandLine& line);
 
 /** A pose graph, not a recording. */
 bool isGraph(const std::string& input);

@@ -58,7 +58,7 @@ run::RunRecord runDrive(const RunArguments& arguments, io::ScanReader& reader,
     run.readSideFiles(reader.calibration(), reader.truth(), arguments.truth,
                       arguments.truthFrame == "cam0");
     std::size_t done = 0;
-    playback.play(run, [&](const run::RunRow& /*row*/, std::optional<double> /*fraction*/) {
+    playback.play(run, [&](const auto& /*row*/, const auto& /*progress*/) {
         try {
             report(arguments.progress, ++done);
         } catch (const py::error_already_set&) {

@@ -149,17 +149,19 @@ void writeKitti(const Trajectory& trajectory, const std::string& path) {
     });
 }
 
+std::string tumRow(double stamp_s, const Eigen::Isometry3d& pose) {
+    const Eigen::Vector3d at = pose.translation();
+    Eigen::Quaterniond q(pose.linear());
+    if (q.w() < 0) q.coeffs() *= -1;  // the same rotation, of which this is the usual form
+    return rowOf({stamp_s, at.x(), at.y(), at.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
 void writeTum(const Trajectory& trajectory, const std::string& path) {
     if (trajectory.stamps_s.size() != trajectory.poses.size())
         throw Error("cannot write '" + path + "': the trajectory has no time for every pose");
     replaceTextFile(path, [&](std::ostream& out) {
-        for (std::size_t i = 0; i < trajectory.poses.size(); ++i) {
-            const Eigen::Vector3d at = trajectory.poses[i].translation();
-            Eigen::Quaterniond q(trajectory.poses[i].linear());
-            if (q.w() < 0) q.coeffs() *= -1;  // the same rotation, of which this is the usual form
-            out << rowOf(
-                {trajectory.stamps_s[i], at.x(), at.y(), at.z(), q.x(), q.y(), q.z(), q.w()});
-        }
+        for (std::size_t i = 0; i < trajectory.poses.size(); ++i)
+            out << tumRow(trajectory.stamps_s[i], trajectory.poses[i]);
     });
 }
 

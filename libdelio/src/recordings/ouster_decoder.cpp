@@ -30,6 +30,10 @@ class OusterDecoder : public PacketDecoder {
     std::vector<std::string> findings() const override;
 
  private:
+    /** The sensor has another initialization_id since it was started again during the drive. */
+    bool isRestarted(const OusterIds& ids) const {
+        return packets_ > 0 && ids.serial != 0 && ids.serial == info_.ids.serial;
+    }
     void leaveOut(const OusterIds& ids);
     Error foreign() const;
     void endFrame(bool partial);
@@ -82,7 +86,7 @@ bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double r
         throw Error("an Ouster packet of " + std::to_string(bytes) + " bytes; '" + name_ +
                     "' describes packets of " + std::to_string(info_.packetBytes()));
     const OusterPacket packet(info_, payload);
-    if (const OusterIds ids = packet.ids(); !info_.ids.fit(ids)) {
+    if (const OusterIds ids = packet.ids(); !info_.ids.fit(ids) && !isRestarted(ids)) {
         leaveOut(ids);
         return false;
     }

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "delio/core/error.h"
@@ -52,14 +53,14 @@ struct Sender {
 
 class PcapReader : public ScanReader {
  public:
-    explicit PcapReader(const ScanSource& source);
+    PcapReader(const ScanSource& source, std::shared_ptr<PacketSource> packets);
 
     std::optional<Scan> next() override;
     bool skip() override { return next().has_value(); }
     std::vector<ImuSample> takeImu() override { return decoder_->takeImu(); }
     const std::string& label() const override { return label_; }
     const std::set<std::string>& otherLabels() const override { return others_; }
-    std::optional<double> fraction() const override { return stream_.fraction(); }
+    std::optional<double> fraction() const override { return packets_->fraction(); }
     const std::optional<DriveMeta>& meta() const override { return meta_; }
     Recording recording() const override;
 
@@ -73,17 +74,23 @@ class PcapReader : public ScanReader {
     void makeDecoder(const std::string& kind, const UdpPacket& packet);
     /** Reads on until the decoder was given a packet of its sensor; false at the end. */
     bool feed();
-    bool give(const UdpPacket& packet);
+    bool give(const std::string& kind, const UdpPacket& packet);
+    bool add(const std::string& kind, const UdpPacket& packet);
+    void passOver(const std::string& other);
     bool takeImuOf(const UdpPacket& packet);
     void keepDescription(const UdpPacket& packet);
     void finish();
 
     ScanSource source_;
-    UdpStream stream_;
+    std::shared_ptr<PacketSource> packets_;
     std::unique_ptr<PacketDecoder> decoder_;
     std::optional<Sender> sender_;
     std::string label_;
     std::set<std::string> others_;
+    std::map<std::string, std::size_t> passedOver_;  //!< packets of others; "": of no LiDAR
+    double latest_s_ = 0, before_s_ = 0;  //!< times of the two latest packets that were taken
+    std::size_t refused_ = 0;             //!< packets that the decoder does not understand
+    std::string refusal_;                 //!< why the first of these
     /** Of the RoboSense of an address: these packets come to another port than the others. */
     std::map<std::uint32_t, std::vector<std::uint8_t>> descriptions_;
     std::optional<DriveMeta> meta_;
@@ -94,7 +101,8 @@ class PcapReader : public ScanReader {
     std::string fault_;  //!< fault that ended the recording, reported after the scans before it
 };
 
-PcapReader::PcapReader(const ScanSource& source) : source_(source), stream_(source.path) {
+PcapReader::PcapReader(const ScanSource& source, std::shared_ptr<PacketSource> packets)
+    : source_(source), packets_(std::move(packets)) {
     // A json can be of nothing but an Ouster, and says how long its packets are.
     if (fs::path(source_.sensorFile).extension() == ".json") makeDecoder("ouster", {});
     const bool any = feed();
@@ -102,11 +110,12 @@ PcapReader::PcapReader(const ScanSource& source) : source_(source), stream_(sour
     if (!fault_.empty()) throw Error(fault_);
     std::string seen;
     for (const std::string& other : others_) seen += (seen.empty() ? "" : ", ") + other;
-    throw Error(named() + " contains no packets of " +
+    throw Error((packets_->isLive() ? "no packets came to " + named() + " of "
+                                    : named() + " contains no packets of ") +
                 (source_.label.empty() ? "a Velodyne, Ouster, Hesai or RoboSense"
                                        : "the sensor '" + source_.label + "'") +
                 (decoder_ ? " that match '" + source_.sensorFile + "'" : "") +
-                (seen.empty() ? "" : "; it contains packets of " + seen));
+                (seen.empty() ? "" : "; there are packets of " + seen));
 }
 
 std::optional<Sender> PcapReader::senderOf(const UdpPacket& packet) const {
@@ -126,14 +135,9 @@ void PcapReader::makeDecoder(const std::string& kind, const UdpPacket& packet) {
     }
     isOuster_ = true;
     if (source_.sensorFile.empty()) {
-        if (source_.path == "-")
-            throw Error(
-                "an Ouster pcap from standard input needs the sensor's json (--sensor-info)");
-        try {
-            source_.sensorFile = ousterJsonBeside(source_.path, packet.payload, packet.bytes).name;
-        } catch (const Error& e) {
-            throw Error(named() + " " + e.what());
-        }
+        if (source_.path == "-" || packets_->isLive())
+            throw Error("packets of an Ouster need the sensor's json (--sensor-info)");
+        source_.sensorFile = ousterJsonBeside(source_.path, packet.payload, packet.bytes).name;
         const fs::path json = source_.sensorFile;
         if (json.stem() != fs::path(source_.path).stem()) foundJson_ = json.filename().string();
     }
@@ -148,14 +152,29 @@ void PcapReader::finish() {
     }
 }
 
-/** False where it is of another sensor. */
-bool PcapReader::give(const UdpPacket& packet) {
-    bool taken = false;
+/** Hands a packet to the decoder. One that it does not understand is left out, unless there are no
+ *  others. */
+bool PcapReader::add(const std::string& kind, const UdpPacket& packet) {
+    constexpr std::size_t kMost = 1000;
     try {
-        taken = decoder_->add(packet.payload, packet.bytes, packet.time_s);
+        if (!decoder_) makeDecoder(kind, packet);
+        return decoder_->add(packet.payload, packet.bytes, packet.time_s);
     } catch (const Error& e) {
-        throw Error(named() + ": " + e.what());
+        if (refused_++ == 0) refusal_ = e.what();
+        const bool isNone = !sender_ && (refused_ >= kMost || (!decoder_ && !packets_->isLive()));
+        if (isNone) throw Error(named() + ": " + e.what());
+        if (!sender_ && source_.sensorFile.empty()) {  // another sensor may follow
+            decoder_.reset();
+            isOuster_ = false;
+        }
+        return false;
     }
+}
+
+/** False where it is of another sensor. */
+bool PcapReader::give(const std::string& kind, const UdpPacket& packet) {
+    const bool taken = add(kind, packet);
+    if (taken) before_s_ = std::exchange(latest_s_, packet.time_s);
     if (!taken || meta_ || decoder_->sensor().empty()) return taken;
     meta_.emplace();
     const std::string sensor = decoder_->sensor();
@@ -177,37 +196,48 @@ bool PcapReader::takeImuOf(const UdpPacket& packet) {
 void PcapReader::keepDescription(const UdpPacket& packet) {
     constexpr std::size_t kMost = 64;  // sensors
     if (sender_) {
-        if (sender_->kind == "robosense" && sender_->address == packet.from) give(packet);
+        if (sender_->kind == "robosense" && sender_->address == packet.from)
+            give(sender_->kind, packet);
     } else if (descriptions_.size() < kMost) {
         descriptions_[packet.from].assign(packet.payload, packet.payload + packet.bytes);
     }
+}
+
+/** `other`: its sender, if it is a LiDAR's. */
+void PcapReader::passOver(const std::string& other) {
+    constexpr std::size_t kMost = 64;  // senders: addresses may be made up
+    const bool isKnown = passedOver_.count(other) > 0;
+    if (!isKnown && passedOver_.size() >= kMost) return passOver("");
+    ++passedOver_[other];
+    if (!other.empty()) others_.insert(other);
 }
 
 bool PcapReader::feed() {
     while (!ended_) {
         std::optional<UdpPacket> packet;
         try {
-            packet = stream_.next();
+            packet = packets_->next();
             if (packet && takeImuOf(*packet)) continue;
             if (packet && describesRobosense(packet->payload, packet->bytes)) {
                 keepDescription(*packet);
                 continue;
             }
             const auto sender = packet ? senderOf(*packet) : std::nullopt;
-            if (packet && !sender) continue;
+            if (packet && !sender) {
+                passOver("");
+                continue;
+            }
             const bool wanted =
                 sender && (sender_ ? *sender == *sender_
                                    : sender->matches(source_.label) &&
                                          (!decoder_ || decoder_->takes(packet->bytes)));
             if (packet && !wanted) {
-                others_.insert(sender_ && sender->withPort() == sender_->withPort()
-                                   ? sender->inFull()
-                                   : sender->withPort());
+                passOver(sender_ && sender->withPort() == sender_->withPort() ? sender->inFull()
+                                                                              : sender->withPort());
                 continue;
             }
             if (packet) {
-                if (!decoder_) makeDecoder(sender->kind, *packet);
-                if (!give(*packet)) continue;
+                if (!give(sender->kind, *packet)) continue;
                 if (!sender_) label_ = source_.label.empty() ? sender->kind : sender->withPort();
                 sender_ = sender;
                 return true;
@@ -217,6 +247,7 @@ bool PcapReader::feed() {
         }
         ended_ = true;
         finish();
+        if (!sender_ && fault_.empty() && refused_ > 0) fault_ = named() + ": " + refusal_;
     }
     return false;
 }
@@ -226,6 +257,8 @@ std::optional<Scan> PcapReader::next() {
         if (auto scan = decoder_->take()) {
             scan->index = count_++;
             pointTimes_ = pointTimes_ || !scan->times_s.empty();
+            // The packet that ends a turn may be the next turn's first one.
+            packets_->endScan(scan->index, ended_ ? latest_s_ : before_s_);
             return scan;
         }
         if (!fault_.empty()) {
@@ -244,13 +277,27 @@ Recording PcapReader::recording() const {
     recording.sensor = decoder_->sensor();
     recording.pointTimes = pointTimes_;
     recording.motionCompensated = false;
+    if (packets_->isLive()) recording.kind = source_.path;
     recording.findings = decoder_->findings();
+    if (refused_ > 0)
+        recording.findings.push_back("packets that are not understood were ignored: " +
+                                     std::to_string(refused_) + " (first: " + refusal_ + ")");
+    for (const auto& [sender, count] : passedOver_)
+        if (packets_->isLive())
+            recording.findings.push_back("packets of " +
+                                         (sender.empty() ? "no supported LiDAR" : sender) +
+                                         " were ignored: " + std::to_string(count));
     if (imuPort_ != 0) recording.imu = "at port " + std::to_string(imuPort_);
     return recording;
 }
 }  // namespace
 
 std::unique_ptr<ScanReader> openPcap(const ScanSource& source) {
-    return std::make_unique<PcapReader>(source);
+    return openPackets(source, std::make_shared<UdpStream>(source.path));
+}
+
+std::unique_ptr<ScanReader> openPackets(const ScanSource& source,
+                                        std::shared_ptr<PacketSource> packets) {
+    return std::make_unique<PcapReader>(source, std::move(packets));
 }
 }  // namespace delio::io

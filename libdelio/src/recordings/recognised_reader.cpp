@@ -6,8 +6,8 @@
 #include "compensation.h"
 
 namespace delio::io {
-RecognisedReader::RecognisedReader(std::unique_ptr<ScanReader> source)
-    : source_(std::move(source)), fraction_(source_->fraction()) {
+RecognisedReader::RecognisedReader(std::unique_ptr<ScanReader> source, bool isLive)
+    : source_(std::move(source)), isLive_(isLive), fraction_(source_->fraction()) {
     readAhead();
     recognise();
 }
@@ -102,10 +102,17 @@ void RecognisedReader::passed() {
     if (ahead_.empty()) fraction_ = source_->fraction();
 }
 
+/** What comes later does not matter. Samples of an IMU come with the scans that are read: the same
+ *  as in a recording. */
+bool RecognisedReader::isNextKnown() const {
+    return isLive_ && !ahead_.empty() && order_.isNext(ahead_.front()) &&
+           source_->recording().imu.empty();
+}
+
 std::optional<Scan> RecognisedReader::next() {
     std::optional<Scan> scan;
     while (!scan) {
-        while (ahead_.size() < StampOrder::kWindow && readOne()) continue;
+        while (!isNextKnown() && ahead_.size() < StampOrder::kWindow && readOne()) continue;
         if (!std::exchange(began_, true)) leaveOutFirst();
         if (fault_ && ahead_.empty()) std::rethrow_exception(std::exchange(fault_, nullptr));
         if (ahead_.empty()) return {};

@@ -14,7 +14,9 @@ namespace delio::io {
  * first look as if they were not. */
 class RecognisedReader : public ScanReader {
  public:
-    explicit RecognisedReader(std::unique_ptr<ScanReader> source);
+    /** `isLive`: later on it reads ahead only where stamps are odd, or there is an IMU. Scans are
+     *  the same. */
+    explicit RecognisedReader(std::unique_ptr<ScanReader> source, bool isLive = false);
 
     std::optional<Scan> next() override;
     bool skip() override;
@@ -32,12 +34,14 @@ class RecognisedReader : public ScanReader {
     bool readOne();
     void dropUnfitTimes(Scan& scan);
     void readAhead();
+    bool isNextKnown() const;
     void leaveOutFirst();
     void passed();
     void recognise();
     void lookAgain(const Scan& scan);
 
     std::unique_ptr<ScanReader> source_;
+    bool isLive_;
     std::deque<Scan> ahead_;
     std::deque<std::optional<double>> fractions_;  //!< of the drive, after each scan that is ahead
     std::optional<double> fraction_;

@@ -49,6 +49,7 @@ std::unique_ptr<ScanReader> openFile(const ScanSource& source) {
 }  // namespace
 
 std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
+    if (isLive(source.path)) return openLive(source);
     if (source.path != "-" && !fs::exists(source.path))
         throw Error("cannot read '" + source.path + "': no such file or folder");
     if (source.path != "-" && !fs::is_directory(source.path) && !fs::is_regular_file(source.path))
@@ -65,6 +66,7 @@ std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string
 
 std::string nameOfDrive(const std::string& path) {
     if (path == "-") return "stdin";
+    if (isLive(path)) return "live";
     const fs::path whole = fs::absolute(fs::path(path) / "").lexically_normal().parent_path();
     const std::string name =
         printable(fs::is_directory(whole) ? whole.filename().string() : whole.stem().string());

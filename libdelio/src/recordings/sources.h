@@ -4,6 +4,7 @@
 #include <string>
 
 #include "delio/recordings/scan_reader.h"
+#include "packet_source.h"
 
 namespace delio::io {
 enum class FileKind { kRawlog, kPcap, kRos1Bag, kRos2Database, kMcap, kOsf };
@@ -28,6 +29,13 @@ std::unique_ptr<ScanReader> openPcap(const ScanSource& source);
 /** Ouster's own format: the turns of one of its sensors, whose label is its serial number. Throws
  * as openScans(). */
 std::unique_ptr<ScanReader> openOsf(const ScanSource& source);
+
+/** Reads packets of any source. */
+std::unique_ptr<ScanReader> openPackets(const ScanSource& source,
+                                        std::shared_ptr<PacketSource> packets);
+
+/** Listens at `source.path`, "udp://...". Throws as openScans(). */
+std::unique_ptr<ScanReader> openLive(const ScanSource& source);
 
 /** True for a KITTI odometry sequence (velodyne/) or raw drive (velodyne_points/data/). */
 bool isKittiFolder(const std::filesystem::path& folder);

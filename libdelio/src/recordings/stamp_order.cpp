@@ -10,6 +10,12 @@ constexpr double kApart = 0.6;        // of the usual interval, at least
 constexpr double kMostUnknown_s = 1;  // scans are sorted over, where that is not known
 }  // namespace
 
+bool StampOrder::isNext(const Scan& first) const {
+    constexpr double kMost = 2 * kApart;  // a scan that is apart from this one lies after it
+    return latest_s_ && usual_s_ > 0 && passedOver_ == 0 && !isLate(first) &&
+           stampOf(first) < *latest_s_ + kMost * usual_s_;
+}
+
 bool StampOrder::isClockSet(const std::deque<Scan>& ahead) const {
     const auto late = [&](const Scan& scan) { return isLate(scan); };
     return (wasSet_ || ahead.size() >= kWindow) && std::all_of(ahead.begin(), ahead.end(), late);

@@ -21,6 +21,10 @@ class StampOrder {
      *  unless the drive ends before. Nothing: that scan is left out. */
     std::optional<Scan> take(std::deque<Scan>& ahead);
 
+    /** True where take() gives the first scan whatever comes after it: it follows the one before at
+     *  the usual interval. */
+    bool isNext(const Scan& first) const;
+
     /** Ignored or changed scans, one line per kind. */
     std::vector<std::string> findings() const { return findings_.lines(); }
 

@@ -9,6 +9,8 @@
 #include <tuple>
 #include <vector>
 
+#include "packet_source.h"
+
 struct pcap;
 
 namespace delio::io {
@@ -37,29 +39,19 @@ class IpFragments {
     std::list<Datagram> open_;
 };
 
-/** Content of one UDP datagram; valid until the next one is read. */
-struct UdpPacket {
-    const std::uint8_t* payload = nullptr;
-    std::size_t bytes = 0;
-    std::uint32_t from = 0;  //!< IPv4 address of the sender
-    std::uint16_t fromPort = 0;
-    std::uint16_t toPort = 0;
-    double time_s = 0;  //!< Unix time at which it was recorded
-};
-
 /** The UDP datagrams, over IPv4, of a pcap or pcapng: of Ethernet (VLANs as well), Linux' cooked
  *  capture, the loopback or raw IP. Fragments are put together; other packets, and those that the
  *  recorder kept a part of, are passed over. */
-class UdpStream {
+class UdpStream : public PacketSource {
  public:
     /** "-": standard input. Throws Error where it cannot be opened or is not a pcap. */
     explicit UdpStream(const std::string& path);
 
     /** Nothing at the end. Throws Error, which names the file, where it is cut off or damaged. */
-    std::optional<UdpPacket> next();
+    std::optional<UdpPacket> next() override;
 
     /** Part of the file that was read, 0 to 1; nothing for standard input. */
-    std::optional<double> fraction() const;
+    std::optional<double> fraction() const override;
 
  private:
     struct View;

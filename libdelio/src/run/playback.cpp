@@ -1,5 +1,6 @@
 #include "delio/run/playback.h"
 
+#include <chrono>
 #include <future>
 #include <utility>
 
@@ -12,7 +13,7 @@ Playback::Playback(io::ScanReader& reader, PlaybackSettings settings)
     : reader_(reader), settings_(std::move(settings)) {
     Stopwatch watch;
     now_ = read(settings_.start);
-    read_ms_ = watch.lap_ms();
+    read_ms_ = now_.received_s ? 0 : watch.lap_ms();
 }
 
 Playback::Reading Playback::read(std::size_t passedOver) {
@@ -21,7 +22,7 @@ Playback::Reading Playback::read(std::size_t passedOver) {
         if (!reader_.skip()) break;
     }
     auto scan = reader_.next();
-    return {std::move(scan), reader_.takeImu(), reader_.fraction()};
+    return {std::move(scan), reader_.takeImu(), reader_.fraction(), reader_.received_s()};
 }
 
 /** The next scan is read while this one is registered; `read_ms_` is the waiting time. */
@@ -35,12 +36,39 @@ void Playback::processAll(Run& run, const OnScan& onScan) {
         if (settings_.imu)
             for (const auto& sample : now_.imu) run.addImu(sample);
         const RunRow row = run.process(*now_.scan, read_ms_);
-        if (onScan) onScan(row, now_.fraction);
+        const auto latency = latency_ms();
+        if (onScan) onScan(row, {now_.fraction, latency});
         if (isLast || isInterrupted()) break;
         Stopwatch watch;
         now_ = next.get();
-        read_ms_ = watch.lap_ms();
+        // One waits for a live sensor, whatever the time that reading takes.
+        read_ms_ = now_.received_s ? 0 : watch.lap_ms();
     }
+}
+
+/** Of the scan that was just processed. */
+std::optional<double> Playback::latency_ms() {
+    if (!now_.received_s) return {};
+    const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+    latencies_ms_.push_back(1e3 * (now.count() - *now_.received_s));
+    return latencies_ms_.back();
+}
+
+void Playback::addLive(Run& run) {
+    const auto sensor = reader_.live();
+    if (!sensor) return;
+    run.add(LiveRecord{*sensor, latencies_ms_});
+    if (sensor->droppedScans > 0)
+        run.warn(std::to_string(sensor->droppedScans) +
+                 " scans were dropped because they came faster than they could be processed; a run "
+                 "of the recorded packets uses all");
+    if (sensor->lostPackets > 0)
+        run.warn(std::to_string(sensor->lostPackets) +
+                 " packets were lost because the system's buffer was full; increase "
+                 "net.core.rmem_max");
+    if (sensor->notRecorded > 0)
+        run.warn(std::to_string(sensor->notRecorded) +
+                 " packets are missing in the recording: the disk was too slow");
 }
 
 /** Fixes of a recording may be missing or damaged; those that the user gives may not. */
@@ -72,6 +100,7 @@ void Playback::play(Run& run, const OnScan& onScan) {
     }
     for (const auto& warning : warningsOfOthers(reader_)) run.warn(warning);
     addFixes(run);
+    addLive(run);
     const auto recording = reader_.recording();
     for (const auto& finding : recording.findings) run.warn(finding);
     if (const auto scan = recording.compensatedAfterAll)

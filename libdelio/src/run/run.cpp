@@ -132,6 +132,15 @@ RunRow Run::process(const Scan& scan, double read_ms) {
     return row;
 }
 
+Run::Pose Run::latestPose() const {
+    const auto& odometry = slam_.trajectory();
+    const Pose own{odometry.stamps_s.back(), odometry.poses.back(), false};
+    if (!follower_ || follower_->fixes().empty()) return own;
+    const MapFix& fix = follower_->fixes().back();
+    if (fix.where == Whereabouts::kUnknown) return own;
+    return {own.stamp_s, fix.vehicle.pose, true};
+}
+
 /** The results of a failed listener are not written. */
 void Run::switchOff(const FailedListener& failed, std::size_t scan) {
     const std::string what = std::string("the listener '") + failed.listener->name() +

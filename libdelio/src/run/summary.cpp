@@ -231,6 +231,7 @@ void forEachField(Record& s, const Field& field) {
     field("ms_per_scan", s.ms_per_scan);
     field("ms_per_scan_of_stages", s.ms_per_scan_of_stages);
     field("latency_ms", s.latency_ms);
+    if (field.hasGroup("live", !s.live.empty())) field("live", s.live);
     field("map_ms_per_scan", s.map_ms_per_scan);
     field("optimisation_ms", s.optimisation_ms);
     field("optimisation_iterations", s.optimisation_iterations);
@@ -252,6 +253,19 @@ Summary::Figures latencyOf(const std::vector<RunRow>& rows) {
     if (ms.empty()) ms.push_back(0);
     std::sort(ms.begin(), ms.end());
     return {{"median", percentileOf(ms, 50)}, {"p95", percentileOf(ms, 95)}, {"worst", ms.back()}};
+}
+
+Summary::Figures liveFiguresOf(const LiveRecord& live) {
+    auto ms = live.latency_ms;
+    if (ms.empty()) ms.push_back(0);
+    std::sort(ms.begin(), ms.end());
+    return {{"packets", static_cast<double>(live.sensor.packets)},
+            {"packets_lost", static_cast<double>(live.sensor.lostPackets)},
+            {"packets_not_recorded", static_cast<double>(live.sensor.notRecorded)},
+            {"scans_dropped", static_cast<double>(live.sensor.droppedScans)},
+            {"latency_median_ms", percentileOf(ms, 50)},
+            {"latency_p99_ms", percentileOf(ms, 99)},
+            {"latency_worst_ms", ms.back()}};
 }
 
 double peakMemory_mb() {
@@ -300,6 +314,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.vertical_correction_deg = record.options.scan().vertical_correction_deg;
     summary.ms_per_scan = record.msPerScan();
     summary.latency_ms = latencyOf(record.rows);
+    if (record.live) summary.live = liveFiguresOf(*record.live);
     for (const auto& [name, ms] : meanTimes(record))
         if (name == "map")
             summary.map_ms_per_scan = ms;

@@ -236,6 +236,18 @@ TEST(PacketsOuster, PacketsOfAnotherSensorAreLeftOut) {
               0U);
 }
 
+TEST(PacketsOuster, ASensorThatIsStartedAgainIsTheSame) {
+    OusterToy toy;
+    toy.serial = 5;
+    toy.initialization = 100;
+    const auto decoder = decoderOf(toy);
+    for (std::uint16_t turn = 100; turn < 103; ++turn) addTurn(*decoder, toy, turn);
+    toy.initialization = 101;  // its clock and its turns count from zero again
+    for (std::uint16_t turn = 0; turn < 3; ++turn) addTurn(*decoder, toy, turn);
+    EXPECT_EQ(finish(*decoder).size(), 6U);
+    EXPECT_TRUE(decoder->findings().empty());
+}
+
 /** A turn of which some columns have other times. */
 void addTurn(io::PacketDecoder& decoder, const OusterToy& toy, std::uint16_t frame,
              const std::function<std::optional<std::uint64_t>(std::size_t)>& otherTime) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace delio::io {
 namespace {
 struct Given {
@@ -10,14 +12,16 @@ struct Given {
     std::string findings;
 };
 
-/** What is given of scans that are stamped so. */
-Given givenOf(const std::vector<double>& stamps_s) {
+/** What is given of scans that are stamped so. `isLive`: scans are read ahead only where isNext()
+ *  does not know the first one. */
+Given givenOf(const std::vector<double>& stamps_s, bool isLive = false) {
     StampOrder order;
     std::deque<Scan> ahead;
     Given given;
     std::size_t read = 0;
     while (true) {
         for (; read < stamps_s.size() && ahead.size() < StampOrder::kWindow; ++read) {
+            if (isLive && !ahead.empty() && order.isNext(ahead.front())) break;
             ahead.emplace_back();
             ahead.back().index = read;
             ahead.back().stamp_s = stamps_s[read];
@@ -51,6 +55,42 @@ TEST(StampOrder, RisingStampsStayAsTheyAre) {
     EXPECT_EQ(given.findings, "");
     EXPECT_TRUE(givenOf({}).scans.empty());
     EXPECT_EQ(givenOf({5}).stamps_s, std::vector<double>{5});
+}
+
+TEST(StampOrder, ReadingAheadOnlyWhereNeededGivesTheSame) {
+    std::mt19937 random(7);
+    const auto draw = [&](int most) { return std::uniform_int_distribution<int>(0, most)(random); };
+    for (int drive = 0; drive < 500; ++drive) {
+        auto stamps = even(40);
+        for (int fault = draw(6); fault > 0; --fault) {
+            const auto at = static_cast<std::size_t>(draw(36));
+            const double by_s = 0.05 * (draw(40) - 20);
+            const int kind = draw(4);
+            if (kind == 0) std::swap(stamps[at], stamps[at + 1]);
+            if (kind == 1) std::swap(stamps[at], stamps[at + 2]);
+            if (kind == 2) stamps[at] += by_s;
+            if (kind == 3)  // a pause, or a clock that was set
+                for (std::size_t i = at; i < stamps.size(); ++i) stamps[i] += by_s;
+            if (kind == 4) stamps.erase(stamps.begin() + static_cast<std::ptrdiff_t>(at));
+        }
+        const auto all = givenOf(stamps), live = givenOf(stamps, true);
+        EXPECT_EQ(live.scans, all.scans) << drive;
+        EXPECT_EQ(live.stamps_s, all.stamps_s) << drive;
+        EXPECT_EQ(live.findings, all.findings) << drive;
+    }
+}
+
+TEST(StampOrder, AScanAtTheUsualIntervalNeedsNoLookAhead) {
+    StampOrder order;
+    std::deque<Scan> ahead;
+    std::size_t known = 0;
+    for (std::size_t i = 0; i < 20; ++i) {
+        ahead.emplace_back();
+        ahead.back().stamp_s = 0.1 * static_cast<double>(i);
+        known += order.isNext(ahead.front());
+        order.take(ahead);
+    }
+    EXPECT_EQ(known, 18U);  // two scans show the interval
 }
 
 TEST(StampOrder, SwappedScansAreSorted) {

@@ -28,6 +28,9 @@ std::string kittiRow(const Eigen::Isometry3d& pose);
 /** Writes a kittiRow() for each pose. */
 void writeKitti(const Trajectory& trajectory, const std::string& path);
 
+/** A pose as TUM writes it, `t x y z qx qy qz qw`, in the same way. */
+std::string tumRow(double stamp_s, const Eigen::Isometry3d& pose);
+
 /** Writes `t x y z qx qy qz qw` with qw of 0 or more; needs stamps. */
 void writeTum(const Trajectory& trajectory, const std::string& path);
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -36,6 +37,14 @@ struct Recording {
 /** In one line: "Velodyne VLP-16, 10 Hz, points with times, not de-skewed by the recorder, 3213
  *  scans (pcap)". */
 std::string describe(const Recording& recording);
+
+/** What a live sensor sent, and what became of it so far. */
+struct LiveReport {
+    std::size_t packets = 0;       //!< UDP datagrams that were received
+    std::size_t lostPackets = 0;   //!< that this machine lost because it was too slow
+    std::size_t notRecorded = 0;   //!< that are missing in the recording: the disk was too slow
+    std::size_t droppedScans = 0;  //!< that were not processed, for lack of time
+};
 
 /** Reads the scans of one LiDAR of a drive in order, from any format. Memory does not grow with the
  *  length of the drive. */
@@ -79,10 +88,31 @@ class ScanReader {
      * of the scans, and are complete after the last one. */
     virtual earth::Fixes takeFixes() { return {}; }
 
+    /** Of a live sensor; nothing for recordings. */
+    virtual std::optional<LiveReport> live() const { return {}; }
+
+    /** Unix time at which a live sensor's last packet of the scan came that next() gave last;
+     *  nothing for recordings. */
+    virtual std::optional<double> received_s() const { return {}; }
+
     /** KITTI's calib.txt: `Tr`. */
     virtual SideFile calibration() const { return {}; }
     /** KITTI's poses.txt: one row per scan, skipped ones included, in the cam0 frame. */
     virtual SideFile truth() const { return {}; }
+};
+
+/** Settings of a live sensor. */
+struct LiveSettings {
+    /** pcap that the packets are written to as they come; empty: none. Read with the same settings,
+     *  it gives the same scans. */
+    std::string record;
+    double idle_s = 0;  //!< seconds without a packet that end the drive; 0: nothing does
+    /** Scans that wait for the odometry at a time. Where there are more, the oldest is dropped. */
+    std::size_t mostWaiting = 5;
+    /** Asked 20 times a second, by another thread: true ends the drive. Null: it goes on. */
+    std::function<bool()> isEnded;
+    /** Gets warnings during the drive, from other threads. */
+    std::function<void(const std::string&)> onWarning;
 };
 
 /** A recording and the settings to open it. */
@@ -90,8 +120,8 @@ struct ScanSource {
     /** A rawlog (see RawlogReader), KITTI odometry or raw folder, folder of .pcd, .ply, .bin, .txt
      *  or .csv, ROS 1 .bag, ROS 2 .db3, .mcap or the folder of either, pcap of a Velodyne, Ouster,
      *  Hesai or RoboSense, .osf of an Ouster; the format is detected from the content. "-": a
-     * rawlog or pcap from standard input.
-     */
+     *  rawlog or pcap from standard input. "udp://[ADDRESS:]PORT[,PORT]...": packets that a sensor
+     *  sends to this machine (IPv4; ADDRESS is the machine's or a multicast group's). */
     std::string path;
     /** The sensor to read: a rawlog's sensorLabel, a bag's topic, the serial number in an .osf; of
      * a folder of .bin files the layout of their points. Empty: that of the first scan of a rawlog;
@@ -102,7 +132,11 @@ struct ScanSource {
     /** The sensor's description: an Ouster's json, a Velodyne's calibration (.xml, .yaml). Empty:
      *  the .json beside the recording, what the recording holds, or the model's usual one. */
     std::string sensorFile;
+    LiveSettings live = {};  //!< of "udp://..."
 };
+
+/** True for "udp://...". */
+bool isLive(const std::string& path);
 
 /** Opens `source` and reads its first three scans, so that all of recording() is known, and meta()
  *  also where the points had to be looked at for it. Throws Error if there is nothing to read, the
@@ -113,6 +147,7 @@ std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string
                                       const std::string& imagesFolder = "");
 
 /** Name of a drive: its file's name without the extension, or its folder's, with '?' for control
- *  characters. Throws Error if that is not a valid folder name ("..", of `...rawlog`). */
+ *  characters; "live" for a live sensor. Throws Error if that is not a valid folder name ("..", of
+ * `...rawlog`). */
 std::string nameOfDrive(const std::string& path);
 }  // namespace delio::io

@@ -36,9 +36,13 @@ class Playback {
     /** There is no scan after `start`, or reading it was interrupted. */
     bool isEmpty() const { return !now_.scan; }
 
-    /** Gets the result of each scan, and the part of the recording that was read (0-1, where it is
-     *  known). */
-    using OnScan = std::function<void(const RunRow&, std::optional<double>)>;
+    /** How far a drive has come. */
+    struct Progress {
+        std::optional<double> fraction;    //!< part of the recording that was read, 0 to 1
+        std::optional<double> latency_ms;  //!< from a live sensor's last packet to the pose
+    };
+    /** Gets the result of each scan. */
+    using OnScan = std::function<void(const RunRow&, const Progress&)>;
 
     /** Processes all scans of the settings. A fault in the recording ends the playback and becomes
      *  the run's fault; findings become warnings. Call it once. */
@@ -48,17 +52,20 @@ class Playback {
     struct Reading {
         std::optional<Scan> scan;    //!< nothing at the end
         std::vector<ImuSample> imu;  //!< that were read with it
-        std::optional<double> fraction;
+        std::optional<double> fraction, received_s;
     };
     bool isInterrupted() const { return settings_.isInterrupted && settings_.isInterrupted(); }
     Reading read(std::size_t passedOver);
     void processAll(Run& run, const OnScan& onScan);
+    std::optional<double> latency_ms();
     void addFixes(Run& run);
+    void addLive(Run& run);
 
     io::ScanReader& reader_;
     PlaybackSettings settings_;
     Reading now_;
     double read_ms_ = 0;
+    std::vector<double> latencies_ms_;
 };
 
 /** A warning for each sensor of the recording that is not read. */

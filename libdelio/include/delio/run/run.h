@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "delio/earth/fix.h"
@@ -79,6 +80,18 @@ class Run {
 
     /** Takes GNSS fixes of the drive, with stamps as its scans have them; before finish(). */
     void add(const earth::Fixes& fixes);
+
+    /** Records what a live sensor sent; before finish(). */
+    void add(LiveRecord live) { record_.live = std::move(live); }
+
+    /** Pose of the vehicle at the latest scan. */
+    struct Pose {
+        double stamp_s = 0;  //!< of the scan
+        /** Maps coordinates of the vehicle to those of the frame. */
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+        bool isInMap = false;  //!< in the frame of the stored map; otherwise of the first scan
+    };
+    Pose latestPose() const;  //!< after a scan was processed
 
     /** Records a warning for the summary and calls RunSettings::onWarning. */
     void warn(const std::string& text);

@@ -74,6 +74,7 @@ class RunFolder {
     static constexpr const char* kRemovalPicture = "map_removal.png";  //!< before and after it
     static constexpr const char* kTrajectoryPicture =
         "trajectory.png";                                    //!< the trajectory from above
+    static constexpr const char* kPackets = "packets.pcap";  //!< of a live sensor, as they came
     static constexpr const char* kSummary = "summary.yaml";  //!< the run in numbers
     /** With several drives: the map of each drive. */
     static constexpr const char* kDrives = "drives.csv";

@@ -16,6 +16,7 @@
 #include "delio/places/localisation.h"
 #include "delio/places/loops.h"
 #include "delio/places/stored_map.h"
+#include "delio/recordings/scan_reader.h"
 #include "delio/slam/options.h"
 #include "delio/slam/slam.h"
 
@@ -66,6 +67,13 @@ struct RunRow {
 /** The row of a scan that `report` is of. `before`: the last row; null for the first. */
 RunRow rowOf(const Scan& scan, const ScanReport& report, double read_ms, const RunRow* before);
 
+/** A drive of a live sensor. */
+struct LiveRecord {
+    io::LiveReport sensor;  //!< at its end
+    /** From the last packet of each processed scan to its pose. */
+    std::vector<double> latency_ms;
+};
+
 /** Settings and results of a run, except the map; RunFolder writes them. */
 struct RunRecord {
     std::string profile;               //!< that the options were made of
@@ -75,6 +83,7 @@ struct RunRecord {
 
     std::vector<RunRow> rows;           //!< of the scans that were processed
     bool complete = false;              //!< every scan was processed
+    std::optional<LiveRecord> live;     //!< nothing for recordings
     std::string fault;                  //!< what ended the run early, or is missing in it
     std::vector<std::string> warnings;  //!< a line each
 

@@ -50,6 +50,7 @@ struct Summary {
     double ms_per_scan = 0;                //!< reading, odometry, the graph's window, submaps
     Figures ms_per_scan_of_stages;         //!< the same by stage
     Figures latency_ms;                    //!< latencyOf()
+    Figures live;                          //!< of a live sensor; empty: a recording
     double map_ms_per_scan = 0;            //!< time of the map per scan
     double optimisation_ms = 0;            //!< of the whole graph
     unsigned optimisation_iterations = 0;  //!< Levenberg-Marquardt steps tried
@@ -68,6 +69,10 @@ Summary summaryOf(const RunRecord& record, double pictures_ms);
 /** Latency from the request of a scan to its pose, ms (RunRow::total_ms()): median, p95 and worst.
  */
 Summary::Figures latencyOf(const std::vector<RunRow>& rows);
+
+/** Packets and scans of a live sensor, and latency from the last packet of a scan to its pose, ms:
+ *  median, p99 and worst. */
+Summary::Figures liveFiguresOf(const LiveRecord& live);
 
 /** Largest memory of this process so far, MB. */
 double peakMemory_mb();
