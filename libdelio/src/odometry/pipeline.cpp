@@ -185,7 +185,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAfterPause(const PointCloud& cloud,
 }
 
 /** No vehicle brakes so hard: the time since the latest scan that was registered would have to be
- * an error of the clock. On a road that looks the same everywhere that is not believed unless as
+ * an error of the clock. On a road that looks the same everywhere that is accepted only where as
  * many points fit as there. */
 bool PlaneOdometry::isImplausible(const PointEstimate& placed) const {
     constexpr double kLong_s = 0.5, kAsBefore = 0.9;
