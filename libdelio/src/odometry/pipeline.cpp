@@ -184,9 +184,10 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAfterPause(const PointCloud& cloud,
     return stood;
 }
 
-/** No vehicle brakes so hard: the time since the latest scan that was registered would have to be
- * an error of the clock. On a road that looks the same everywhere that is accepted only where as
- * many points fit as there. */
+/** True where the scan lies nearer to the latest registered one than any braking allows, and
+ * clearly fewer points fit than there. On a road that looks the same everywhere, scans fit at a
+ * wrong place like that. A scan that fits about as well as before is accepted: the clock may have
+ * been set. */
 bool PlaneOdometry::isImplausible(const PointEstimate& placed) const {
     constexpr double kLong_s = 0.5, kAsBefore = 0.9;
     const bool isNewMap = std::holds_alternative<FirstScan>(state_);

@@ -209,7 +209,7 @@ class PlaneOdometry : public Odometry {
     };
     std::optional<Latest> latest_;
     ScanTrajectory trajectoryOfLatest() const { return placed(pose_, motion_); }
-    /** A scan near the begin of the map, and what of it is in the map if it is not the first. */
+    /** One of the first scans of the map, and its points in the map; none for the very first. */
     struct BeginningScan {
         Latest scan;
         std::optional<PlacedPoints> points;

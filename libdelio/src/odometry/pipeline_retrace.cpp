@@ -107,7 +107,7 @@ std::optional<ScanTrajectory> PlaneOdometry::stepBack(const Latest& scan) {
                                  before.seenFrom(0), step);
     const double found = attempt.placement.estimate.inlierRatio;
     const bool wasBetter = asBefore.isBetterThan(attempt);
-    // The window's trajectory is the one of `attempt`.
+    // A window holds the trajectory of `attempt`, so that only that one can be used.
     if (!window_.isEmpty() && wasBetter &&
         asBefore.placement.estimate.inlierRatio > found + kInlierNoise)
         return {};

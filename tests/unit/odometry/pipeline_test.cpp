@@ -292,6 +292,44 @@ TEST(PlaneOdometry, TheStampMayLieOutsideTheScan) {
     }
 }
 
+/** Rails, and bushes of which every other one comes again after 60 m. */
+test::Scene repeatingHighway() {
+    constexpr int kBushes = 80, kPeriods = 6;
+    constexpr double kPeriod_m = 60;
+    test::Scene scene = test::highway(false);
+    test::Noise noise(5);
+    const auto addBush = [&](double x, double y, double height) {
+        scene.push_back({{x, y - 0.4, -1.8}, {x + 0.8, y + 0.4, height}});
+    };
+    for (int i = 0; i < kBushes; ++i) {
+        const double y = (i % 2 ? 1 : -1) * (16 + 6 * noise.uniform());
+        const double height = 0.5 + 1.5 * noise.uniform();
+        const double x = kPeriod_m * (noise.uniform() + 1) / 2;
+        for (int period = -3; period < kPeriods - 3; ++period)
+            addBush(kPeriod_m * (period + (i % 2 ? 0 : noise.uniform() / 2)) + x, y, height);
+    }
+    return scene;
+}
+
+// The place 60 m ahead looks much like the one before the pause.
+TEST(PlaneOdometry, APauseOnAHighwayIsNoStandstill) {
+    constexpr double kSpeed_mps = 30, kPause_s = 2;
+    constexpr int kBefore = 15, kAfter = 5;
+    test::Noise noise;
+    PlaneOdometry odometry(accurate());
+    Isometry3d pose = Isometry3d::Identity();
+    double time_s = 0;
+    for (int i = 0; i < kBefore + kAfter; ++i) {
+        if (i > 0) time_s += i == kBefore ? kPause_s + 0.1 : 0.1;
+        const auto truth = poseAt(kSpeed_mps * time_s - 60, 0, 0);
+        Scan scan = test::scanOf(
+            ringScan(repeatingHighway(), truth, {32, 720, -24, 8, 0.01}, noise).points);
+        scan.stamp_s = time_s;
+        pose = pose * odometry.process(scan).increment.pose;
+    }
+    EXPECT_NEAR(pose.translation().x(), kSpeed_mps * time_s, 1);
+}
+
 // In a smooth corridor nothing shows how fast it drives.
 TEST(PlaneOdometry, AStartInWhichAnAxisStaysUnobservedIsLost) {
     test::Noise noise;
