@@ -66,6 +66,8 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
     const std::string axes = run::weakAxesOf(doubts);
     row("predicted", run::textOf(doubts.predicted, record.predicted()));
     row("lost", run::textOf(doubts.lost, doubts.lost.scans));
+    if (const auto unlinked = run::unlinkedOf(record); unlinked.scans > 0)
+        row("unlinked", run::textOf(unlinked, unlinked.scans));
     row("weakly observed",
         run::textOf(doubts.weak, doubts.weak.scans) + (axes.empty() ? "" : ", " + axes));
     if (doubts.standing.scans > 0)

@@ -137,6 +137,10 @@ void bindSteps(py::module_& module) {
             "searched", [](const PythonStep& of) { return of.step.searched; },
             "The motion was searched over a wide range.")
         .def_property_readonly(
+            "track", [](const PythonStep& of) { return of.step.track; },
+            "Number of the track. A new track begins with a new map, after scans that were not "
+            "found in the one before.")
+        .def_property_readonly(
             "interrupted", [](const PythonStep& of) { return of.step.interrupted; },
             "The scan came after a time gap or clock jump.")
         .def_property_readonly(

@@ -97,6 +97,7 @@ Step PlaneOdometry::process(const Scan& scan) {
 
     step.standing = isStanding(step, interval.duration_s);
     step.lost = isLostAfter(step);
+    step.track = track_;
     if (!step.predicted) unregistered_s_ = 0;
     if (!isLost(state_) && isOtherScale()) {
         takeScale(seenScale_);
@@ -160,6 +161,7 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
         else
             miss(cloud);
         if (left_ && estimate.valid) rejoin(view);
+        if (hasDrifted(placed.inlierRatio)) beginAnew(cloud);
     }
     if (!estimate.valid)
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";
@@ -342,11 +344,11 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
                            ScanView& view, const Step& step) {
     const bool isDegenerate = estimate.translation.unobservedAxes.cols() > 0;
     const auto* latest = std::get_if<Degenerate>(&state_);
-    const unsigned degenerateScans = latest ? latest->scans : 0;
     if (step.interrupted)
         state_ = Lost{};  // the speed is not known
     else if (isDegenerate)
-        state_ = Degenerate{degenerateScans + 1};
+        state_ = latest ? Degenerate{latest->scans + 1, latest->inlierRatio}
+                        : Degenerate{1, placed.inlierRatio};
     else
         state_ = Tracking{};
     // A degenerate scan may be at a wrong pose, and the next ones would confirm it: few of them
@@ -358,6 +360,21 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
     insertLater(view);
 }
 
+/** True where ever fewer points fit while the sensor seems to stand: in truth it moves along an
+ * axis that the scene does not show, away from where the map began. */
+bool PlaneOdometry::hasDrifted(double inlierRatio) const {
+    constexpr double kDrifted = 0.6;
+    const auto* degenerate = std::get_if<Degenerate>(&state_);
+    return degenerate && !prediction_.hasMotion() &&
+           inlierRatio < kDrifted * degenerate->inlierRatio;
+}
+
+/** A new map, which only a prediction links to the one before. */
+void PlaneOdometry::beginAnew(const PointCloud& cloud) {
+    track_ = ++latestTrack_;
+    beginMap(cloud, false);
+}
+
 /** After a scan that was not found in the map. */
 void PlaneOdometry::miss(const PointCloud& cloud) {
     constexpr unsigned kPatience = 3;
@@ -366,7 +383,7 @@ void PlaneOdometry::miss(const PointCloud& cloud) {
     if (misses < kPatience) return;
     leaveMap();
     takeScale(seenScale_);  // the map may have begun with the vehicle's own body
-    beginMap(cloud, false);
+    beginAnew(cloud);
 }
 
 /** Learns the motion, how well it is predicted, and the usual inlier ratio. */
@@ -484,8 +501,8 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     map_.clear(upAt(pose_));
     waiting_.reset();
     start_.reset();
-    beginning_.clear();
-    if (isSkewed) beginning_.push_back({{cloud, time_s_, Twist{}}, {}});
+    if (prediction_.hasMotion() || !isSkewed) beginning_.clear();
+    if (isSkewed) beginning_.push_back({{cloud, time_s_, Twist{}}, {}, track_});
     dynamics_.clear();
     usualInlierRatio_ = 0;
     map_.addScan(view.fine, pose_);

@@ -89,6 +89,7 @@ class PlaneOdometry : public Odometry {
     // The first scans of a map, once more (pipeline_retrace.cpp).
     struct Latest;
     void retraceStart(const PointCloud& cloud, const Step& step);
+    void retrace(std::size_t count, std::size_t least);
     void turnBack(const PlaneOdometry& ahead, std::size_t first);
     std::optional<ScanTrajectory> stepBack(const Latest& scan);
 
@@ -118,6 +119,7 @@ class PlaneOdometry : public Odometry {
     bool isImplausible(const PointEstimate& placed) const;
     bool isBeyondReach(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
                        double since_s) const;
+    bool hasDrifted(double inlierRatio) const;
     void miss(const PointCloud& cloud);
     bool isLostAfter(const Step& step) const;
     void report(const PlaneEstimate& estimate, ScanView& view, Step& step) const;
@@ -141,6 +143,7 @@ class PlaneOdometry : public Odometry {
 
     // The map.
     ScanView beginMap(const PointCloud& cloud, bool motionIsKnown);
+    void beginAnew(const PointCloud& cloud);
     void insertLater(ScanView& view);
     void insertWaiting();
     void takeScale(double scale);
@@ -189,6 +192,7 @@ class PlaneOdometry : public Odometry {
     unsigned otherScale_ = 0;  //!< scans in a row that show a place of another size
 
     TrackingState state_;
+    std::size_t track_ = 0, latestTrack_ = 0;  //!< Step::track, and its greatest value
     Arrivals arrivals_;
     double time_s_ = 0;  //!< of the latest scan, since the start
     LocalMap map_;
@@ -209,12 +213,14 @@ class PlaneOdometry : public Odometry {
     };
     std::optional<Latest> latest_;
     ScanTrajectory trajectoryOfLatest() const { return placed(pose_, motion_); }
-    /** One of the first scans of the map, and its points in the map; none for the very first. */
+    /** One of the first scans of the map, and its points in the map, where it was tracked. */
     struct BeginningScan {
         Latest scan;
         std::optional<PlacedPoints> points;
+        std::size_t track = 0;  //!< Step::track
     };
-    /** The first scans of the map, oldest first, until they are registered again. */
+    /** The first scans of the map, and those before it whose motion is not known, oldest first,
+     * until they are registered again. */
     std::vector<BeginningScan> beginning_;
     /** The latest scans, where the motion changes faster than it can be predicted. */
     ScanWindow window_;
@@ -231,8 +237,9 @@ class PlaneOdometry : public Odometry {
         ReferenceScan reference;
         Eigen::Isometry3d toSaid = Eigen::Isometry3d::Identity();  //!< its frame to that of said_
         double usualInlierRatio = 0;
-        double left_s = 0;   //!< time of the first scan in the new map
-        unsigned scans = 0;  //!< that were sought in it since
+        std::size_t track = 0;  //!< of its scans
+        double left_s = 0;      //!< time of the first scan in the new map
+        unsigned scans = 0;     //!< that were sought in it since
         /** New map's frame to this map's, as the latest scan has it. */
         std::optional<Eigen::Isometry3d> toThis;
     };

@@ -11,8 +11,8 @@ ScanTrajectory PlaneOdometry::refined(const ScanTrajectory& start, const KnownEn
 
 /** The scan that the map began with, which is all there is in it, as seen on this trajectory. */
 void PlaneOdometry::deskewFirst(const PointCloud& first, const ScanTrajectory& trajectory) {
-    if (!beginning_.empty())
-        beginning_.front().scan.trajectory = placed(reference_.pose, trajectory);
+    for (auto& [scan, points, track] : beginning_)
+        if (scan.time_s == reference_.time_s) scan.trajectory = placed(reference_.pose, trajectory);
     ScanView view = undistorted(first, trajectory);
     odometry::thin(view, options_.spacing.map_spacing, options_.spacing.scan_spacing);
     map_.clear(upAt(reference_.pose));

@@ -14,6 +14,7 @@ void PlaneOdometry::leaveMap() {
                     reference_,
                     said_ * stamped_.pose.inverse(),
                     usualInlierRatio_,
+                    track_,
                     time_s_,
                     0,
                     {}};
@@ -76,6 +77,7 @@ void PlaneOdometry::moveToLeftMap(const Eigen::Isometry3d& toLeft) {
     stamped_.pose = left_->toSaid.inverse() * said_;
     map_ = std::move(left_->map);
     usualInlierRatio_ = left_->usualInlierRatio;
+    track_ = left_->track;
     pose_ = normalised(toLeft * pose_);
     reference_.pose = pose_;
     if (waiting_) waiting_->pose = pose_;

@@ -28,39 +28,56 @@ ScanTrajectory reversed(const ScanTrajectory& trajectory) {
  *  soon as more scans have followed, the first ones are registered again, to those and backwards in
  *  time, with a motion that is known. */
 void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
-    constexpr std::size_t kFirst = 4, kLater = 4;
-    if (beginning_.empty() || beginning_.back().scan.time_s == time_s_) return;
-    const bool isTracking = std::holds_alternative<Tracking>(state_) && waiting_;
-    const bool isKnown = isTracking || beginning_.size() < kFirst;
-    if (!isKnown || !step.reason.empty() || usesGyro_ || left_ || cloud.times_s.empty())
-        return beginning_.clear();
-    beginning_.push_back({{cloud, time_s_, trajectoryOfLatest()}, waiting_});
-    if (start_)
-        for (auto& [scan, points] : beginning_)
-            scan.trajectory = placed(window_.trajectory().at(scan.time_s),
-                                     window_.trajectory().seenFrom(scan.time_s));
-    if (beginning_.size() < kFirst + kLater) return;
-    PlaneOdometry back(given_);
-    back.turnBack(*this, kFirst);
-    const std::size_t known = past_.size() + 1 - beginning_.size();
-    std::vector<ScanTrajectory> trajectories(kFirst + 1, beginning_[kFirst].scan.trajectory);
-    for (std::size_t i = kFirst; i-- > 0;) {
-        const auto found = back.stepBack(beginning_[i].scan);
-        if (!found) return beginning_.clear();
-        trajectories[i] = *found;
+    constexpr std::size_t kFirst = 4, kLater = 4, kMost = 32;
+    if (beginning_.empty()) return;
+    if (beginning_.back().scan.time_s != time_s_) {
+        if (!step.reason.empty() || usesGyro_ || left_ || cloud.times_s.empty())
+            return beginning_.clear();
+        const bool isTracking = std::holds_alternative<Tracking>(state_) && waiting_;
+        beginning_.push_back(
+            {{cloud, time_s_, trajectoryOfLatest()}, isTracking ? waiting_ : std::nullopt, track_});
     }
+    if (start_)
+        for (auto& [scan, points, track] : beginning_)
+            if (track == track_)
+                scan.trajectory = placed(window_.trajectory().at(scan.time_s),
+                                         window_.trajectory().seenFrom(scan.time_s));
+    const auto isTracked = [](const BeginningScan& scan) { return scan.points.has_value(); };
+    const auto tracked = static_cast<std::size_t>(
+        std::find_if_not(beginning_.rbegin(), beginning_.rend(), isTracked) - beginning_.rbegin());
+    const bool isHopeful = tracked > 0 || !prediction_.hasMotion() || beginning_.size() < kFirst;
+    if (beginning_.size() >= kMost || !isHopeful) return beginning_.clear();
+    if (tracked + 1 < kFirst + kLater) return;
+    retrace(beginning_.size() - kLater, kFirst);
+    beginning_.clear();
+}
+
+/** Registers the first `count` scans of beginning_ again, the last of them first, as far as they
+ * are found; nothing is corrected where these are fewer than `least`. */
+void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
+    PlaneOdometry back(given_);
+    back.turnBack(*this, count);
+    std::vector<ScanTrajectory> trajectories(count + 1, beginning_[count].scan.trajectory);
+    std::size_t first = count;
+    while (first > 0) {
+        const auto found = back.stepBack(beginning_[first - 1].scan);
+        if (!found) break;
+        trajectories[--first] = *found;
+    }
+    if (count - first < least) return;
     // The trajectory of a scan is known best between its time and that of the scan after it.
-    for (std::size_t i = 0, k = 0; i < kFirst; ++i) {
+    const std::size_t known = past_.size() + 1 - beginning_.size();
+    for (std::size_t i = first, k = first; i < count; ++i) {
         PastScan& scan = past_[known + i];
-        while (k < kFirst && beginning_[k + 1].scan.time_s <= scan.stamp_s) ++k;
+        while (k < count && beginning_[k + 1].scan.time_s <= scan.stamp_s) ++k;
         scan.pose = atStamp(trajectories[k], scan.stamp_s - beginning_[k].scan.time_s);
         scan.isCorrected = true;
     }
-    beginning_.clear();
+    track_ = beginning_[first].track;
     back.insertWaiting();
     map_ = std::move(back.map_);
     waiting_.reset();
-    if (known > 0) return;
+    if (known + first > 0) return;
     // The drive begins where it began: the next step leads to where the sensor is now.
     stamped_.pose = past_.front().pose * said_;
     for (auto& scan : past_) scan.isCorrected = true;

@@ -25,7 +25,8 @@ struct Tracking {};
 /** The latest scan was registered, but the scene does not constrain the translation along every
  *  axis: the pose along the others is the prediction. */
 struct Degenerate {
-    unsigned scans = 1;  //!< in a row, up to this one
+    unsigned scans = 1;      //!< in a row, up to this one
+    double inlierRatio = 0;  //!< of the first of them
 };
 
 /** The latest scan was not found in the map, or the time before it is not known: the next one may
@@ -37,7 +38,8 @@ struct Lost {
 /** What the odometry knows before a scan. Transitions: Empty -> FirstScan (a usable scan);
  *  FirstScan, Lost -> Tracking, Degenerate (registered); any -> Lost (not found, or a pause);
  *  Lost, FirstScan -> FirstScan (three scans not found: a new map); Tracking, Degenerate ->
- *  FirstScan (the place has another size: a new map). */
+ *  FirstScan (the place has another size: a new map);
+ *  Degenerate -> FirstScan (ever fewer points fit: a new map). */
 using TrackingState = std::variant<Empty, FirstScan, Tracking, Degenerate, Lost>;
 
 /** True where the pose of the next scan is not known to better than metres. */

@@ -2,20 +2,47 @@
 
 #include <mrpt/core/format.h>
 
+#include <algorithm>
+#include <map>
+
 namespace delio::run {
 namespace {
+constexpr double kMostLost = 0.1;  // share of the scans
+
+bool isMore(std::size_t scans, double share, std::size_t ofAll) {
+    return static_cast<double>(scans) > share * static_cast<double>(ofAll);
+}
+
+/** `isOfKind`: says it of the row with a number. */
 template <typename IsOfKind>
-Stretches stretchesOf(const std::vector<RunRow>& rows, const IsOfKind& isOfKind) {
+Stretches numberedStretchesOf(const std::vector<RunRow>& rows, const IsOfKind& isOfKind) {
     Stretches found;
     std::size_t inRow = 0;
     for (std::size_t i = 1; i < rows.size(); ++i) {
-        inRow = isOfKind(rows[i]) ? inRow + 1 : 0;
+        inRow = isOfKind(i) ? inRow + 1 : 0;
         found.scans += inRow > 0;
         if (inRow <= found.longest) continue;
         found.longest = inRow;
         found.from = rows[i + 1 - inRow].scan;
     }
     return found;
+}
+
+template <typename IsOfKind>
+Stretches stretchesOf(const std::vector<RunRow>& rows, const IsOfKind& isOfKind) {
+    return numberedStretchesOf(rows, [&](std::size_t i) { return isOfKind(rows[i]); });
+}
+
+/** The track of each row. Tracks that a registration or a loop links have the same number. */
+std::vector<std::size_t> linkedTracksOf(const RunRecord& record) {
+    std::vector<std::size_t> tracks;
+    for (const auto& row : record.rows) tracks.push_back(row.track);
+    for (std::size_t i = tracks.size() - 1; i-- > 0;)
+        tracks[i] = std::min(tracks[i], tracks[i + 1]);
+    for (const auto& [from, to] : record.closedLoops())
+        std::replace(tracks.begin(), tracks.end(), std::size_t(tracks.at(to)),
+                     std::size_t(tracks.at(from)));
+    return tracks;
 }
 
 bool isWeak(const RunRow& row) {
@@ -60,16 +87,32 @@ Doubts doubtsOf(const std::vector<RunRow>& rows) {
 }
 
 std::string whyUnreliable(const Doubts& doubts) {
-    constexpr double kLost = 0.1, kWeak = 0.5;
-    const auto isMore = [&](std::size_t scans, double share) {
-        return static_cast<double>(scans) > share * static_cast<double>(doubts.pairs);
-    };
-    if (isMore(doubts.lost.scans, kLost))
+    constexpr double kWeak = 0.5;
+    if (isMore(doubts.lost.scans, kMostLost, doubts.pairs))
         return mrpt::format("lost in %zu of %zu scans", doubts.lost.scans, doubts.pairs);
-    if (isMore(doubts.weak.scans, kWeak))
+    if (isMore(doubts.weak.scans, kWeak, doubts.pairs))
         return mrpt::format("%zu of %zu scans are weakly observed", doubts.weak.scans,
                             doubts.pairs);
     return {};
+}
+
+Stretches unlinkedOf(const RunRecord& record) {
+    const bool isAnchored = record.isLocalised() || record.gnss.inGraph > 0;
+    if (record.rows.empty() || isAnchored) return {};
+    const auto tracks = linkedTracksOf(record);
+    std::map<std::size_t, std::size_t> scans;
+    for (const auto track : tracks) ++scans[track];
+    const auto longest =
+        std::max_element(scans.begin(), scans.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    return numberedStretchesOf(record.rows,
+                               [&](std::size_t i) { return tracks[i] != longest->first; });
+}
+
+std::string whyUnreliable(const Stretches& unlinked, std::size_t scans) {
+    if (!isMore(unlinked.scans, kMostLost, scans)) return {};
+    return ofAll(unlinked, scans) +
+           " lie in a map that no registration links to the others: only a prediction";
 }
 
 const char* stateOf(const RunRow& row) {

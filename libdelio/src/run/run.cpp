@@ -335,6 +335,8 @@ void Run::finish(bool complete) {
         for (const auto& finding : record_.imu->findings) warn(finding);
     slam_.close();
     optimise();
+    if (const auto why = whyUnreliable(unlinkedOf(record_), doubts.pairs); !why.empty())
+        fail(why + ": the trajectory is not to be relied on");
     if (map_) record_.options.map = map_->builder().options();  // as they were used
     if (settings_.map && graph_ && loops_) store();
     if (truth_) score();

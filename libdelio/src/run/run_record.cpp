@@ -71,6 +71,7 @@ RunRow rowOf(const Scan& scan, const ScanReport& report, double read_ms, const R
     row.turned_rad = angleOf(step.increment.pose.linear());
     row.predicted = step.predicted;
     row.lost = step.lost;
+    row.track = step.track;
     row.searched = step.searched;
     row.interrupted = step.interrupted;
     row.standing = step.standing;

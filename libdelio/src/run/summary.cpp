@@ -202,6 +202,7 @@ void forEachField(Record& s, const Field& field) {
     field("longest_predicted", s.longest_predicted);
     field("lost", s.lost);
     field("longest_lost", s.longest_lost);
+    field("unlinked", s.unlinked);
     field("tracked", s.tracked);
     field("weakly_observed", s.weakly_observed);
     field("longest_weakly_observed", s.longest_weakly_observed);
@@ -287,6 +288,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.longest_predicted = doubts.predicted.longest;
     summary.lost = doubts.lost.scans;
     summary.longest_lost = doubts.lost.longest;
+    summary.unlinked = unlinkedOf(record).scans;
     summary.tracked = static_cast<std::size_t>(std::count_if(
         record.rows.begin(), record.rows.end(),
         [](const RunRow& row) { return std::string_view("tracked") == stateOf(row); }));

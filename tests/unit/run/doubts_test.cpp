@@ -73,6 +73,51 @@ TEST(Doubts, WeakAxesAreTheVehicles) {
     EXPECT_NE(warnings[0].find("along x in 2, along y in 1, about z in 1"), std::string::npos);
 }
 
+/** A scan of each track; the digits are Step::track. */
+run::RunRecord recordOf(const std::string& tracks) {
+    run::RunRecord record;
+    record.rows = rowsOf(std::string(tracks.size(), '.'));
+    for (std::size_t i = 0; i < tracks.size(); ++i)
+        record.rows[i].track = static_cast<std::size_t>(tracks[i] - '0');
+    return record;
+}
+
+TEST(Doubts, ScansOfANewMapAreUnlinked) {
+    const auto unlinked = run::unlinkedOf(recordOf("0000111112"));
+    EXPECT_EQ(unlinked.scans,
+              4U);  // 3 of the first track, which has a first scan, and 1 of the last
+    EXPECT_EQ(unlinked.longest, 3U);
+    EXPECT_EQ(unlinked.from, 6U);
+    EXPECT_EQ(run::unlinkedOf(recordOf("0000000")).scans, 0U);
+    EXPECT_EQ(run::unlinkedOf({}).scans, 0U);
+}
+
+TEST(Doubts, AMapThatIsFoundAgainLinksTheScansBetween) {
+    EXPECT_EQ(run::unlinkedOf(recordOf("0000111000")).scans, 0U);
+    EXPECT_EQ(run::unlinkedOf(recordOf("0001110002222222")).scans, 7U);
+}
+
+TEST(Doubts, ALoopLinksTwoTracks) {
+    auto record = recordOf("000011111");
+    record.loops.resize(1);
+    record.loops[0].fromNode = 1;
+    record.loops[0].toNode = 7;
+    record.loops[0].closure.reason = "too few points agree";
+    EXPECT_EQ(run::unlinkedOf(record).scans, 3U);  // it was rejected
+    record.loops[0].closure.reason.clear();
+    EXPECT_EQ(run::unlinkedOf(record).scans, 0U);
+}
+
+TEST(Doubts, ATenthOfUnlinkedScansIsTooMuch) {
+    const auto why = [](const std::string& tracks) {
+        return run::whyUnreliable(run::unlinkedOf(recordOf(tracks)), tracks.size() - 1);
+    };
+    EXPECT_EQ(why(std::string(30, '0') + "111"), "");
+    EXPECT_NE(
+        why(std::string(30, '0') + "1111").find("4 of 33 scans (longest run 4, from scan 35)"),
+        std::string::npos);
+}
+
 TEST(Doubts, TheFirstScanHasNothingBeforeIt) {
     EXPECT_EQ(run::doubtsOf({}).pairs, 0U);
     const auto doubts = run::doubtsOf(rowsOf("w"));

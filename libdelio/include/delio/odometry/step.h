@@ -74,6 +74,11 @@ struct Step {
     /** Where the sensor went since it was tracked last is not known: the scan was not found in the
      *  map, or an axis has not been observed since the motion was known last. */
     bool lost = false;
+    /** Number of the track that the scan belongs to. A new track begins with a new map, after scans
+     *  that were not found in the one before: only a prediction links both. A scan with a smaller
+     *  number than the scan before it was found in that earlier map: the scans between belong to
+     *  the earlier track, too. */
+    std::size_t track = 0;
     bool searched = false;     //!< the motion was searched over a wide range
     bool interrupted = false;  //!< after a time gap or clock jump: the interval is unknown
     /** Registered along and about every axis, and slower than 0.1 m/s and 2 deg/s. */

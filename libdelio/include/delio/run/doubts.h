@@ -35,6 +35,13 @@ Doubts doubtsOf(const std::vector<RunRow>& rows);
  * than half were observed weakly. Empty where it is. */
 std::string whyUnreliable(const Doubts& doubts);
 
+/** Scans of tracks that nothing links to the longest track: no registration, no loop, no stored
+ * map, no GNSS fix. Their poses relative to the others are a prediction. Of a finished run. */
+Stretches unlinkedOf(const RunRecord& record);
+
+/** Why they make the trajectory unreliable: they are more than a tenth of the scans. Else empty. */
+std::string whyUnreliable(const Stretches& unlinked, std::size_t scans);
+
 /** State of a scan, as scans.csv names it: tracked, weak, predicted or lost. */
 const char* stateOf(const RunRow& row);
 

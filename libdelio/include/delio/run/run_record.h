@@ -52,6 +52,7 @@ struct RunRow {
     double turned_rad = 0;     //!< the same
     bool predicted = false;    //!< Step::predicted
     bool lost = false;         //!< Step::lost
+    std::size_t track = 0;     //!< Step::track
     bool searched = false;     //!< Step::searched
     bool interrupted = false;  //!< Step::interrupted
     bool standing = false;     //!< Step::standing

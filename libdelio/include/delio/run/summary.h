@@ -24,6 +24,7 @@ struct Summary {
     std::size_t longest_predicted = 0;        //!< longest run of them
     std::size_t lost = 0;                     //!< scans since which the motion is not known
     std::size_t longest_lost = 0;             //!< longest run of them
+    std::size_t unlinked = 0;                 //!< unlinkedOf()
     std::size_t tracked = 0;                  //!< registered along every axis
     std::size_t weakly_observed = 0;          //!< registered, with a degenerate axis
     std::size_t longest_weakly_observed = 0;  //!< longest run of them
