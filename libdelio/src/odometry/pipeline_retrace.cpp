@@ -99,7 +99,8 @@ void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
     upright_ = ahead.upright_;
     takeScale(ahead.scale_);
     kernel_ = ahead.kernel_;
-    unevenness_ = ahead.unevenness_;
+    constexpr std::size_t kSettled = 4;  // scans since the motion is known well
+    unevenness_ = ahead.unevenness_.ofLatest(kSettled);
     usualInlierRatio_ = ahead.usualInlierRatio_;
     const auto& scans = ahead.beginning_;
     map_.clear(ahead.upAt(scans[first].points->pose));
