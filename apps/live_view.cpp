@@ -1,6 +1,7 @@
 #include "live_view.h"
 
 #include <mrpt/gui/CDisplayWindow3D.h>
+#include <mrpt/opengl/CFBORender.h>
 #include <mrpt/opengl/CGridPlaneXY.h>
 #include <mrpt/opengl/CPointCloud.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
@@ -12,6 +13,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -19,6 +21,7 @@
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/map/colouring.h"
+#include "delio/picture/render.h"
 
 namespace delio {
 using mrpt::img::TColor;
@@ -31,36 +34,102 @@ const map::ValueRange kHeights{0, 6};         // metres above the ground, of the
 constexpr std::size_t kBlock = 50000;         // points that go to the graphics card together
 constexpr std::size_t kMostNews = 200000;     // points between two pictures
 constexpr auto kFastest = milliseconds(100);  // from picture to picture
-constexpr double kDrawn = 0.05;               // part of the time that drawing may take
+constexpr double kDrawn = 0.03;               // part of the time that drawing may take
 constexpr auto kKeys = milliseconds(30);      // between looks at the keyboard
-constexpr auto kScreenshot = milliseconds(3000);
+constexpr unsigned kWidth_px = 1280, kHeight_px = 720;
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 constexpr const char* kHelp =
     "Space: pause   F: follow   T: view from above   S: screenshot   mouse: turn, zoom, move";
+
+/** What is drawn. */
+class LiveScene {
+ public:
+    void insertInto(COpenGLScene& scene);
+    void add(const LiveMap::News& news, const Eigen::Matrix3Xf& latestScan, COpenGLScene& scene);
+
+    const LiveMap::Seen& seen() const { return seen_; }
+    std::size_t scans() const { return scans_; }
+
+ private:
+    void addPoint(const LiveMap::Point& point, COpenGLScene& scene);
+
+    std::vector<CPointCloudColoured::Ptr> blocks_;
+    mrpt::opengl::CPointCloud::Ptr current_ = mrpt::opengl::CPointCloud::Create();
+    mrpt::opengl::CSetOfLines::Ptr path_ = mrpt::opengl::CSetOfLines::Create();
+    mrpt::opengl::CSetOfObjects::Ptr vehicle_ = mrpt::opengl::stock_objects::CornerXYZSimple(2, 3);
+    LiveMap::Seen seen_;
+    std::size_t scans_ = 0;
+    Eigen::Vector3f lastPlace_ = Eigen::Vector3f::Zero();
+};
+
+void LiveScene::insertInto(COpenGLScene& scene) {
+    scene.getViewport()->setCustomBackgroundColor({0.06F, 0.07F, 0.09F});
+    scene.getViewport()->setViewportClipDistances(1, 5000);
+    current_->setPointSize(1);
+    current_->enableVariablePointSize(false);
+    current_->setColor_u8(TColor(255, 255, 255));
+    path_->setColor_u8(TColor(255, 210, 0));
+    path_->setLineWidth(3);
+    auto grid = mrpt::opengl::CGridPlaneXY::Create(-1000, 1000, -1000, 1000, -2, 20);
+    grid->setColor_u8(TColor(70, 70, 75));
+    scene.insert(grid);
+    scene.insert(current_);
+    scene.insert(path_);
+    scene.insert(vehicle_);
+}
+
+void LiveScene::addPoint(const LiveMap::Point& point, COpenGLScene& scene) {
+    if (blocks_.empty() || blocks_.back()->size() >= kBlock) {
+        blocks_.push_back(CPointCloudColoured::Create());
+        blocks_.back()->setPointSize(2);
+        blocks_.back()->enableVariablePointSize(false);
+        scene.insert(blocks_.back());
+    }
+    const TColor c =
+        map::colourAt(map::Colormap::Turbo, kHeights.fractionAt(double{point.aboveGround}));
+    const auto& at = point.position;
+    blocks_.back()->insertPoint({at.x(), at.y(), at.z(), c.R, c.G, c.B});
+}
+
+void LiveScene::add(const LiveMap::News& news, const Eigen::Matrix3Xf& latestScan,
+                    COpenGLScene& scene) {
+    if (news.from.generation != seen_.generation) {
+        for (const auto& block : blocks_) scene.removeObject(block);
+        blocks_.clear();
+        path_->clear();
+    }
+    for (const auto& point : news.points) addPoint(point, scene);
+    for (std::size_t i = 0; i < news.trajectory.size(); ++i) {
+        const Eigen::Vector3f to = news.trajectory[i];
+        const Eigen::Vector3f from = news.from.poses + i == 0 ? to : lastPlace_;
+        path_->appendLine(from.x(), from.y(), from.z(), to.x(), to.y(), to.z());
+        lastPlace_ = to;
+    }
+    seen_ = news.seen();
+    scans_ = news.scans;
+    vehicle_->setPose(toMrpt(news.vehicle));
+    current_->clear();
+    for (const auto& point : latestScan.colwise())
+        current_->insertPoint(point.x(), point.y(), point.z());
+}
 }  // namespace
 
 struct LiveView::Window {
     explicit Window(std::shared_ptr<const LiveMap> shown)
-        : source(std::move(shown)), window("DeLiO", 1280, 720) {}
+        : source(std::move(shown)), window("DeLiO", kWidth_px, kHeight_px) {}
 
     void prepare();
     void run();
     void obey(int key);
     void lookFromAbove(bool above);
-    void takeScreenshot();
+    mrpt::img::CImage picture() const;
+    void takeScreenshot() const;
     /** False where nothing has changed. */
     bool show();
-    void add(const LiveMap::News& news, COpenGLScene& scene);
-    void addPoint(const LiveMap::Point& point, COpenGLScene& scene);
 
     const std::shared_ptr<const LiveMap> source;
     mrpt::gui::CDisplayWindow3D window;
-    std::vector<CPointCloudColoured::Ptr> blocks;
-    mrpt::opengl::CPointCloud::Ptr current = mrpt::opengl::CPointCloud::Create();
-    mrpt::opengl::CSetOfLines::Ptr path = mrpt::opengl::CSetOfLines::Create();
-    mrpt::opengl::CSetOfObjects::Ptr vehicle = mrpt::opengl::stock_objects::CornerXYZSimple(2, 3);
-    LiveMap::Seen seen;
-    std::size_t scans = 0;  //!< that the picture is of
-    Eigen::Vector3f lastPlace = Eigen::Vector3f::Zero();
+    LiveScene drawn;
     bool isPaused = false, follows = true, isFromAbove = false;
     std::atomic<bool> isEnding{false};
     std::thread thread;
@@ -70,19 +139,7 @@ void LiveView::Window::prepare() {
     {
         COpenGLScene::Ptr scene;
         mrpt::gui::CDisplayWindow3DLocker locked(window, scene);
-        scene->getViewport()->setCustomBackgroundColor({0.06F, 0.07F, 0.09F});
-        scene->getViewport()->setViewportClipDistances(1, 5000);
-        current->setPointSize(1);
-        current->enableVariablePointSize(false);
-        current->setColor_u8(TColor(255, 255, 255));
-        path->setColor_u8(TColor(255, 210, 0));
-        path->setLineWidth(3);
-        auto grid = mrpt::opengl::CGridPlaneXY::Create(-1000, 1000, -1000, 1000, -2, 20);
-        grid->setColor_u8(TColor(70, 70, 75));
-        scene->insert(grid);
-        scene->insert(current);
-        scene->insert(path);
-        scene->insert(vehicle);
+        drawn.insertInto(*scene);
     }
     window.setCameraZoom(90);
     lookFromAbove(false);
@@ -97,21 +154,39 @@ void LiveView::Window::lookFromAbove(bool above) {
     window.setCameraElevationDeg(above ? 90 : 40);
 }
 
-void LiveView::Window::takeScreenshot() {
-    window.captureImagesStart();
-    window.repaint();
-    mrpt::img::CImage image;
-    const auto end = std::chrono::steady_clock::now() + kScreenshot;
-    while (!window.getLastWindowImage(image) && std::chrono::steady_clock::now() < end)
-        std::this_thread::sleep_for(kKeys);
-    window.captureImagesStop();
+/** Drawn anew: where there is no screen, what a window shows cannot be read. */
+mrpt::img::CImage LiveView::Window::picture() const {
+    COpenGLScene scene;
+    LiveScene content;
+    content.insertInto(scene);
+    content.add(source->newsSince({}, kAll), source->latestScan(), scene);
+    auto& camera = scene.getViewport()->getCamera();
+    float x = 0, y = 0, z = 0;
+    window.getCameraPointingToPoint(x, y, z);
+    camera.setPointingAt(x, y, z);
+    camera.setAzimuthDegrees(window.getCameraAzimuthDeg());
+    camera.setElevationDegrees(window.getCameraElevationDeg());
+    camera.setZoomDistance(window.getCameraZoom());
+    camera.setOrthogonal(!window.isCameraProjective());
+    mrpt::img::CImage image(kWidth_px, kHeight_px);
+    mrpt::opengl::CFBORender renderer(kWidth_px, kHeight_px);
+    renderer.render_RGB(scene, image);
+    // Buffers and shaders belong to the context that is about to go.
+    scene.unloadShaders();
+    scene.freeOpenGLResources();
+    return image;
+}
+
+void LiveView::Window::takeScreenshot() const {
     std::string file;
     for (int i = 1; file.empty() || std::filesystem::exists(file); ++i)
         file = "delio-" + std::to_string(i) + ".png";
-    if (!image.isEmpty() && image.saveToFile(file))
+    try {
+        picture::savePng(picture(), file);
         cli::inform("screenshot: " + std::filesystem::absolute(file).string());
-    else
-        cli::warn("cannot write the screenshot '" + file + "'");
+    } catch (const std::exception& e) {
+        cli::warn("no screenshot: " + plainMessage(e));
+    }
 }
 
 void LiveView::Window::obey(int key) {
@@ -138,49 +213,16 @@ void LiveView::Window::obey(int key) {
     window.repaint();
 }
 
-void LiveView::Window::addPoint(const LiveMap::Point& point, COpenGLScene& scene) {
-    if (blocks.empty() || blocks.back()->size() >= kBlock) {
-        blocks.push_back(CPointCloudColoured::Create());
-        blocks.back()->setPointSize(2);
-        blocks.back()->enableVariablePointSize(false);
-        scene.insert(blocks.back());
-    }
-    const TColor c =
-        map::colourAt(map::Colormap::Turbo, kHeights.fractionAt(double{point.aboveGround}));
-    const auto& at = point.position;
-    blocks.back()->insertPoint({at.x(), at.y(), at.z(), c.R, c.G, c.B});
-}
-
-void LiveView::Window::add(const LiveMap::News& news, COpenGLScene& scene) {
-    if (news.from.generation != seen.generation) {
-        for (const auto& block : blocks) scene.removeObject(block);
-        blocks.clear();
-        path->clear();
-    }
-    for (const auto& point : news.points) addPoint(point, scene);
-    for (std::size_t i = 0; i < news.trajectory.size(); ++i) {
-        const Eigen::Vector3f to = news.trajectory[i];
-        const Eigen::Vector3f from = news.from.poses + i == 0 ? to : lastPlace;
-        path->appendLine(from.x(), from.y(), from.z(), to.x(), to.y(), to.z());
-        lastPlace = to;
-    }
-    seen = news.seen();
-    scans = news.scans;
-    vehicle->setPose(toMrpt(news.vehicle));
-    const Eigen::Matrix3Xf latest = source->latestScan();
-    current->clear();
-    for (const auto& point : latest.colwise())
-        current->insertPoint(point.x(), point.y(), point.z());
-}
-
 bool LiveView::Window::show() {
+    const auto& seen = drawn.seen();
     const auto news = source->newsSince(seen, kMostNews);
-    if (news.scans == scans && news.points.empty() && news.from.generation == seen.generation)
+    if (news.scans == drawn.scans() && news.points.empty() &&
+        news.from.generation == seen.generation)
         return false;
     {
         COpenGLScene::Ptr scene;
         mrpt::gui::CDisplayWindow3DLocker locked(window, scene);
-        add(news, *scene);
+        drawn.add(news, source->latestScan(), *scene);
     }
     if (!follows) return true;
     const Eigen::Vector3f at = news.vehicle.translation().cast<float>();

@@ -73,7 +73,7 @@ const marker = new THREE.Mesh(new THREE.SphereGeometry(0.5, 12, 8),
 marker.renderOrder = 2;
 
 function moveTo(place) {
-  const moved = place.clone().sub(vehicle || place);
+  const moved = place.clone().sub(vehicle || controls.target);
   vehicle = place;
   marker.position.copy(place);
   for (const offset of [[-30, -30, -3], [30, 30, 10]])
@@ -101,7 +101,7 @@ function take(bytes) {
           poses: news.firstPose + news.poses};
   if (news.poses) showPath();
   marker.visible = news.scans > 0;
-  moveTo(vector(news.vehicle));
+  if (news.scans > 0) moveTo(vector(news.vehicle));
   byId('footer').textContent = `${seen.points} points \u00b7 scan ${news.scans}` +
       (news.ended ? ' \u00b7 the drive has ended' : '');
   update();
