@@ -5,7 +5,7 @@
 
 namespace delio {
 namespace {
-constexpr double kStep_m = 0.5;       // a scan goes into the map every so many metres
+constexpr double kStep_m = 1;       // a scan goes into the map every so many metres
 constexpr double kTurn_rad = 0.1;     // or so much rotation
 constexpr float kReach_m = 60;        // of the points of a scan
 constexpr float kPath_m = 0.1F;       // between places of the trajectory
@@ -142,10 +142,12 @@ float LiveMap::groundAt(const Eigen::Vector3f& place) const {
 }
 
 void LiveMap::insert(const Arrived& scan) {
-    const Eigen::Matrix3Xf& placed = latest_;
     const Eigen::Vector3f at = scan.pose.translation().cast<float>();
-    for (const auto& place : placed.colwise()) {
-        if (!((place - at).norm() < kReach_m)) continue;
+    std::vector<Eigen::Vector3f> added;
+    for (const auto& place : latest_.colwise())
+        if ((place - at).norm() < kReach_m && taken_.insert(voxelOf(place)).second)
+            added.emplace_back(place);
+    for (const auto& place : added) {
         auto& low = lows_.try_emplace(cellOf(place.x(), place.y()), Low{1e6F, 1e6F}).first->second;
         if (place.z() < low.lowest) {
             low.second = low.lowest;
@@ -154,11 +156,9 @@ void LiveMap::insert(const Arrived& scan) {
             low.second = std::min(low.second, place.z());
     }
     const float below = groundAt(at);
-    for (const Eigen::Vector3f place : placed.colwise()) {
-        const float distance = (place - at).norm();
-        if (!(distance < kReach_m) || !taken_.insert(voxelOf(place)).second) continue;
-        const float ground = std::min(groundAt(place), below + kSteepest * distance);
-        points_.push_back({place, place.z() - ground});
+    for (const auto& place : added) {
+        const float highest = below + kSteepest * (place - at).norm();
+        points_.push_back({place, place.z() - std::min(groundAt(place), highest)});
         nodes_.push_back(static_cast<std::uint32_t>(scan.node));
     }
     if (points_.size() > mostPoints_) coarsen();

@@ -34,7 +34,7 @@ const map::ValueRange kHeights{0, 6};         // metres above the ground, of the
 constexpr std::size_t kBlock = 50000;         // points that go to the graphics card together
 constexpr std::size_t kMostNews = 200000;     // points between two pictures
 constexpr auto kFastest = milliseconds(100);  // from picture to picture
-constexpr double kDrawn = 0.03;               // part of the time that drawing may take
+constexpr double kDrawn = 0.02;               // part of the time that drawing may take
 constexpr auto kKeys = milliseconds(30);      // between looks at the keyboard
 constexpr unsigned kWidth_px = 1280, kHeight_px = 720;
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
@@ -160,7 +160,7 @@ mrpt::img::CImage LiveView::Window::picture() const {
     LiveScene content;
     content.insertInto(scene);
     content.add(source->newsSince({}, kAll), source->latestScan(), scene);
-    auto& camera = scene.getViewport()->getCamera();
+    mrpt::opengl::CCamera camera;
     float x = 0, y = 0, z = 0;
     window.getCameraPointingToPoint(x, y, z);
     camera.setPointingAt(x, y, z);
@@ -170,6 +170,7 @@ mrpt::img::CImage LiveView::Window::picture() const {
     camera.setOrthogonal(!window.isCameraProjective());
     mrpt::img::CImage image(kWidth_px, kHeight_px);
     mrpt::opengl::CFBORender renderer(kWidth_px, kHeight_px);
+    renderer.setCamera(scene, camera);
     renderer.render_RGB(scene, image);
     // Buffers and shaders belong to the context that is about to go.
     scene.unloadShaders();
