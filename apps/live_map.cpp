@@ -116,7 +116,7 @@ void LiveMap::keep(const Keeps& keeps) {
     nodes_.resize(kept);
 }
 
-/** What later scans say was elsewhere is taken out, and viewers begin anew. */
+/** What later scans say was elsewhere is taken out, and viewers start again. */
 void LiveMap::forget(std::size_t firstNode) {
     keep([&](std::size_t i) { return nodes_[i] < firstNode; });
     if (points_.empty()) lows_.clear();

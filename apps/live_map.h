@@ -21,7 +21,7 @@ class LiveMap : public SlamListener {
  public:
     struct Point {
         Eigen::Vector3f position;  //!< metres
-        float aboveGround;         //!< metres; by what was known of the ground when it was seen
+        float aboveGround;         //!< metres; above the lowest points around when it was seen
     };
 
     /** How much of the map a viewer has. */
