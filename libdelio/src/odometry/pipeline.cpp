@@ -114,6 +114,7 @@ Step PlaneOdometry::process(const Scan& scan) {
 void PlaneOdometry::interrupt(double elapsed_s) {
     constexpr double kLongest_s = 3.5;  // longer, the motion is not extrapolated
     if (elapsed_s > kLongest_s) prediction_.forget();
+    reference_.isBeforePause = true;
     state_ = lostFrom(std::move(state_), missesOf(state_));
 }
 
@@ -132,7 +133,8 @@ PlaneOdometry::Attempt PlaneOdometry::attemptToTrack(const PointCloud& cloud,
     const double since_s = time_s_ - reference_.time_s;
     if (step.interrupted && prediction_.hasMotion())
         return attemptAfterPause(cloud, interval, since_s, step);
-    Attempt attempt = attemptWithGyro(cloud, interval.duration_s, since_s, !step.interrupted, step);
+    Attempt attempt =
+        attemptWithGyro(cloud, interval.duration_s, since_s, !reference_.isBeforePause, step);
     if (isImplausible(attempt.placement.estimate)) attempt.placement.estimate.valid = false;
     return attempt;
 }
@@ -161,7 +163,7 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
         else
             miss(cloud);
         if (left_ && estimate.valid) rejoin(view);
-        if (hasDrifted(placed.inlierRatio)) beginAnew(cloud);
+        if (hasDrifted(estimate, placed.inlierRatio)) beginAnew(cloud);
     }
     if (!estimate.valid)
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";
@@ -344,7 +346,8 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
                            ScanView& view, const Step& step) {
     const bool isDegenerate = estimate.translation.unobservedAxes.cols() > 0;
     const auto* latest = std::get_if<Degenerate>(&state_);
-    if (step.interrupted)
+    const bool isTimeKnown = !step.interrupted && !reference_.isBeforePause;
+    if (step.interrupted || (!isTimeKnown && !isDegenerate))
         state_ = Lost{};  // the speed is not known
     else if (isDegenerate)
         state_ = latest ? Degenerate{latest->scans + 1, latest->inlierRatio}
@@ -355,18 +358,20 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
     // enter the map.
     const double moved_m = (pose_.translation() - reference_.pose.translation()).norm();
     if (isDegenerate && moved_m <= options_.spacing.doubt_spacing) return;
-    if (!step.interrupted) learn(placed, predicted, since_s);
+    if (isTimeKnown) learn(placed, predicted, since_s);
     if (hasSight) dynamics_.remember(pose_ * inverseOf(upright_));
     insertLater(view);
 }
 
-/** True where ever fewer points fit while the sensor seems to stand: in truth it moves along an
- * axis that the scene does not show, away from where the map began. */
-bool PlaneOdometry::hasDrifted(double inlierRatio) const {
-    constexpr double kDrifted = 0.6;
+/** True where ever fewer points fit while the sensor seems to stand: in truth it moves along a
+ *  horizontal axis that the scene does not show, away from where the map began. */
+bool PlaneOdometry::hasDrifted(const PlaneEstimate& estimate, double inlierRatio) const {
+    constexpr double kDrifted = 0.6, kHorizontal = 0.7;  // of the unit axis, along the vertical
     const auto* degenerate = std::get_if<Degenerate>(&state_);
-    return degenerate && !prediction_.hasMotion() &&
-           inlierRatio < kDrifted * degenerate->inlierRatio;
+    if (!degenerate || prediction_.hasMotion()) return false;
+    const Eigen::VectorXd along = estimate.translation.unobservedAxes.transpose() * upAt(pose_);
+    const bool isHorizontal = (along.array().abs() < kHorizontal).any();
+    return isHorizontal && inlierRatio < kDrifted * degenerate->inlierRatio;
 }
 
 /** A new map, which only a prediction links to the one before. */
@@ -501,8 +506,9 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     map_.clear(upAt(pose_));
     waiting_.reset();
     start_.reset();
-    if (prediction_.hasMotion() || !isSkewed) beginning_.clear();
-    if (isSkewed) beginning_.push_back({{cloud, time_s_, Twist{}}, {}, track_});
+    const bool isRetraced = window_.isEmpty() && !usesGyro_;
+    if (prediction_.hasMotion() || !isRetraced) beginning_.clear();
+    if (isRetraced) beginning_.push_back({{cloud, time_s_, Twist{}}, {}, track_});
     dynamics_.clear();
     usualInlierRatio_ = 0;
     map_.addScan(view.fine, pose_);
