@@ -4,7 +4,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -18,7 +17,7 @@
 #include "delio/run/playback.h"
 #include "delio/run/run_folder.h"
 #include "initial_pose.h"
-#include "live_view.h"
+#include "live_output.h"
 #include "output_folder.h"
 #include "overlap.h"
 #include "pose_output.h"
@@ -44,14 +43,6 @@ run::PlaybackSettings playbackOf(SlamCommandLine& line) {
     // A signal ends a live drive at its source: what was received is processed.
     if (!isLive(line)) settings.isInterrupted = cli::interrupted;
     return settings;
-}
-
-std::shared_ptr<LiveView> liveViewFor(SlamCommandLine& line, const Options& options,
-                                      run::Run& run) {
-    if (!line.gui.getValue()) return nullptr;
-    auto view = std::make_shared<LiveView>(options.paper);
-    run.attach(view);
-    return view;
 }
 
 [[noreturn]] void failWithoutScans(SlamCommandLine& line, const std::string& input,
@@ -115,7 +106,7 @@ void prepare(SlamCommandLine& line, const io::ScanReader& reader, run::Run& run)
 
 /** One drive, from `input` to the folder `settings.folder`; see SlamDrive. */
 DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunSettings settings,
-                      const std::string& place) {
+                      const std::string& place, LiveOutput& shown) {
     PoseOutput poses(line.poses.getValue(), line.publish.getValue());
     const std::string name = io::nameOfDrive(input);
     auto reader = openInput(line, input);
@@ -129,8 +120,9 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     settings.drive = name;
     run::Run run(options, settings);
     prepare(line, *reader, run);
-    const auto view = liveViewFor(line, options, run);
+    shown.begin(run);
     play(line, playback, run, poses);
+    shown.end();
     reader.reset();  // a live sensor's recording is written
     // Not even the first one: there is nothing to write.
     if (run.record().rows.empty()) throw Error(run.record().fault);
@@ -141,9 +133,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
                     std::to_string(run.record().rows.size()) + " scans");
         return {cli::kExitInterrupted, run.record().extended, false};
     }
-    if (view && view->isOpen()) cli::inform("done; close the window to end");
-    while (view && view->isOpen() && !cli::interrupted())
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    shown.waitForWindow();
     return {cli::kExitSuccess, run.record().extended, run.record().addedSubmaps > 0};
 }
 
@@ -197,17 +187,18 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
         if (input != "-" && !io::isLive(input) && !fs::exists(input))
             throw Error("cannot read '" + input + "': no such file or folder");
     checkFolders(line);
+    LiveOutput shown(line);
     const OutputFolder folder(line.output.getValue(), line.force.getValue());
     const auto settings = settingsFor(line, argc, argv);
     if (inputs.size() > 1)
         return slamSeveral(inputs, settings,
                            [&](const auto& input, const auto& its, const auto& place) {
-                               return slamDrive(line, input, its, place);
+                               return slamDrive(line, input, its, place, shown);
                            });
     if (inputs.front() == "-") cli::endInputAtInterrupt();
     return isGraph(inputs.front())
                ? optimiseGraph(line, inputs.front(), settings)
-               : slamDrive(line, inputs.front(), settings, settings.folder).exitCode;
+               : slamDrive(line, inputs.front(), settings, settings.folder, shown).exitCode;
 }
 }  // namespace
 
