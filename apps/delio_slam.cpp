@@ -165,7 +165,8 @@ void checkFolders(SlamCommandLine& line) {
     const std::string map = line.map.isSet() ? run::storedMapIn(line.map.getValue()) : "";
     if (line.record.isSet()) written.push_back(line.record.getValue());
     if (read.size() > 1) written = filesOfSeveral(read, map, line.output.getValue());
-    for (auto* file : {&line.truth, &line.sensorInfo, &line.gnss}) read.push_back(file->getValue());
+    for (auto* file : {&line.truth, &line.sensorInfo, &line.extrinsics, &line.gnss})
+        read.push_back(file->getValue());
     cli::refuseOverlap(read, written);
     if (map.empty()) return;
     std::error_code ignored;

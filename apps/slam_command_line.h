@@ -50,7 +50,8 @@ struct SlamCommandLine {
         "",
         "sensor-label",
         "Sensor: label in a rawlog, topic in a bag, port in a pcap, serial number in an .osf, "
-        "layout of .bin files; default: the first sensor; a bag must have only one",
+        "layout of .bin files; several with commas between them, or \"all\": merged into one; "
+        "default: the first sensor; a bag must have only one",
         false,
         "",
         "L",
@@ -61,6 +62,15 @@ struct SlamCommandLine {
         "Sensor description for packets: json of an Ouster, calibration file of a Velodyne, table "
         "of beam angles of a Hesai or RoboSense; default: the json next to the recording, what it "
         "holds, or the model's standard calibration",
+        false,
+        "",
+        "FILE",
+        cmd};
+    Text extrinsics{
+        "",
+        "extrinsics",
+        "Poses of the sensors in the vehicle, instead of the recording's; lines LABEL x "
+        "y z yaw pitch roll, metres and degrees",
         false,
         "",
         "FILE",
