@@ -106,6 +106,15 @@ struct SlamCommandLine {
                      cmd};
     Switch extend{"", "extend", "Extend that map by this drive; OUTDIR/map.delio contains both",
                   cmd};
+    Text saveRawlog{
+        "",
+        "save-rawlog",
+        "Also copy the input rawlog, with the vehicle's motion (CActionRobotMovement3D) "
+        "before each scan",
+        false,
+        "",
+        "FILE",
+        cmd};
     Switch keepDynamic{"", "keep-dynamic", "Also write the removed dynamic points: map_dynamic.ply",
                        cmd};
     Switch noImu{"", "no-imu", "Do not use the recording's IMU", cmd};
