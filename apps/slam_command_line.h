@@ -75,6 +75,14 @@ struct SlamCommandLine {
         "",
         "FILE",
         cmd};
+    Text vehicleBox{"",
+                    "vehicle-box",
+                    "Ignore points in this box of the vehicle frame, metres: parts of the own "
+                    "vehicle beyond scan.min_range",
+                    false,
+                    "",
+                    "XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX",
+                    cmd};
     Text images{"", "images", "Folder with the rawlog's external files", false, "", "DIR", cmd};
     Number threads{"", "threads", "Number of threads; 0: all cores", false, {}, "N", cmd};
     Text truth{"",

@@ -1,18 +1,13 @@
 #include "merged_reader.h"
 
-#include <mrpt/maps/CPointsMapXYZI.h>
-#include <mrpt/maps/CSimplePointsMap.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "scan_points.h"
 
 namespace delio::io {
-using mrpt::maps::CPointsMapXYZI;
-
 namespace {
 constexpr double kSameTime_s = 0.005;
 constexpr std::size_t kFewScans = 5;  // without points of a sensor are not worth a line
@@ -30,40 +25,6 @@ double beginOf(const Scan& scan) {
         any = true;
     }
     return scan.stamp_s + first_s;
-}
-
-mrpt::maps::CPointsMap::Ptr emptyLike(const mrpt::maps::CPointsMap& points) {
-    if (dynamic_cast<const CPointsMapXYZI*>(&points)) return CPointsMapXYZI::Create();
-    return mrpt::maps::CSimplePointsMap::Create();
-}
-
-/** Appends a point of `from`, moved by `pose`. */
-void addPoint(const mrpt::maps::CPointsMap& from, std::size_t i, const Eigen::Isometry3d& pose,
-              mrpt::maps::CPointsMap& to) {
-    Eigen::Vector3f point;
-    from.getPointFast(i, point.x(), point.y(), point.z());
-    point = (pose * point.cast<double>()).cast<float>();
-    to.insertPointFast(point.x(), point.y(), point.z());
-    auto* bright = dynamic_cast<CPointsMapXYZI*>(&to);
-    if (!bright) return;
-    const auto* source = dynamic_cast<const CPointsMapXYZI*>(&from);
-    bright->setPointIntensity(to.size() - 1, source ? source->getPointIntensity(i) : 0.0F);
-}
-
-/** Points of `scan` for which `isWanted(i)`. */
-template <typename IsWanted>
-Scan partOf(const Scan& scan, const IsWanted& isWanted) {
-    Scan part = scan;
-    part.points = emptyLike(*scan.points);
-    part.rings.clear();
-    part.times_s.clear();
-    for (std::size_t i = 0; i < scan.points->size(); ++i) {
-        if (!isWanted(i)) continue;
-        addPoint(*scan.points, i, Eigen::Isometry3d::Identity(), *part.points);
-        if (!scan.rings.empty()) part.rings.push_back(scan.rings[i]);
-        part.times_s.push_back(scan.times_s[i]);
-    }
-    return part;
 }
 
 std::string listed(const std::set<std::string>& names) {

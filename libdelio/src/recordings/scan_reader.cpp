@@ -19,6 +19,7 @@
 #include "recognised_reader.h"
 #include "sources.h"
 #include "turn_assembler.h"
+#include "vehicle_box.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -70,11 +71,16 @@ std::string warningOfOther(const std::string& label) {
 
 std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
     const auto labels = labelsOf(source, openSensor);
-    if (labels.size() > 1 || !source.extrinsicsFile.empty())
-        return openMerged(source, labels, openSensor);
-    ScanSource one = source;
-    one.label = labels.front();
-    return openSensor(one);
+    std::unique_ptr<ScanReader> scans;
+    if (labels.size() > 1 || !source.extrinsicsFile.empty()) {
+        scans = openMerged(source, labels, openSensor);
+    } else {
+        ScanSource one = source;
+        one.label = labels.front();
+        scans = openSensor(one);
+    }
+    if (source.vehicleBox.isEmpty()) return scans;
+    return std::make_unique<WithoutVehicle>(std::move(scans), source.vehicleBox);
 }
 
 std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label,

@@ -147,6 +147,8 @@ struct ScanSource {
     /** Poses of the sensors in the vehicle, instead of the recording's: lines `LABEL x y z yaw
      * pitch roll`, metres and degrees. Empty: none. */
     std::string extrinsicsFile = {};
+    /** Points in this box of the vehicle's frame, metres, are left out. Empty: none are. */
+    Eigen::AlignedBox3d vehicleBox = {};
 };
 
 /** True for "udp://...". */
