@@ -214,7 +214,7 @@ class BagReader : public ScanReader {
         SensorMount mount;
         const auto pose = transforms().poseInRoot(frame_, mount.frame);
         mount.pose = pose.value_or(Eigen::Isometry3d::Identity());
-        if (!pose) mount.frame = frame_;
+        if (!pose || frame_.empty()) mount.frame = topic_.name;  // connected to nothing
         return mount;
     }
     std::optional<double> fraction() const override { return ended_ ? 1 : bag_->fraction(); }

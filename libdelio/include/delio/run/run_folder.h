@@ -51,7 +51,7 @@ class RunFolder {
     /** Poses before the pose graph, likewise, where it changed them. */
     static constexpr const char* kOdometryCam0 = "trajectory_odometry_kitti_cam0.txt";
     static constexpr const char* kTum = "trajectory_tum.txt";  //!< final poses with times
-    /** Final poses with Unix times: text of MRPT's CPose3DInterpolator. */
+    /** Final poses with Unix times: text of MRPT's pose interpolator. */
     static constexpr const char* kInterpolator = "trajectory_mrpt.txt";
     static constexpr const char* kGeoreference = "georeference.yaml";    //!< of a drive with fixes
     static constexpr const char* kGeoTrajectory = "trajectory_geo.csv";  //!< on the earth
