@@ -55,13 +55,10 @@ std::string georeferenceOf(const run::RunRecord& record) {
                        gnss.used - gnss.rejected, gnss.fixes, gnss.rms_m);
     return text;
 }
-}  // namespace
 
-void printTable(const run::RunRecord& record, const std::string& folder, std::ostream& out) {
-    const auto row = [&](const char* name, const std::string& value) {
-        out << format("%-26s %s\n", name, value.c_str());
-    };
-    row("scans", std::to_string(record.rows.size()));
+/** Scans that were not or barely measured. */
+template <typename Row>
+void putDoubts(const run::RunRecord& record, const Row& row) {
     const auto doubts = run::doubtsOf(record.rows);
     const std::string axes = run::weakAxesOf(doubts);
     row("predicted", run::textOf(doubts.predicted, record.predicted()));
@@ -73,6 +70,15 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
     if (doubts.standing.scans > 0)
         row("standing", run::textOf(doubts.standing, doubts.standing.scans));
     row("searched", run::textOf(doubts.searched, doubts.searched.scans));
+}
+}  // namespace
+
+void printTable(const run::RunRecord& record, const std::string& folder, std::ostream& out) {
+    const auto row = [&](const char* name, const std::string& value) {
+        out << format("%-26s %s\n", name, value.c_str());
+    };
+    row("scans", std::to_string(record.rows.size()));
+    putDoubts(record, row);
     if (!record.fixes.empty()) {
         std::array<std::size_t, 3> scans{};
         for (const auto& fix : record.fixes) ++scans[static_cast<std::size_t>(fix.where)];

@@ -77,6 +77,15 @@ void Unevenness::observe(const Eigen::Isometry3d& found, const Eigen::Isometry3d
     remember(std::pow(angleOf(off.linear()), 2), squares_rad2_);
 }
 
+Unevenness Unevenness::ofLatest(std::size_t count) const {
+    Unevenness latest = *this;
+    while (latest.squares_m2_.size() > count) {
+        latest.squares_m2_.pop_front();
+        latest.squares_rad2_.pop_front();
+    }
+    return latest;
+}
+
 TrajectoryPrior Unevenness::prior(double most) const {
     constexpr double kLikely_m = 0.02, kLikely_rad = 3 * M_PI / 180;
     constexpr double kLeast_m = 1e-4, kLeast_rad = 1e-5;  // of a sensor that stands still

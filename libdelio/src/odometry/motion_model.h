@@ -79,6 +79,9 @@ class Unevenness {
      *  little is known, it may be anything that a hand does. */
     TrajectoryPrior prior(double most) const;
 
+    /** The same of the latest `count` increments alone. */
+    Unevenness ofLatest(std::size_t count) const;
+
  private:
     std::deque<double> squares_m2_, squares_rad2_;  //!< an axis
 };

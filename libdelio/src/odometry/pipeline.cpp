@@ -161,7 +161,7 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
         else
             miss(cloud);
         if (left_ && estimate.valid) rejoin(view);
-        if (hasDrifted(placed.inlierRatio)) beginAnew(cloud);
+        if (hasDrifted(estimate, placed.inlierRatio)) beginAnew(cloud);
     }
     if (!estimate.valid)
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";
@@ -360,13 +360,15 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
     insertLater(view);
 }
 
-/** True where ever fewer points fit while the sensor seems to stand: in truth it moves along an
- * axis that the scene does not show, away from where the map began. */
-bool PlaneOdometry::hasDrifted(double inlierRatio) const {
-    constexpr double kDrifted = 0.6;
+/** True where ever fewer points fit while the sensor seems to stand: in truth it moves along a
+ *  horizontal axis that the scene does not show, away from where the map began. */
+bool PlaneOdometry::hasDrifted(const PlaneEstimate& estimate, double inlierRatio) const {
+    constexpr double kDrifted = 0.6, kHorizontal = 0.7;  // of the unit axis, along the vertical
     const auto* degenerate = std::get_if<Degenerate>(&state_);
-    return degenerate && !prediction_.hasMotion() &&
-           inlierRatio < kDrifted * degenerate->inlierRatio;
+    if (!degenerate || prediction_.hasMotion()) return false;
+    const Eigen::VectorXd along = estimate.translation.unobservedAxes.transpose() * upAt(pose_);
+    const bool isHorizontal = (along.array().abs() < kHorizontal).any();
+    return isHorizontal && inlierRatio < kDrifted * degenerate->inlierRatio;
 }
 
 /** A new map, which only a prediction links to the one before. */
@@ -501,8 +503,9 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     map_.clear(upAt(pose_));
     waiting_.reset();
     start_.reset();
-    if (prediction_.hasMotion() || !isSkewed) beginning_.clear();
-    if (isSkewed) beginning_.push_back({{cloud, time_s_, Twist{}}, {}, track_});
+    const bool isRetraced = window_.isEmpty() && !usesGyro_;
+    if (prediction_.hasMotion() || !isRetraced) beginning_.clear();
+    if (isRetraced) beginning_.push_back({{cloud, time_s_, Twist{}}, {}, track_});
     dynamics_.clear();
     usualInlierRatio_ = 0;
     map_.addScan(view.fine, pose_);

@@ -119,7 +119,7 @@ class PlaneOdometry : public Odometry {
     bool isImplausible(const PointEstimate& placed) const;
     bool isBeyondReach(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
                        double since_s) const;
-    bool hasDrifted(double inlierRatio) const;
+    bool hasDrifted(const PlaneEstimate& estimate, double inlierRatio) const;
     void miss(const PointCloud& cloud);
     bool isLostAfter(const Step& step) const;
     void report(const PlaneEstimate& estimate, ScanView& view, Step& step) const;
@@ -249,6 +249,7 @@ class PlaneOdometry : public Odometry {
         double time_s = 0;                                       //!< of the scan, since the start
         double stamp_s = 0;                                      //!< its stamp, likewise
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< at the stamp, sensor to map
+        Eigen::Isometry3d said = Eigen::Isometry3d::Identity();  //!< the same as the steps said
         bool isCorrected = false;                                //!< by the latest scan
     };
     std::deque<PastScan> past_;  //!< the latest ones, oldest first

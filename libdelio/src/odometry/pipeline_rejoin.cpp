@@ -94,11 +94,13 @@ void PlaneOdometry::correctPast(Step& step) {
         for (auto& scan : past_)
             if ((scan.isCorrected = scan.stamp_s >= start_->stamp_s))
                 scan.pose = window_.trajectory().at(scan.stamp_s);
-    for (std::size_t i = 0; i < past_.size(); ++i)
-        if (std::exchange(past_[i].isCorrected, false))
-            step.corrected.push_back(
-                {past_.size() - i, normalised(stamped_.pose.inverse() * past_[i].pose)});
-    past_.push_back({stamped_.time_s, stamped_.time_s + stamped_.stamp_s, stamped_.pose});
+    for (std::size_t i = 0; i < past_.size(); ++i) {
+        if (!std::exchange(past_[i].isCorrected, false)) continue;
+        const Eigen::Isometry3d fromHere = normalised(stamped_.pose.inverse() * past_[i].pose);
+        past_[i].said = said_ * fromHere;
+        step.corrected.push_back({past_.size() - i, fromHere});
+    }
+    past_.push_back({stamped_.time_s, stamped_.time_s + stamped_.stamp_s, stamped_.pose, said_});
     if (past_.size() > kMostScans) past_.pop_front();
 }
 }  // namespace delio::odometry

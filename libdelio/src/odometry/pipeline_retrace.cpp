@@ -7,6 +7,8 @@
 
 namespace delio::odometry {
 namespace {
+bool hasTimes(const PointCloud& cloud) { return !cloud.times_s.empty(); }
+
 /** The scan as a sensor that moves backwards through time takes it. */
 PointCloud reversed(PointCloud cloud) {
     for (float& time_s : cloud.times_s) time_s = -time_s;
@@ -31,7 +33,9 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
     constexpr std::size_t kFirst = 4, kLater = 4, kMost = 32;
     if (beginning_.empty()) return;
     if (beginning_.back().scan.time_s != time_s_) {
-        if (!step.reason.empty() || usesGyro_ || left_ || cloud.times_s.empty())
+        const bool isMissing = !step.reason.empty() && prediction_.hasMotion();
+        if (isMissing || usesGyro_ || left_ ||
+            hasTimes(cloud) != hasTimes(beginning_.back().scan.cloud))
             return beginning_.clear();
         const bool isTracking = std::holds_alternative<Tracking>(state_) && waiting_;
         beginning_.push_back(
@@ -53,7 +57,7 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
 }
 
 /** Registers the first `count` scans of beginning_ again, the last of them first, as far as they
- * are found; nothing is corrected where these are fewer than `least`. */
+ *  are found; those before move along. Nothing is corrected where fewer than `least` are found. */
 void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
     PlaneOdometry back(given_);
     back.turnBack(*this, count);
@@ -65,22 +69,29 @@ void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
         trajectories[--first] = *found;
     }
     if (count - first < least) return;
-    // The trajectory of a scan is known best between its time and that of the scan after it.
     const std::size_t known = past_.size() + 1 - beginning_.size();
+    const PastScan held = past_[known];
+    // The trajectory of a scan is known best between its time and that of the scan after it.
     for (std::size_t i = first, k = first; i < count; ++i) {
         PastScan& scan = past_[known + i];
         while (k < count && beginning_[k + 1].scan.time_s <= scan.stamp_s) ++k;
         scan.pose = atStamp(trajectories[k], scan.stamp_s - beginning_[k].scan.time_s);
-        scan.isCorrected = true;
     }
-    track_ = beginning_[first].track;
+    const Eigen::Isometry3d moved =
+        trajectories[first].at(0) * beginning_[first].scan.trajectory.at(0).inverse();
+    for (std::size_t i = 0; i < first; ++i) past_[known + i].pose = moved * past_[known + i].pose;
+    if (first == 0) track_ = beginning_.front().track;
     back.insertWaiting();
     map_ = std::move(back.map_);
     waiting_.reset();
-    if (known + first > 0) return;
-    // The drive begins where it began: the next step leads to where the sensor is now.
-    stamped_.pose = past_.front().pose * said_;
-    for (auto& scan : past_) scan.isCorrected = true;
+    // The first of the scans stays where it was said to be: the next step leads to where the sensor
+    // is now.
+    const Eigen::Isometry3d toMap = past_[known].pose * held.pose.inverse();
+    for (std::size_t i = 0; i < past_.size(); ++i) {
+        if (i < known) past_[i].pose = toMap * past_[i].pose;
+        past_[i].isCorrected = i >= known;
+    }
+    stamped_.pose = past_[known].pose * held.said.inverse() * said_;
 }
 
 /** Begins with the scans from number `first` on that follow a start, in reverse order. */
@@ -88,7 +99,8 @@ void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
     upright_ = ahead.upright_;
     takeScale(ahead.scale_);
     kernel_ = ahead.kernel_;
-    unevenness_ = ahead.unevenness_;
+    constexpr std::size_t kSettled = 4;  // scans since the motion is known well
+    unevenness_ = ahead.unevenness_.ofLatest(kSettled);
     usualInlierRatio_ = ahead.usualInlierRatio_;
     const auto& scans = ahead.beginning_;
     map_.clear(ahead.upAt(scans[first].points->pose));
@@ -102,9 +114,10 @@ void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
     const Latest& next = scans[first].scan;
     pose_ = scans[first].points->pose;
     time_s_ = -next.time_s;
-    latest_ = Latest{reversed(next.cloud), time_s_, reversed(next.trajectory)};
-    motion_ = latest_->trajectory.seenFrom(0);
-    reference_ = {undistorted(latest_->cloud, motion_).points, pose_, time_s_};
+    Latest latest{reversed(next.cloud), time_s_, reversed(next.trajectory)};
+    motion_ = latest.trajectory.seenFrom(0);
+    reference_ = {undistorted(latest.cloud, motion_).points, pose_, time_s_};
+    if (hasTimes(latest.cloud)) latest_ = std::move(latest);
     state_ = Tracking{};
 }
 
@@ -117,18 +130,14 @@ std::optional<ScanTrajectory> PlaneOdometry::stepBack(const Latest& scan) {
     time_s_ = -scan.time_s;
     Step step;
     step.times_ms = noTimes();
-    step.deskewed = true;
+    step.deskewed = hasTimes(cloud);
     Attempt attempt = attemptToTrack(cloud, {IntervalKind::kUsual, duration_s, duration_s}, step);
     const ScanTrajectory before = reversed(scan.trajectory);
     Attempt asBefore = attemptBy(cloud, expectation(before.at(0), false, duration_s, true),
                                  before.seenFrom(0), step);
-    const double found = attempt.placement.estimate.inlierRatio;
     const bool wasBetter = asBefore.isBetterThan(attempt);
-    // A window holds the trajectory of `attempt`, so that only that one can be used.
-    if (!window_.isEmpty() && wasBetter &&
-        asBefore.placement.estimate.inlierRatio > found + kInlierNoise)
-        return {};
-    track(cloud, std::move(wasBetter && window_.isEmpty() ? asBefore : attempt), step);
+    if (wasBetter) endWindow();
+    track(cloud, std::move(wasBetter ? asBefore : attempt), step);
     if (!step.reason.empty()) return {};
     settleWindow(step);
     keep(std::move(cloud), step);

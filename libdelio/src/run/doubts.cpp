@@ -7,7 +7,7 @@
 
 namespace delio::run {
 namespace {
-constexpr double kMostLost = 0.1;  // share of the scans
+constexpr double kMostLost = 0.1;  // of all scans
 
 bool isMore(std::size_t scans, double share, std::size_t ofAll) {
     return static_cast<double>(scans) > share * static_cast<double>(ofAll);
