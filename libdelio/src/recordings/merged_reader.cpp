@@ -128,9 +128,11 @@ MergedReader::Sensor* MergedReader::driver() {
 
 MergedReader::Interval MergedReader::intervalOf(const Sensor& driver) const {
     const double begin_s = beginOf(driver.ahead.front());
-    const double latest_s = interval_s_ > 0 ? begin_s + kLongWait * interval_s_ : INFINITY;
-    if (driver.ahead.size() > 1) return {begin_s, std::min(beginOf(driver.ahead[1]), latest_s)};
-    return {begin_s, interval_s_ > 0 ? begin_s + interval_s_ : INFINITY};
+    const double usual_s = interval_s_ > 0 ? begin_s + interval_s_ : INFINITY;
+    if (driver.ahead.size() < 2) return {begin_s, usual_s};
+    const double next_s = beginOf(driver.ahead[1]);
+    const bool pauses = interval_s_ > 0 && next_s > begin_s + kLongWait * interval_s_;
+    return {begin_s, pauses ? usual_s : next_s};
 }
 
 /** Appends the points for which `isWanted(i)`, in the first sensor's frame. */
