@@ -129,10 +129,10 @@ MergedReader::Sensor* MergedReader::driver() {
 MergedReader::Interval MergedReader::intervalOf(const Sensor& driver) const {
     const double begin_s = beginOf(driver.ahead.front());
     const double usual_s = interval_s_ > 0 ? begin_s + interval_s_ : INFINITY;
-    if (driver.ahead.size() < 2) return {begin_s, usual_s};
+    if (driver.ahead.size() < 2) return {begin_s, usual_s, false};
     const double next_s = beginOf(driver.ahead[1]);
     const bool pauses = interval_s_ > 0 && next_s > begin_s + kLongWait * interval_s_;
-    return {begin_s, pauses ? usual_s : next_s};
+    return {begin_s, pauses ? usual_s : next_s, !pauses};
 }
 
 /** Appends the points for which `isWanted(i)`, in the first sensor's frame. */
@@ -215,7 +215,7 @@ void MergedReader::take(Sensor& sensor, const Scan& own, const Interval& interva
             return cut ? scan.stamp_s + scan.times_s[i] : scan.stamp_s;
         };
         const double oldest_s = (cut ? interval.begin_s : own.stamp_s) - half_s;
-        const double end_s = cut ? interval.end_s : INFINITY;
+        const double end_s = cut && interval.cuts ? interval.end_s : INFINITY;
         const std::size_t before = merged.points->size();
         append(scan, sensor, merged,
                [&](std::size_t i) { return !(timeOf(i) < oldest_s) && !(timeOf(i) >= end_s); });

@@ -58,6 +58,7 @@ class MergedReader : public ScanReader {
     /** Time that a merged scan covers, from second 0 of the drive. */
     struct Interval {
         double begin_s, end_s;
+        bool cuts;  //!< scans of the others end there; false: the first sensor pauses then
     };
 
     void takePoses(const Extrinsics& poses);
