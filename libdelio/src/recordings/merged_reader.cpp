@@ -11,7 +11,8 @@ namespace delio::io {
 namespace {
 constexpr double kSameTime_s = 0.005;
 constexpr std::size_t kFewScans = 5;  // without points of a sensor are not worth a line
-constexpr double kLongWait = 1.5;  // intervals without a scan, after which another sensor sets them
+constexpr double kPause = 1.5;        // intervals to the next scan: one is missing
+constexpr double kLead = 0.75;        // intervals by which another sensor may be ahead
 
 bool isTimed(const Scan& scan) { return !scan.times_s.empty(); }
 
@@ -106,24 +107,26 @@ void MergedReader::fill(Sensor& sensor) {
     }
 }
 
-/** The sensor whose scan comes next: the first in order that is not far behind the others. */
+/** The sensor whose scan comes next: the first in order whose scan is not far behind the others.
+ *  What was left of a scan does not set an interval. */
 MergedReader::Sensor* MergedReader::driver() {
-    while (true) {
-        double first_s = INFINITY;
-        for (Sensor& sensor : sensors_) {
-            fill(sensor);
-            if (!sensor.ahead.empty()) first_s = std::min(first_s, beginOf(sensor.ahead.front()));
-        }
-        const auto found = std::find_if(sensors_.begin(), sensors_.end(), [&](const Sensor& each) {
-            return !each.ahead.empty() &&
-                   (interval_s_ <= 0 ||
-                    beginOf(each.ahead.front()) <= first_s + kLongWait * interval_s_);
-        });
-        if (found == sensors_.end()) return nullptr;
-        if (!found->isRest) return &*found;
-        found->ahead.pop_front();  // a part of a scan does not set an interval
-        found->isRest = false;
+    double first_s = INFINITY;
+    for (Sensor& sensor : sensors_) {
+        fill(sensor);
+        if (!sensor.ahead.empty() && !sensor.isRest)
+            first_s = std::min(first_s, sensor.ahead.front().stamp_s);
     }
+    for (Sensor& sensor : sensors_)
+        if (!sensor.ahead.empty() && !sensor.isRest &&
+            (interval_s_ <= 0 || sensor.ahead.front().stamp_s <= first_s + kLead * interval_s_))
+            return &sensor;
+    bool isLeft = false;
+    for (Sensor& sensor : sensors_) {
+        if (!std::exchange(sensor.isRest, false)) continue;
+        sensor.ahead.pop_front();
+        isLeft = true;
+    }
+    return isLeft ? driver() : nullptr;
 }
 
 MergedReader::Interval MergedReader::intervalOf(const Sensor& driver) const {
@@ -131,7 +134,7 @@ MergedReader::Interval MergedReader::intervalOf(const Sensor& driver) const {
     const double usual_s = interval_s_ > 0 ? begin_s + interval_s_ : INFINITY;
     if (driver.ahead.size() < 2) return {begin_s, usual_s, false};
     const double next_s = beginOf(driver.ahead[1]);
-    const bool pauses = interval_s_ > 0 && next_s > begin_s + kLongWait * interval_s_;
+    const bool pauses = interval_s_ > 0 && next_s > begin_s + kPause * interval_s_;
     return {begin_s, pauses ? usual_s : next_s, !pauses};
 }
 
@@ -207,7 +210,7 @@ void MergedReader::learnInterval(double stamp_s) {
 void MergedReader::take(Sensor& sensor, const Scan& own, const Interval& interval, Scan& merged) {
     while (!sensor.ahead.empty()) {
         const Scan scan = sensor.ahead.front();
-        const bool cut = isTimed(scan) && isTimed(own);
+        const bool cut = (interval.cuts || sensor.isRest) && isTimed(scan) && isTimed(own);
         const double half_s =
             (std::isfinite(interval.end_s) ? interval.end_s - interval.begin_s : INFINITY) / 2;
         if (cut ? beginOf(scan) >= interval.end_s : scan.stamp_s >= own.stamp_s + half_s) return;
@@ -215,7 +218,7 @@ void MergedReader::take(Sensor& sensor, const Scan& own, const Interval& interva
             return cut ? scan.stamp_s + scan.times_s[i] : scan.stamp_s;
         };
         const double oldest_s = (cut ? interval.begin_s : own.stamp_s) - half_s;
-        const double end_s = cut && interval.cuts ? interval.end_s : INFINITY;
+        const double end_s = cut ? interval.end_s : INFINITY;
         const std::size_t before = merged.points->size();
         append(scan, sensor, merged,
                [&](std::size_t i) { return !(timeOf(i) < oldest_s) && !(timeOf(i) >= end_s); });

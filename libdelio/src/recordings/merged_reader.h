@@ -58,7 +58,7 @@ class MergedReader : public ScanReader {
     /** Time that a merged scan covers, from second 0 of the drive. */
     struct Interval {
         double begin_s, end_s;
-        bool cuts;  //!< scans of the others end there; false: the first sensor pauses then
+        bool cuts;  //!< points of the others are cut there; false: whole scans, by their stamps
     };
 
     void takePoses(const Extrinsics& poses);
