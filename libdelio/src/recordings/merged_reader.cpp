@@ -187,8 +187,9 @@ std::optional<Scan> MergedReader::next() {
         append(own, *leader, merged, [](std::size_t) { return true; });
     }
     note(*leader, merged.index);
+    // Those before it in order set the next interval where they have a scan.
     for (Sensor& sensor : sensors_)
-        if (&sensor != leader) take(sensor, own, interval, merged);
+        if (&sensor > leader) take(sensor, own, interval, merged);
     count_ = merged.index + 1;
     return merged;
 }
