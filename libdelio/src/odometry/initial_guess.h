@@ -38,6 +38,7 @@ struct ReferenceScan {
     Eigen::Matrix3Xf points;                                 //!< sensor's frame
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
     double time_s = 0;                                       //!< stamp, seconds of the drive
+    bool isBeforePause = false;  //!< how much time has passed since is not known
 };
 
 /** What is known of a scan's place before it is registered. */

@@ -114,6 +114,7 @@ Step PlaneOdometry::process(const Scan& scan) {
 void PlaneOdometry::interrupt(double elapsed_s) {
     constexpr double kLongest_s = 3.5;  // longer, the motion is not extrapolated
     if (elapsed_s > kLongest_s) prediction_.forget();
+    reference_.isBeforePause = true;
     state_ = lostFrom(std::move(state_), missesOf(state_));
 }
 
@@ -132,7 +133,8 @@ PlaneOdometry::Attempt PlaneOdometry::attemptToTrack(const PointCloud& cloud,
     const double since_s = time_s_ - reference_.time_s;
     if (step.interrupted && prediction_.hasMotion())
         return attemptAfterPause(cloud, interval, since_s, step);
-    Attempt attempt = attemptWithGyro(cloud, interval.duration_s, since_s, !step.interrupted, step);
+    Attempt attempt =
+        attemptWithGyro(cloud, interval.duration_s, since_s, !reference_.isBeforePause, step);
     if (isImplausible(attempt.placement.estimate)) attempt.placement.estimate.valid = false;
     return attempt;
 }
@@ -344,7 +346,8 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
                            ScanView& view, const Step& step) {
     const bool isDegenerate = estimate.translation.unobservedAxes.cols() > 0;
     const auto* latest = std::get_if<Degenerate>(&state_);
-    if (step.interrupted)
+    const bool isTimeKnown = !step.interrupted && !reference_.isBeforePause;
+    if (step.interrupted || (!isTimeKnown && !isDegenerate))
         state_ = Lost{};  // the speed is not known
     else if (isDegenerate)
         state_ = latest ? Degenerate{latest->scans + 1, latest->inlierRatio}
@@ -355,7 +358,7 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
     // enter the map.
     const double moved_m = (pose_.translation() - reference_.pose.translation()).norm();
     if (isDegenerate && moved_m <= options_.spacing.doubt_spacing) return;
-    if (!step.interrupted) learn(placed, predicted, since_s);
+    if (isTimeKnown) learn(placed, predicted, since_s);
     if (hasSight) dynamics_.remember(pose_ * inverseOf(upright_));
     insertLater(view);
 }

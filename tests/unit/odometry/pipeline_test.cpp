@@ -330,6 +330,29 @@ TEST(PlaneOdometry, APauseOnAHighwayIsNoStandstill) {
     EXPECT_NEAR(pose.translation().x(), kSpeed_mps * time_s, 1);
 }
 
+// The first scan after a pause shows nothing. What the sensor moved until it is found again took
+// longer than the scans since: it says nothing about the speed.
+TEST(PlaneOdometry, WhatItMovedInAPauseIsNoSpeed) {
+    constexpr double kStep_m = 1, kPause_m = 12;
+    const auto isCovered = [](std::size_t i) { return i == 6 || i == 8; };
+    test::Noise noise;
+    PlaneOdometry odometry(accurate());
+    double moved_m = 0;
+    for (std::size_t i = 0; i < 9; ++i) {
+        const double x = kStep_m * static_cast<double>(i) + (i < 6 ? 0 : kPause_m);
+        Eigen::Matrix3Xf points = pointsSeenFrom(test::yard(), poseAt(x - 3, 0, 0), noise);
+        if (isCovered(i))
+            for (Eigen::Index k = 0; k < points.cols(); ++k)
+                points.col(k) = 8 * noise.direction().cast<float>() + Eigen::Vector3f(0, 0, 20);
+        Scan scan = test::scanOf(points);
+        scan.stamp_s = x / 10;
+        const Step step = odometry.process(scan);
+        EXPECT_EQ(step.predicted, isCovered(i)) << i << " " << step.reason;
+        moved_m = step.increment.pose.translation().x();
+    }
+    EXPECT_NEAR(moved_m, kStep_m, 0.2);  // the last one is predicted
+}
+
 // In a smooth corridor nothing shows how fast it drives.
 TEST(PlaneOdometry, AStartInWhichAnAxisStaysUnobservedIsLost) {
     test::Noise noise;
