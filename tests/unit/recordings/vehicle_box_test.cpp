@@ -39,7 +39,7 @@ TEST_F(VehicleBox, IsInTheVehiclesFrame) {
     EXPECT_EQ(first->points->getPointsBufferRef_y()[9], 9);
     EXPECT_EQ(first->points->getPointsBufferRef_y()[10], 11);
     ASSERT_EQ(first->times_s.size(), 49U);
-    EXPECT_EQ(first->times_s[10], 0.011F);
+    EXPECT_FLOAT_EQ(first->times_s[10], 0.011F);
     EXPECT_EQ(second->points->size(), 50U);
     EXPECT_TRUE(reader->recording().findings.empty());
 }
