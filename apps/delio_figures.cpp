@@ -165,7 +165,7 @@ struct RingedScan {
         auto cloud = odometry::preprocess(scan, options.scan);
         rings = odometry::neighbouringRings(cloud);
         points = std::move(cloud.points);
-        scale = odometry::scaleOf(scan);
+        scale = scaleOf(scan);
     }
 
     std::uint16_t ringOf(Eigen::Index i) const { return rings[static_cast<std::size_t>(i)]; }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 
+#include "clean_folder.h"
 #include "cli.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
@@ -108,7 +109,16 @@ struct Arguments {
     std::vector<std::string> frameNames{"map", "ground", "enu", "utm"};
     Words values{valueNames}, colormaps{colormapNames}, frames{frameNames};
 
-    Text input, import, edits, output, crop;
+    Text input;
+    Text clean{"",
+               "clean",
+               "Folder of scans (.pcd) that are in one frame, with the sensor's pose as VIEWPOINT: "
+               "the map without the points that other scans saw through",
+               false,
+               "",
+               "FOLDER",
+               cmd};
+    Text import, edits, output, crop;
     Number spacing;
     Text colourBy, colormap;
     Number resolution, height;
@@ -161,9 +171,10 @@ Arguments::Arguments()
       verbose("", "verbose", "Print progress and full error texts", cmd) {}
 
 std::string Arguments::fault() {
-    if (input.isSet() == import.isSet()) return "give either -i or --import";
+    if (input.isSet() + import.isSet() + clean.isSet() != 1)
+        return "give either -i, --clean or --import";
     if (import.isSet()) return importFault();
-    if (isGraph()) return graphFault();
+    if (isGraph()) return clean.isSet() ? "--clean writes no graph" : graphFault();
     if (georeference.isSet() && frame.isSet() && frame.getValue() != "utm")
         return "--georeference gives east-north-up or, with --frame utm, UTM: no other --frame";
     const MapOutput& kind = mapOutputFor(output.getValue());
@@ -232,10 +243,13 @@ void refuseMissingFolder(const std::string& output) {
 }
 
 /** Checks of the files before the map is read. */
-void checkFiles(const std::string& input, const std::string& output, bool force) {
-    mapFileIn(input);
-    cli::refuseOverlap(mapFilesIn(input), outputsOf(output));
-    for (const auto& file : outputsOf(output)) cli::refuseExisting(file, force);
+void checkFiles(Arguments& asked) {
+    const std::string output = asked.output.getValue();
+    if (!asked.clean.isSet()) mapFileIn(asked.input.getValue());
+    cli::refuseOverlap(asked.clean.isSet() ? pcdFilesIn(asked.clean.getValue())
+                                           : mapFilesIn(asked.input.getValue()),
+                       outputsOf(output));
+    for (const auto& file : outputsOf(output)) cli::refuseExisting(file, asked.force.getValue());
     refuseMissingFolder(output);
 }
 
@@ -336,15 +350,22 @@ void write(const MapInput& map, const std::string& path, const MapOutputOptions&
     partial.putInPlace(names);
 }
 
+MapInput read(Arguments& asked) {
+    return asked.clean.isSet() ? cleanedFolder(asked.clean.getValue())
+                               : readMap(asked.input.getValue(), 0);
+}
+
 void convert(Arguments& asked) {
     const auto say = [&](const std::string& text) {
         if (asked.verbose.getValue()) cli::inform(text);
     };
-    const std::string input = asked.input.getValue(), output = asked.output.getValue();
-    checkFiles(input, output, asked.force.getValue());
+    const std::string output = asked.output.getValue();
+    checkFiles(asked);
     const io::OutputLock lock(output);
-    MapInput map = readMap(input, 0);
-    say("read " + std::to_string(map.points.size()) + " points of '" + mapFileIn(input) + "'");
+    MapInput map = read(asked);
+    say("read " + std::to_string(map.points.size()) + " points");
+    if (asked.clean.isSet())
+        say("removed " + std::to_string(map.dynamic.size()) + " dynamic points");
 
     const auto saveFrame = changeFrame(map, asked);
     if (const auto box = boxIn(asked.crop.getValue())) {

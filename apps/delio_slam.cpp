@@ -4,7 +4,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -19,7 +18,7 @@
 #include "delio/run/run_folder.h"
 #include "delio/run/save_rawlog.h"
 #include "initial_pose.h"
-#include "live_view.h"
+#include "live_output.h"
 #include "output_folder.h"
 #include "overlap.h"
 #include "pose_output.h"
@@ -45,14 +44,6 @@ run::PlaybackSettings playbackOf(SlamCommandLine& line) {
     // A signal ends a live drive at its source: what was received is processed.
     if (!isLive(line)) settings.isInterrupted = cli::interrupted;
     return settings;
-}
-
-std::shared_ptr<LiveView> liveViewFor(SlamCommandLine& line, const Options& options,
-                                      run::Run& run) {
-    if (!line.gui.getValue()) return nullptr;
-    auto view = std::make_shared<LiveView>(options.paper);
-    run.attach(view);
-    return view;
 }
 
 [[noreturn]] void failWithoutScans(SlamCommandLine& line, const std::string& input,
@@ -136,7 +127,7 @@ void saveCopy(const run::RunRecord& record, const run::RawlogCopy& copy) {
 
 /** One drive, from `input` to the folder `settings.folder`; see SlamDrive. */
 DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunSettings settings,
-                      const std::string& place) {
+                      const std::string& place, LiveOutput& shown) {
     PoseOutput poses(line.poses.getValue(), line.publish.getValue());
     const std::string name = io::nameOfDrive(input);
     auto reader = openInput(line, input);
@@ -151,8 +142,9 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     run::Run run(options, settings);
     const auto copy = copyOf(line, input, *reader);
     prepare(line, *reader, run);
-    const auto view = liveViewFor(line, options, run);
+    shown.begin(run);
     play(line, playback, run, poses);
+    shown.end();
     reader.reset();  // a live sensor's recording is written
     // Not even the first one: there is nothing to write.
     if (run.record().rows.empty()) throw Error(run.record().fault);
@@ -164,9 +156,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
                     std::to_string(run.record().rows.size()) + " scans");
         return {cli::kExitInterrupted, run.record().extended, false};
     }
-    if (view && view->isOpen()) cli::inform("done; close the window to end");
-    while (view && view->isOpen() && !cli::interrupted())
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    shown.waitForWindow();
     return {cli::kExitSuccess, run.record().extended, run.record().addedSubmaps > 0};
 }
 
@@ -235,17 +225,18 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
         if (input != "-" && !io::isLive(input) && !fs::exists(input))
             throw Error("cannot read '" + input + "': no such file or folder");
     checkFolders(line);
+    LiveOutput shown(line);
     const OutputFolder folder(line.output.getValue(), line.force.getValue());
     const auto settings = settingsFor(line, argc, argv);
     if (inputs.size() > 1)
         return slamSeveral(inputs, settings,
                            [&](const auto& input, const auto& its, const auto& place) {
-                               return slamDrive(line, input, its, place);
+                               return slamDrive(line, input, its, place, shown);
                            });
     if (inputs.front() == "-") cli::endInputAtInterrupt();
     return isGraph(inputs.front())
                ? optimiseGraph(line, inputs.front(), settings)
-               : slamDrive(line, inputs.front(), settings, settings.folder).exitCode;
+               : slamDrive(line, inputs.front(), settings, settings.folder, shown).exitCode;
 }
 }  // namespace
 

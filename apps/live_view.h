@@ -1,24 +1,18 @@
 #pragma once
 #include <memory>
 
-#include "delio/core/odometry_options.h"
-#include "delio/slam/slam.h"
+#include "live_map.h"
 
 namespace delio {
-/** A window that shows a drive while it is processed: the map as it grows, the current scan and the
- *  trajectory; the normals' pattern on the sphere; the lines of the last two scans and their pairs.
- *  Nothing depends on it: results are the same with and without. */
-class LiveView : public SlamListener {
+/** A window that shows a map that grows: its points by their height above the ground, the current
+ *  scan and the trajectory. A thread of its own draws, a small part of the time. */
+class LiveView {
  public:
     /** Throws Error where there is no display, or where this program was built without mrpt-gui. */
-    explicit LiveView(const PaperOdometryOptions& options);
-    ~LiveView() override;
+    explicit LiveView(std::shared_ptr<const LiveMap> map);
+    ~LiveView();
     LiveView(const LiveView&) = delete;
     LiveView& operator=(const LiveView&) = delete;
-
-    const char* name() const override { return "live_view"; }
-    /** Does nothing once the window was closed. */
-    void add(const SlamScan& scan) override;
 
     bool isOpen() const;
 

@@ -5,12 +5,11 @@
 namespace delio {
 struct LiveView::Window {};
 
-LiveView::LiveView(const PaperOdometryOptions&) {
+LiveView::LiveView(std::shared_ptr<const LiveMap>) {
     throw Error(
         "this delio-slam was built without the live view; install libmrpt-gui-dev and rebuild, or "
         "leave out --gui");
 }
 LiveView::~LiveView() = default;
-void LiveView::add(const SlamScan&) {}
 bool LiveView::isOpen() const { return false; }
 }  // namespace delio

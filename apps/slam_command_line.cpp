@@ -145,6 +145,7 @@ std::string contradictionIn(SlamCommandLine& line) {
     if (line.every.getValue() == 0) return "--every must be at least 1";
     if (line.threads.getValue() > cli::kMostThreads)
         return "--threads must be " + std::to_string(cli::kMostThreads) + " or less (0: all)";
+    if (line.serve.getValue() > 65535) return "--serve must be 65535 or less (0: any free port)";
     if (line.initialPose.isSet() && !line.map.isSet())
         return "--initial-pose needs --map: it is a pose in the stored map";
     if (line.noGnss.isSet() && (line.gnss.isSet() || line.antenna.isSet()))

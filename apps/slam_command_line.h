@@ -176,6 +176,14 @@ struct SlamCommandLine {
                  "N",
                  cmd};
     Switch gui{"", "gui", "Show progress in a window", cmd};
+    Number serve{"",
+                 "serve",
+                 "Show progress in a browser on this machine, at http://127.0.0.1:PORT/; 0: any "
+                 "free port",
+                 false,
+                 {},
+                 "PORT",
+                 cmd};
     Switch force{"", "force", "Overwrite existing files", cmd};
     Switch verbose{"", "verbose", "Print a line per scan, and full error texts", cmd};
 };

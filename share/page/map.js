@@ -89,8 +89,7 @@ function rampOf(name) {
 /** Points, an object a tile. `uniforms` are shared by all tiles but for the tile's own height. */
 class Cloud {
   constructor(what, id, mode) {
-    this.tiles = what.tiles;
-    this.places = new Uint16Array(bytesOf(id + 'places', 8 * what.shown).buffer);
+    const places = new Uint16Array(bytesOf(id + 'places', 8 * what.shown).buffer);
     const known = bytesOf(id + 'known', 4 * what.shown);
     const texture = new THREE.DataTexture(rampOf('turbo'), 64, 1, THREE.RGBFormat);
     texture.minFilter = texture.magFilter = THREE.LinearFilter;
@@ -100,26 +99,30 @@ class Cloud {
       section: {value: new THREE.Vector2(-1e6, 1e6)}, plain: {value: new THREE.Color(0xff3b30)},
       focal: {value: 1}, size_m: {value: 0.1}, least: {value: 2}, tileHeight: {value: 0},
     };
-    const material = new THREE.RawShaderMaterial(
+    this.material = new THREE.RawShaderMaterial(
         {vertexShader: pointVertex, fragmentShader: pointFragment, uniforms: this.uniforms});
     this.object = new THREE.Group();
     for (const [x, y, z, begin, count] of what.tiles) {
-      const part = bytes => new THREE.BufferAttribute(
-          bytes.subarray(4 * begin, 4 * (begin + count)), 4);
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', part(this.places));
-      geometry.setAttribute('known', part(known));
-      const half = tile_m / 2;
-      geometry.boundingSphere = new THREE.Sphere(vector([half, half, half]), half * Math.sqrt(3));
-      const points = new THREE.Points(geometry, material);
-      points.position.set(x, y, z);
-      points.userData.count = count;
-      points.onBeforeRender = () => {
-        this.uniforms.tileHeight.value = z;
-        material.uniformsNeedUpdate = true;
-      };
-      this.object.add(points);
+      const part = numbers => numbers.subarray(4 * begin, 4 * (begin + count));
+      this.add([x, y, z], part(places), part(known), count);
     }
+  }
+
+  /** One more tile: `count` points, for which the arrays may have more room. */
+  add(origin, places, known, count) {
+    const geometry = new THREE.BufferGeometry(), half = tile_m / 2;
+    geometry.setAttribute('position', new THREE.BufferAttribute(places, 4));
+    geometry.setAttribute('known', new THREE.BufferAttribute(known, 4));
+    geometry.boundingSphere = new THREE.Sphere(vector([half, half, half]), half * Math.sqrt(3));
+    const points = new THREE.Points(geometry, this.material);
+    points.position.fromArray(origin);
+    points.userData.count = count;
+    points.onBeforeRender = () => {
+      this.uniforms.tileHeight.value = origin[2];
+      this.material.uniformsNeedUpdate = true;
+    };
+    this.object.add(points);
+    return points;
   }
 
   /** The first points of a tile are an even choice of them. */
@@ -135,19 +138,21 @@ class Cloud {
     const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix,
                                                    camera.matrixWorldInverse).elements;
     let best = null, bestScore = Infinity;
-    for (const [ox, oy, oz, begin, count] of this.tiles) {
+    for (const tile of this.object.children) {
+      const [ox, oy, oz] = tile.position.toArray();
+      const places = tile.geometry.getAttribute('position').array;
       // Rows of the matrix for the tile's millimetres.
       const [[ax, ay, az, aw], [bx, by, bz, bw], [cx, cy, cz, cw]] = [0, 1, 3].map(k =>
           [m[k] * quantum_m, m[k + 4] * quantum_m, m[k + 8] * quantum_m,
            m[k] * ox + m[k + 4] * oy + m[k + 8] * oz + m[k + 12]]);
-      for (let i = 4 * begin; i < 4 * (begin + count); i += 4) {
-        const px = this.places[i], py = this.places[i + 1], pz = this.places[i + 2];
+      for (let i = 0; i < 4 * tile.userData.count; i += 4) {
+        const px = places[i], py = places[i + 1], pz = places[i + 2];
         const w = cx * px + cy * py + cz * pz + cw;
         if (w < 0.05) continue;
         const u = ((ax * px + ay * py + az * pz + aw) / w + 1) / 2 * width - x;
         const v = (1 - (bx * px + by * py + bz * pz + bw) / w) / 2 * height - y;
         const off = (u * u + v * v) / (reach_px * reach_px);
-        const ground = groundQuantum_m * this.places[i + 3] + lowestGround_m;
+        const ground = groundQuantum_m * places[i + 3] + lowestGround_m;
         if (off > 1 || w * (1 + off) >= bestScore || ground < section.x || ground > section.y)
           continue;
         bestScore = w * (1 + off);

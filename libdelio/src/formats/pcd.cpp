@@ -144,7 +144,9 @@ PcdHeader readPcdHeader(RecordFile& file) {
             if (!header.points && header.width && header.height)
                 header.points = *header.width * *header.height;
             return header;
-        } else if (keyword != "VERSION" && keyword != "VIEWPOINT")
+        } else if (keyword == "VIEWPOINT")
+            header.viewpoint = rest;
+        else if (keyword != "VERSION")
             break;
     }
     file.refuse("the header is incomplete");

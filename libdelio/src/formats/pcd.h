@@ -9,6 +9,7 @@ namespace delio::io {
 struct PcdHeader {
     std::vector<std::string> names, sizes, types, counts;  //!< a word a field
     std::optional<std::size_t> points, width, height;      //!< where it says them
+    std::vector<std::string> viewpoint;                    //!< x y z qw qx qy qz
     std::string data;                                      //!< ascii, binary, binary_compressed
 };
 

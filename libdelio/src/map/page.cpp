@@ -189,6 +189,47 @@ void writeNumbers(const std::vector<Number>& numbers, std::ostream& out) {
                 numbers.size() * sizeof(Number), out);
 }
 
+/** Writes the page; `fill` writes the replacement of each {{name}}. */
+template <typename Fill>
+void fillTemplate(std::ostream& out, const Fill& fill) {
+    const std::string& page = pageTexts().at("page.html");
+    for (std::size_t at = 0; at < page.size();) {
+        const std::size_t begin = std::min(page.find("{{", at), page.size());
+        out.write(&page[at], static_cast<std::streamsize>(begin - at));
+        if (begin == page.size()) return;
+        const std::size_t end = page.find("}}", begin);
+        fill(page.substr(begin + 2, end - begin - 2));
+        at = end + 2;
+    }
+}
+
+bool isOfLivePage(const std::string& name) { return name == "connect" || name == "live.js"; }
+
+/** A map without points: surroundings of the start. The page widens them as points come. */
+void writeLiveAbout(std::ostream& out) {
+    const ValueRange around{-30, 30}, high{-3, 10}, ground{0, 6};
+    out << std::fixed << std::setprecision(3) << "{";
+    for (const char* name : {"x", "x_most", "y", "y_most"}) {
+        writeRange(name, around, true, out);
+        out << ',';
+    }
+    for (const char* name : {"z", "z_most"}) {
+        writeRange(name, high, true, out);
+        out << ',';
+    }
+    writeRange("ground", {-1, 20}, true, out);
+    out << ',';
+    writeRange("ground_most", ground, true, out);
+    for (const char* name : {"intensity", "time", "observations"}) {
+        out << ',';
+        writeRange(name, ground, false, out);
+    }
+    for (const char* name : {"points", "dynamic"}) writeCloud(name, {}, 0, out);
+    for (const char* name : {"trajectory", "odometry", "truth", "loops"}) writePath(name, {}, out);
+    writeColours(out);
+    out << "}\n";
+}
+
 GroundHeight groundOf(const MapPoints& points) {
     return GroundHeight(points.size(), [&](std::size_t i) { return points[i].position; });
 }
@@ -204,16 +245,8 @@ void savePage(const PageContent& content, const std::string& path, const std::st
     const PageCloud dynamic =
         pageCloudOf(thinned(content.dynamic, kMostPageDynamic), scales, ground);
 
-    const std::string& page = pageTexts().at("page.html");
     io::replaceTextFile(path, [&](std::ostream& out) {
-        // Template of the page, and the replacement of each {{name}}.
-        for (std::size_t at = 0; at < page.size();) {
-            const std::size_t begin = std::min(page.find("{{", at), page.size());
-            out.write(&page[at], static_cast<std::streamsize>(begin - at));
-            if (begin == page.size()) break;
-            const std::size_t end = page.find("}}", begin);
-            const std::string name = page.substr(begin + 2, end - begin - 2);
-            at = end + 2;
+        fillTemplate(out, [&](const std::string& name) {
             if (name == "title")
                 out << htmlText(content.title);
             else if (name == "three.js")
@@ -228,9 +261,29 @@ void savePage(const PageContent& content, const std::string& path, const std::st
                 writeNumbers(dynamic.places, out);
             else if (name == "dynamic known")
                 writeNumbers(dynamic.known, out);
-            else
+            else if (!isOfLivePage(name))
                 out << pageTexts().at(name);
-        }
+        });
     });
+}
+
+std::string livePage(const std::string& title, const std::string& threeJs) {
+    const std::string three = readThreeJs(threeJs, "the live page");
+    std::ostringstream out;
+    fillTemplate(out, [&](const std::string& name) {
+        if (name == "title")
+            out << htmlText(title);
+        else if (name == "three.js")
+            out << three;
+        else if (name == "about")
+            writeLiveAbout(out);
+        else if (name == "connect")
+            out << "; connect-src 'self'";
+        else if (name == "live.js")
+            out << "<script>\n" << pageTexts().at(name) << "</script>\n";
+        else if (name == "style.css" || name == "map.js")
+            out << pageTexts().at(name);
+    });
+    return out.str();
 }
 }  // namespace delio::map

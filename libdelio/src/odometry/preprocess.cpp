@@ -123,24 +123,6 @@ std::vector<std::uint16_t> neighbouringRings(const PointCloud& cloud,
     return cloud.rings.empty() ? ringsOf(points) : ringsFromTop(points, cloud.rings);
 }
 
-double scaleOf(const Scan& scan) {
-    constexpr double kShare = 0.9, kStreet_m = 16, kLeast = 0.25;
-    constexpr std::size_t kEnough = 10000;
-    std::vector<float> ranges;
-    const auto& x = scan.points->getPointsBufferRef_x();
-    const auto& y = scan.points->getPointsBufferRef_y();
-    const auto& z = scan.points->getPointsBufferRef_z();
-    for (std::size_t i = 0; i < x.size(); i += 1 + x.size() / kEnough) {
-        const float range = Eigen::Vector3f(x[i], y[i], z[i]).norm();
-        if (std::isfinite(range) && range > 0) ranges.push_back(range);
-    }
-    if (ranges.empty()) return 1;
-    const auto most = ranges.begin() +
-                      static_cast<std::ptrdiff_t>(kShare * static_cast<double>(ranges.size() - 1));
-    std::nth_element(ranges.begin(), most, ranges.end());
-    return std::clamp(static_cast<double>(*most) / kStreet_m, kLeast, 1.0);
-}
-
 ScaledOptions atScale(const PlaneOdometryOptions& options, double scale) {
     ScaledOptions scaled;
     static_cast<PlaneOdometryOptions&>(scaled) = options;

@@ -38,8 +38,4 @@ std::string whyNoneIsLeft(const Scan& scan, const PreprocessOptions& options);
 std::vector<std::uint16_t> neighbouringRings(
     const PointCloud& cloud, const Eigen::Matrix3f& upright = Eigen::Matrix3f::Identity());
 
-/** The size of the place that a scan shows, 1 for streets and less for rooms: nine points in ten
- *  are within 16 m times this. Not below 0.25. */
-double scaleOf(const Scan& scan);
-
 }  // namespace delio::odometry

@@ -193,7 +193,12 @@ bool LiveSource::receive(Socket& socket) {
 
 std::optional<UdpPacket> LiveSource::next() {
     const auto packet = waiting_.take();
-    if (!packet) return {};
+    if (!packet) {
+        ended_s_ =
+            std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch())
+                .count();
+        return {};
+    }
     current_ = *packet;
     UdpPacket udp;
     udp.payload = current_->payload.data();
@@ -208,7 +213,7 @@ std::optional<UdpPacket> LiveSource::next() {
 
 void LiveSource::endScan(std::size_t index, double last_s) {
     constexpr std::size_t kMost = 32;  // more than any reader reads ahead
-    ends_.emplace_back(index, last_s);
+    ends_.emplace_back(index, ended_s_.value_or(last_s));
     if (ends_.size() > kMost) ends_.pop_front();
 }
 

@@ -37,7 +37,8 @@ class LiveSource : public PacketSource {
     bool isLive() const override { return true; }
     void endScan(std::size_t index, double last_s) override;
 
-    /** Unix time of the last packet of a scan that was read lately. For the thread that reads. */
+    /** Unix time of the last packet of a scan that was read lately; of the last scan: of the end of
+     *  the drive, which completes it. For the thread that reads. */
     std::optional<double> receivedOf(std::size_t scan) const;
 
     /** Ends the drive and forgets the packets that wait. */
@@ -75,6 +76,7 @@ class LiveSource : public PacketSource {
     WaitingQueue<std::shared_ptr<const LivePacket>> waiting_;
     std::shared_ptr<const LivePacket> current_;
     std::deque<std::pair<std::size_t, double>> ends_;  //!< of the latest scans
+    std::optional<double> ended_s_;                    //!< Unix time; none: packets may come
     std::thread thread_;
 };
 }  // namespace delio::io

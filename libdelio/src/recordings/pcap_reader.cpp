@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "delio/core/error.h"
+#include "delio/files/output_file.h"
 #include "ouster.h"
+#include "ouster_http.h"
 #include "packet_decoder.h"
 #include "robosense.h"
 #include "udp_stream.h"
@@ -72,6 +74,7 @@ class PcapReader : public ScanReader {
     std::optional<Sender> senderOf(const UdpPacket& packet) const;
     /** `packet`: its first one; none: not read yet. */
     void makeDecoder(const std::string& kind, const UdpPacket& packet);
+    void askOuster(std::uint32_t address);
     /** Reads on until the decoder was given a packet of its sensor; false at the end. */
     bool feed();
     bool give(const std::string& kind, const UdpPacket& packet);
@@ -93,6 +96,10 @@ class PcapReader : public ScanReader {
     std::string refusal_;                 //!< why the first of these
     /** Of the RoboSense of an address: these packets come to another port than the others. */
     std::map<std::uint32_t, std::vector<std::uint8_t>> descriptions_;
+    struct Asked {
+        std::string json, refusal;  //!< one of them is empty
+    };
+    std::map<std::uint32_t, Asked> asked_;  //!< Ousters by address
     std::optional<DriveMeta> meta_;
     std::string foundJson_;      //!< beside the recording, under another name
     std::uint16_t imuPort_ = 0;  //!< 0: no packet of an IMU was met
@@ -135,13 +142,40 @@ void PcapReader::makeDecoder(const std::string& kind, const UdpPacket& packet) {
     }
     isOuster_ = true;
     if (source_.sensorFile.empty()) {
-        if (source_.path == "-" || packets_->isLive())
+        if (packets_->isLive()) return askOuster(packet.from);
+        if (source_.path == "-")
             throw Error("packets of an Ouster need the sensor's json (--sensor-info)");
         source_.sensorFile = ousterJsonBeside(source_.path, packet.payload, packet.bytes).name;
         const fs::path json = source_.sensorFile;
         if (json.stem() != fs::path(source_.path).stem()) foundJson_ = json.filename().string();
     }
     decoder_ = ousterDecoder(textOf(source_.sensorFile), source_.sensorFile);
+}
+
+/** Gets the json of a live Ouster from it, once, and keeps it beside the recording. */
+void PcapReader::askOuster(std::uint32_t address) {
+    constexpr std::size_t kMost = 4;  // sensors: addresses may be made up
+    const bool isKnown = asked_.count(address) > 0;
+    if (!isKnown && asked_.size() >= kMost) throw Error("too many Ousters send packets");
+    auto& [json, refusal] = asked_[address];
+    try {
+        if (!refusal.empty()) throw Error(refusal);
+        if (!isKnown) json = ousterJsonFrom(address, source_.live.sensorHttpPort);
+        decoder_ = ousterDecoder(json, "http://" + addressText(address));
+    } catch (const Error& e) {
+        refusal = e.what();
+        throw Error("packets of an Ouster need the sensor's json: give it with --sensor-info; " +
+                    refusal);
+    }
+    if (isKnown) return;
+    if (source_.live.record.empty()) return;
+    const std::string beside = fs::path(source_.live.record).replace_extension(".json");
+    try {
+        replaceTextFile(beside, [&](std::ostream& out) { out << json; });
+    } catch (const Error& e) {
+        if (source_.live.onWarning)
+            source_.live.onWarning(std::string(e.what()) + "; it is needed to read the recording");
+    }
 }
 
 void PcapReader::finish() {

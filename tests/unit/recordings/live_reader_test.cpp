@@ -6,6 +6,7 @@
 
 #include "delio/core/error.h"
 #include "delio/recordings/scan_reader.h"
+#include "http_ends.h"
 #include "ouster_packets.h"
 #include "recordings/live_source.h"
 #include "same_scans.h"
@@ -38,6 +39,7 @@ struct Drive {
     std::set<std::string> others;
     std::optional<io::LiveReport> report;
     std::string fault;
+    double sinceLast_s = 0;  //!< from what completed the last scan to its end
 };
 
 using Packets = std::vector<std::pair<std::size_t, Bytes>>;  // port, payload
@@ -51,7 +53,7 @@ Packets toOnePort(const std::vector<test::TimedPacket>& timed) {
 /** The drive ends some time after the last packet: what it gives is the recording's,
  *  however much of the packets came. */
 Drive sent(const Packets& packets, const std::string& pcap, const std::string& sensorFile = "",
-           std::size_t ports = 1) {
+           std::size_t ports = 1, std::uint16_t sensorHttpPort = 80) {
     std::vector<std::uint16_t> to;
     for (std::size_t i = 0; i < ports; ++i) to.push_back(test::freePort());
     io::ScanSource source;
@@ -60,6 +62,7 @@ Drive sent(const Packets& packets, const std::string& pcap, const std::string& s
         source.path += (i > 0 ? "," : "") + std::to_string(to[i]);
     source.sensorFile = sensorFile;
     source.live.record = pcap;
+    source.live.sensorHttpPort = sensorHttpPort;
     source.live.idle_s = 3;  // the sender may have to wait on a busy machine
     source.live.mostWaiting = 1000;
     auto drive = std::async(std::launch::async, [&] {
@@ -72,6 +75,10 @@ Drive sent(const Packets& packets, const std::string& pcap, const std::string& s
                 EXPECT_TRUE(reader->received_s());
                 result.scans.push_back(*scan);
             }
+            // The end of the drive completed the last scan, not a packet seconds ago.
+            const std::chrono::duration<double> now =
+                std::chrono::system_clock::now().time_since_epoch();
+            if (!result.scans.empty()) result.sinceLast_s = now.count() - *reader->received_s();
             result.others = reader->otherLabels();
             result.report = reader->live();
         } catch (const Error& e) {
@@ -116,6 +123,7 @@ TEST(LiveReader, Velodyne) {
     const auto drive = sent(packets, pcap);
     expectRecorded(drive, pcap, 3);
     EXPECT_LE(drive.report->packets + drive.report->lostPackets, packets.size());
+    EXPECT_LT(drive.sinceLast_s, 2);  // `idle_s` is 3
 }
 
 TEST(LiveReader, OusterWithItsJsonBesideTheRecording) {
@@ -139,6 +147,41 @@ TEST(LiveReader, OusterWithoutJsonSaysSo) {
         packets.emplace_back(0, toy.packet(static_cast<std::uint16_t>(i / 32), i % 32));
     const auto drive = sent(packets, "");
     EXPECT_NE(drive.fault.find("--sensor-info"), std::string::npos) << drive.fault;
+}
+
+TEST(LiveReader, OusterGivesItsJsonAway) {
+    const test::TemporaryFolder folder;
+    const test::OusterToy toy;
+    const test::HttpEnd sensor(toy.json().dump());
+    Packets packets;
+    for (std::size_t i = 0; i < 6 * 32; ++i)
+        packets.emplace_back(0, toy.packet(static_cast<std::uint16_t>(i / 32), i % 32));
+    const std::string pcap = folder / "o.pcap";
+    const auto drive = sent(packets, pcap, "", 1, sensor.port());
+    expectRecorded(drive, pcap, 3);
+    EXPECT_EQ(test::readText(folder / "o.json"), toy.json().dump());
+    const auto requests = sensor.requests();
+    ASSERT_EQ(requests.size(), 1U);
+    EXPECT_EQ(requests[0].rfind("GET /api/v1/sensor/metadata HTTP/1.0\r\n", 0), 0U) << requests[0];
+}
+
+TEST(LiveReader, AnswersOfAnOusterThatAreOfNoUse) {
+    const test::OusterToy toy;
+    Packets packets;
+    for (std::size_t i = 0; i < 64; ++i)
+        packets.emplace_back(0, toy.packet(static_cast<std::uint16_t>(i / 32), i % 32));
+    const auto faultOf = [&](const test::HttpEnd& sensor) {
+        const auto drive = sent(packets, "", "", 1, sensor.port());
+        EXPECT_EQ(sensor.requests().size(), 1U) << "asked again";
+        EXPECT_NE(drive.fault.find("--sensor-info"), std::string::npos) << drive.fault;
+        return drive.fault;
+    };
+    const auto missing = faultOf(test::HttpEnd("nothing", "404 Not Found"));
+    EXPECT_NE(missing.find("404 Not Found"), std::string::npos) << missing;
+    const auto other = faultOf(test::HttpEnd("{\"a\": 1}"));
+    EXPECT_NE(other.find("not an Ouster metadata json"), std::string::npos) << other;
+    const auto silent = faultOf(test::HttpEnd(""));
+    EXPECT_NE(silent.find("no answer within 3 s"), std::string::npos) << silent;
 }
 
 TEST(LiveReader, Hesai) {

@@ -36,4 +36,8 @@ std::string threeJsFile();
  *  Error where there is no point, a loop names no pose, or three.js is not there. */
 void savePage(const PageContent& content, const std::string& path,
               const std::string& threeJs = threeJsFile());
+
+/** The same page for a map that grows: it asks the server that it came from for "/live" again and
+ *  again, as delio-slam --serve answers it. Error where three.js is not there. */
+std::string livePage(const std::string& title, const std::string& threeJs = threeJsFile());
 }  // namespace delio::map

@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Geometry>
 #include <string>
 
 #include "delio/map/colouring.h"
@@ -15,4 +16,8 @@ void savePcd(const MapPoints& points, const std::string& path, const Colouring& 
  *  other fields and the viewpoint are skipped, points that are not finite are dropped. Throws Error
  *  for a file that is missing, no PCD, cut off, or compressed (binary_compressed). */
 MapPoints loadPcd(const std::string& path);
+
+/** The same, with the pose that VIEWPOINT says: x y z (metres), and the rotation as a quaternion w
+ * x y z. Throws Error if it is missing or no pose, too. */
+MapPoints loadPcd(const std::string& path, Eigen::Isometry3d& viewpoint);
 }  // namespace delio::map

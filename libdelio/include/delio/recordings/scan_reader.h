@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -123,6 +124,7 @@ struct LiveSettings {
     std::function<bool()> isEnded;
     /** Gets warnings during the drive, from other threads. */
     std::function<void(const std::string&)> onWarning;
+    std::uint16_t sensorHttpPort = 80;  //!< of an Ouster, which gives away its json there
 };
 
 /** A recording and the settings to open it. */
