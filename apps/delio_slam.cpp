@@ -16,6 +16,7 @@
 #include "delio/recordings/scan_reader.h"
 #include "delio/run/playback.h"
 #include "delio/run/run_folder.h"
+#include "delio/run/save_rawlog.h"
 #include "initial_pose.h"
 #include "live_output.h"
 #include "output_folder.h"
@@ -104,6 +105,26 @@ void prepare(SlamCommandLine& line, const io::ScanReader& reader, run::Run& run)
                       line.truthFrame.getValue() == "cam0");
 }
 
+/** What --save-rawlog copies; throws Error where it cannot. */
+std::optional<run::RawlogCopy> copyOf(SlamCommandLine& line, const std::string& input,
+                                      const io::ScanReader& reader) {
+    if (!line.saveRawlog.isSet()) return {};
+    if (reader.recording().kind.rfind("rawlog", 0) != 0)
+        throw Error("--save-rawlog copies a rawlog, which '" + input +
+                    "' is not; convert it with scans2rawlog");
+    const std::string label = reader.label().substr(0, reader.label().find(','));
+    return run::RawlogCopy{input, line.saveRawlog.getValue(), label, line.images.getValue(),
+                           reader.meta() ? reader.meta()->epoch_s : 0};
+}
+
+void saveCopy(const run::RunRecord& record, const run::RawlogCopy& copy) {
+    const auto report = run::saveRawlog(record, copy);
+    cli::inform("wrote '" + copy.output + "' with " + std::to_string(report.actions) + " actions");
+    if (report.unmatched > 0)
+        cli::warn(std::to_string(report.unmatched) + " scans have no action in '" + copy.output +
+                  "': their stamps or turns differ from the rawlog's");
+}
+
 /** One drive, from `input` to the folder `settings.folder`; see SlamDrive. */
 DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunSettings settings,
                       const std::string& place, LiveOutput& shown) {
@@ -119,6 +140,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     settings.sensorLabel = reader->label();
     settings.drive = name;
     run::Run run(options, settings);
+    const auto copy = copyOf(line, input, *reader);
     prepare(line, *reader, run);
     shown.begin(run);
     play(line, playback, run, poses);
@@ -127,6 +149,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     // Not even the first one: there is nothing to write.
     if (run.record().rows.empty()) throw Error(run.record().fault);
     const std::string fault = finish(line, input, settings.folder, place, run);
+    if (copy) saveCopy(run.record(), *copy);
     if (!fault.empty()) throw Error(fault);
     if (cli::interrupted() && !isLive(line)) {
         cli::inform("interrupted; the results cover the first " +
@@ -148,6 +171,18 @@ int optimiseGraph(SlamCommandLine& line, const std::string& input,
     return cli::kExitSuccess;
 }
 
+/** Adds what --save-rawlog reads and writes, which may be there with --force only. */
+void checkCopy(SlamCommandLine& line, std::vector<std::string>& read,
+               std::vector<std::string>& written) {
+    const auto inputs = cli::filesOfRawlog(line.input.getValue().front());
+    read.insert(read.end(), inputs.begin(), inputs.end());
+    for (const auto& file : run::filesOfCopy(line.saveRawlog.getValue())) {
+        if (fs::exists(fs::symlink_status(file)) && !line.force.getValue())
+            throw Error("'" + file + "' exists; overwrite it with --force");
+        written.push_back(file);
+    }
+}
+
 /** Nothing that is read may be overwritten. */
 void checkFolders(SlamCommandLine& line) {
     auto read = line.input.getValue();
@@ -155,7 +190,9 @@ void checkFolders(SlamCommandLine& line) {
     const std::string map = line.map.isSet() ? run::storedMapIn(line.map.getValue()) : "";
     if (line.record.isSet()) written.push_back(line.record.getValue());
     if (read.size() > 1) written = filesOfSeveral(read, map, line.output.getValue());
-    for (auto* file : {&line.truth, &line.sensorInfo, &line.gnss}) read.push_back(file->getValue());
+    if (line.saveRawlog.isSet()) checkCopy(line, read, written);
+    for (auto* file : {&line.truth, &line.sensorInfo, &line.extrinsics, &line.gnss})
+        read.push_back(file->getValue());
     cli::refuseOverlap(read, written);
     if (map.empty()) return;
     std::error_code ignored;
@@ -169,6 +206,7 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
         optionsFor(line, {});
         if (line.initialPose.isSet()) initialPoseIn(line.initialPose.getValue());
         if (line.antenna.isSet()) antennaIn(line.antenna.getValue());
+        if (line.vehicleBox.isSet()) vehicleBoxIn(line.vehicleBox.getValue());
         const std::string contradiction = contradictionIn(line);
         if (!contradiction.empty()) throw Error(contradiction);
         if (line.printConfig.getValue()) {

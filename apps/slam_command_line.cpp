@@ -45,6 +45,8 @@ cli::HelpText slamHelp() {
         {both(Folder::kOdometry, Folder::kOdometryCam0), "poses before pose-graph optimisation"},
         {Folder::kCam0, "final poses in KITTI's cam0 frame"},
         {Folder::kTum, "final poses, TUM format (t x y z qx qy qz qw)"},
+        {Folder::kInterpolator,
+         "final poses, MRPT's CPose3DInterpolator (Unix time, x y z yaw pitch roll)"},
         {both(Folder::kGeoreference, Folder::kGeoTrajectory),
          "with GNSS fixes: place on the earth; poses as latitude, longitude, height and UTM"},
         {both(Folder::kEnuTum, Folder::kGeoJson),
@@ -122,6 +124,8 @@ bool isLive(SlamCommandLine& line) {
 io::ScanSource sourceFor(SlamCommandLine& line, const std::string& input) {
     io::ScanSource source{input, line.label.getValue(), line.images.getValue(),
                           line.sensorInfo.getValue()};
+    source.extrinsicsFile = line.extrinsics.getValue();
+    if (line.vehicleBox.isSet()) source.vehicleBox = vehicleBoxIn(line.vehicleBox.getValue());
     if (!io::isLive(input)) return source;
     const fs::path folder = line.output.getValue();
     source.live.record =
@@ -148,6 +152,10 @@ std::string contradictionIn(SlamCommandLine& line) {
         return "--no-gnss excludes --gnss and --antenna";
     if (line.extend.isSet() && !line.map.isSet())
         return "--extend needs --map: it adds to the stored map";
+    if (line.saveRawlog.isSet() && (inputs.size() > 1 || isLive(line) || inputs.front() == "-"))
+        return "--save-rawlog needs one rawlog file as input";
+    if (line.saveRawlog.isSet() && fs::path(line.saveRawlog.getValue()).extension() != ".rawlog")
+        return "--save-rawlog needs the name of a rawlog: FILE.rawlog";
     if (line.noMap.isSet() && line.keepDynamic.isSet())
         return "--keep-dynamic and --no-map exclude each other";
     if (line.noMap.isSet() && (line.extend.isSet() || inputs.size() > 1))

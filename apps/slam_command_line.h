@@ -50,7 +50,8 @@ struct SlamCommandLine {
         "",
         "sensor-label",
         "Sensor: label in a rawlog, topic in a bag, port in a pcap, serial number in an .osf, "
-        "layout of .bin files; default: the first sensor; a bag must have only one",
+        "layout of .bin files; several with commas between them, or \"all\": merged into one; "
+        "default: the first sensor; a bag must have only one",
         false,
         "",
         "L",
@@ -65,6 +66,23 @@ struct SlamCommandLine {
         "",
         "FILE",
         cmd};
+    Text extrinsics{
+        "",
+        "extrinsics",
+        "Poses of the sensors in the vehicle, instead of the recording's; lines LABEL x "
+        "y z yaw pitch roll, metres and degrees",
+        false,
+        "",
+        "FILE",
+        cmd};
+    Text vehicleBox{"",
+                    "vehicle-box",
+                    "Ignore points in this box of the vehicle frame, metres: parts of the own "
+                    "vehicle beyond scan.min_range",
+                    false,
+                    "",
+                    "XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX",
+                    cmd};
     Text images{"", "images", "Folder with the rawlog's external files", false, "", "DIR", cmd};
     Number threads{"", "threads", "Number of threads; 0: all cores", false, {}, "N", cmd};
     Text truth{"",
@@ -96,6 +114,15 @@ struct SlamCommandLine {
                      cmd};
     Switch extend{"", "extend", "Extend that map by this drive; OUTDIR/map.delio contains both",
                   cmd};
+    Text saveRawlog{
+        "",
+        "save-rawlog",
+        "Also copy the input rawlog, with the vehicle's motion (CActionRobotMovement3D) "
+        "before each scan",
+        false,
+        "",
+        "FILE",
+        cmd};
     Switch keepDynamic{"", "keep-dynamic", "Also write the removed dynamic points: map_dynamic.ply",
                        cmd};
     Switch noImu{"", "no-imu", "Do not use the recording's IMU", cmd};

@@ -35,6 +35,9 @@ struct Arguments {
     Text sensor{"", "sensor-label", "Sensor to convert: see delio-slam", false, "", "L", cmd};
     Text sensorInfo{"", "sensor-info", "Sensor description: see delio-slam", false, "", "FILE",
                     cmd};
+    Text extrinsics{"",    "extrinsics", "Poses of the sensors in the vehicle: see delio-slam",
+                    false, "",           "FILE",
+                    cmd};
     Text images{"", "images", "Folder with a rawlog's external files", false, "", "DIR", cmd};
     Text label{"", "label", "Sensor label in the rawlog", false, "velodyne", "LABEL", cmd};
     Number start{"", "start", "First scan to use, counted from 0", false, {}, "N", cmd};
@@ -147,8 +150,9 @@ void refuseItself(Arguments& args, const io::ScanReader& reader) {
     // What lies beside a bag of the same name is no part of it, but what was made of it before.
     const bool isRawlog = reader.truth().name == io::sidecarPath(input, ".poses.txt");
     auto inputs = isRawlog ? cli::filesOfRawlog(input) : std::vector<std::string>{input};
-    inputs.insert(inputs.end(), {args.images.getValue(), args.sensorInfo.getValue(),
-                                 reader.calibration().name, reader.truth().name});
+    inputs.insert(inputs.end(),
+                  {args.images.getValue(), args.sensorInfo.getValue(), args.extrinsics.getValue(),
+                   reader.calibration().name, reader.truth().name});
     cli::refuseOverlap(inputs, io::RawlogWriter::outputsOf(args.output.getValue()));
 }
 
@@ -159,8 +163,10 @@ int convert(Arguments& args) {
     }
     const std::string &input = args.input.getValue(), &output = args.output.getValue();
     if (input == "-") cli::endInputAtInterrupt();
-    const auto reader = io::openScans(
-        {input, args.sensor.getValue(), args.images.getValue(), args.sensorInfo.getValue()});
+    io::ScanSource source{input, args.sensor.getValue(), args.images.getValue(),
+                          args.sensorInfo.getValue()};
+    source.extrinsicsFile = args.extrinsics.getValue();
+    const auto reader = io::openScans(source);
     refuseItself(args, *reader);
     cli::inform("reading " + describe(reader->recording()));
     for (const auto& warning : reader->recording().warnings) cli::warn(warning);
@@ -169,9 +175,7 @@ int convert(Arguments& args) {
     if (!conversion.run()) return cli::kExitInterrupted;
     const std::size_t scans = conversion.finish();
     for (const auto& finding : reader->recording().findings) cli::warn(finding);
-    for (const auto& other : reader->otherLabels())
-        cli::warn("scans of the sensor '" + other +
-                  "' are ignored; choose a sensor with --sensor-label");
+    for (const auto& other : reader->otherLabels()) cli::warn(io::warningOfOther(other));
     if (!conversion.fault().empty())
         throw Error(conversion.fault() + "; the " + std::to_string(scans) +
                     " scans before it are in '" + output + "'");

@@ -57,7 +57,7 @@ TEST_F(DelioSlam, LeavesTheFilesOfTheContract) {
               Words({"config.ini", "loops.csv", "map.3Dscene", "map.delio", "map.html", "map.ply",
                      "map.png", "map.simplemap", "map_removal.png", "posegraph.g2o",
                      "posegraph.graph", "scans.csv", "summary.yaml", "trajectory.png",
-                     "trajectory_kitti.txt", "trajectory_kitti_cam0.txt",
+                     "trajectory_kitti.txt", "trajectory_kitti_cam0.txt", "trajectory_mrpt.txt",
                      "trajectory_odometry_kitti.txt", "trajectory_tum.txt"}));
 
     for (const char* name : {"trajectory_kitti.txt", "trajectory_odometry_kitti.txt",

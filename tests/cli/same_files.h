@@ -23,8 +23,8 @@ inline void expectSameResults(const std::filesystem::path& one,
                               const std::filesystem::path& other) {
     for (const char* name :
          {"trajectory_kitti.txt", "trajectory_odometry_kitti.txt", "trajectory_kitti_cam0.txt",
-          "trajectory_tum.txt", "posegraph.g2o", "posegraph.graph", "loops.csv", "config.ini",
-          "map.ply", "map.delio"}) {
+          "trajectory_tum.txt", "trajectory_mrpt.txt", "posegraph.g2o", "posegraph.graph",
+          "loops.csv", "config.ini", "map.ply", "map.delio"}) {
         // The paper's profiles close no loops: they leave neither loops.csv nor map.delio.
         if (!std::filesystem::exists(one / name) && !std::filesystem::exists(one / "loops.csv")) {
             EXPECT_FALSE(std::filesystem::exists(other / name)) << name;

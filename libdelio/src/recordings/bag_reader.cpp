@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -79,8 +80,11 @@ Topic chooseTopic(const std::vector<Topic>& topics, const std::string& asked) {
         if (scanTypeOf(topic) != ScanType::kNone) scans.push_back(topic);
     if (scans.empty()) throw Error("contains no topic with LiDAR scans, only " + listed(topics));
     if (asked.empty() && scans.size() > 1)
-        throw Error("contains several topics with scans; choose one with --sensor-label: " +
-                    listed(scans));
+        throw Error(
+            "contains several topics with scans; choose one with --sensor-label, or merge them "
+            "with "
+            "--sensor-label all: " +
+            listed(scans));
     if (asked.empty()) return scans.front();
     const auto found = std::find_if(scans.begin(), scans.end(),
                                     [&](const Topic& topic) { return topic.name == asked; });
@@ -206,6 +210,13 @@ class BagReader : public ScanReader {
 
     const std::string& label() const override { return topic_.name; }
     const std::set<std::string>& otherLabels() const override { return otherLabels_; }
+    std::optional<SensorMount> mount() override {
+        SensorMount mount;
+        const auto pose = transforms().poseInRoot(frame_, mount.frame);
+        mount.pose = pose.value_or(Eigen::Isometry3d::Identity());
+        if (!pose || frame_.empty()) mount.frame = topic_.name;  // connected to nothing
+        return mount;
+    }
     std::optional<double> fraction() const override { return ended_ ? 1 : bag_->fraction(); }
     const std::optional<DriveMeta>& meta() const override { return meta_; }
 
@@ -353,7 +364,37 @@ std::unique_ptr<ScanReader> openBag(
         throw Error("'" + source.path + "' " + plainMessage(e));
     }
 }
+
+std::unique_ptr<MessageSource> messagesOf(const std::string& path) {
+    namespace fs = std::filesystem;
+    if (fs::exists(fs::path(path) / "metadata.yaml")) return ros2FolderSource(path);
+    if (!fs::is_regular_file(path)) return nullptr;
+    switch (kindOf(path)) {
+        case FileKind::kRos1Bag:
+            return ros1Source(path);
+        case FileKind::kRos2Database:
+            return ros2DatabaseSource(path);
+        case FileKind::kMcap:
+            return mcapSource(path);
+        default:
+            return nullptr;
+    }
+}
 }  // namespace
+
+std::vector<std::string> scanTopicsOf(const std::string& path) {
+    std::vector<std::string> names;
+    try {
+        const auto bag = messagesOf(path);
+        if (!bag) return names;
+        for (const Topic& topic : bag->topics())
+            if (scanTypeOf(topic) != ScanType::kNone) names.push_back(topic.name);
+    } catch (const std::exception&) {
+        return {};  // opening it says why
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
 
 std::unique_ptr<ScanReader> openRos1Bag(const ScanSource& source) {
     return openBag("ROS 1 bag", source, ros1Source);

@@ -15,9 +15,11 @@
 #include "delio/core/printable.h"
 #include "delio/recordings/rawlog_reader.h"
 #include "files/names.h"
+#include "open_merged.h"
 #include "recognised_reader.h"
 #include "sources.h"
 #include "turn_assembler.h"
+#include "vehicle_box.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -48,7 +50,8 @@ std::unique_ptr<ScanReader> openFile(const ScanSource& source) {
 }
 }  // namespace
 
-std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
+namespace {
+std::unique_ptr<ScanReader> openSensor(const ScanSource& source) {
     if (isLive(source.path)) return openLive(source);
     if (source.path != "-" && !fs::exists(source.path))
         throw Error("cannot read '" + source.path + "': no such file or folder");
@@ -57,6 +60,27 @@ std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
                     "' is neither a file nor a folder; read a pipe from standard input with -i -");
     auto scans = fs::is_directory(source.path) ? openFolder(source) : openFile(source);
     return std::make_unique<RecognisedReader>(std::make_unique<TurnAssembler>(std::move(scans)));
+}
+}  // namespace
+
+std::string warningOfOther(const std::string& label) {
+    return "scans of the sensor '" + label +
+           "' are ignored; choose a sensor with --sensor-label, or merge them with --sensor-label "
+           "all";
+}
+
+std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
+    const auto labels = labelsOf(source, openSensor);
+    std::unique_ptr<ScanReader> scans;
+    if (labels.size() > 1 || !source.extrinsicsFile.empty()) {
+        scans = openMerged(source, labels, openSensor);
+    } else {
+        ScanSource one = source;
+        one.label = labels.front();
+        scans = openSensor(one);
+    }
+    if (source.vehicleBox.isEmpty()) return scans;
+    return std::make_unique<WithoutVehicle>(std::move(scans), source.vehicleBox);
 }
 
 std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label,

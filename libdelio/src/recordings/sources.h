@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "delio/recordings/scan_reader.h"
 #include "packet_source.h"
@@ -21,6 +22,9 @@ std::unique_ptr<ScanReader> openRos2Database(const ScanSource& source);
 std::unique_ptr<ScanReader> openMcap(const ScanSource& source);
 /** A folder with metadata.yaml and the .db3 or .mcap files that it names. */
 std::unique_ptr<ScanReader> openRos2Folder(const ScanSource& source);
+
+/** Topics with scans of a bag, by name; none where `path` is no bag or cannot be read. */
+std::vector<std::string> scanTopicsOf(const std::string& path);
 
 /** Reads a pcap or pcapng of a Velodyne, Hesai, RoboSense or Ouster (whose .json lies beside it, or
  *  is `sensorFile`). Path "-": standard input. Throws as openScans(). */

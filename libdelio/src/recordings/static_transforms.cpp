@@ -39,6 +39,7 @@ void StaticTransforms::add(const std::string& parent, const std::string& child,
 std::optional<Eigen::Isometry3d> StaticTransforms::poseInRoot(std::string frame,
                                                               std::string& root) const {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    frame = nameOf(frame);
     for (std::size_t steps = 0; steps <= links_.size(); ++steps) {
         const auto link = links_.find(frame);
         if (link == links_.end()) {
@@ -54,8 +55,8 @@ std::optional<Eigen::Isometry3d> StaticTransforms::poseInRoot(std::string frame,
 std::optional<Eigen::Isometry3d> StaticTransforms::pose(const std::string& frame,
                                                         const std::string& reference) const {
     std::string root, otherRoot;
-    const auto own = poseInRoot(nameOf(frame), root);
-    const auto other = poseInRoot(nameOf(reference), otherRoot);
+    const auto own = poseInRoot(frame, root);
+    const auto other = poseInRoot(reference, otherRoot);
     if (!own || !other || root != otherRoot) return {};
     return other->inverse() * *own;
 }

@@ -19,14 +19,15 @@ class StaticTransforms {
     std::optional<Eigen::Isometry3d> pose(const std::string& frame,
                                           const std::string& reference) const;
 
+    /** The frame's pose in the root of its tree, whose name is put into `root`; nothing where the
+     *  links run in a circle. */
+    std::optional<Eigen::Isometry3d> poseInRoot(std::string frame, std::string& root) const;
+
  private:
     struct Link {
         std::string parent;
         Eigen::Isometry3d pose;
     };
-    /** The frame's pose in the root of its tree, whose name is put into `root`. */
-    std::optional<Eigen::Isometry3d> poseInRoot(std::string frame, std::string& root) const;
-
     std::map<std::string, Link> links_;  //!< by the child's name
 };
 

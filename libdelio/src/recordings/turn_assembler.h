@@ -28,6 +28,7 @@ class TurnAssembler : public ScanReader {
     std::vector<ImuSample> takeImu() override { return source_->takeImu(); }
     const std::string& label() const override { return source_->label(); }
     const std::set<std::string>& otherLabels() const override { return source_->otherLabels(); }
+    std::optional<SensorMount> mount() override { return source_->mount(); }
     std::optional<double> fraction() const override;
     const std::optional<DriveMeta>& meta() const override { return source_->meta(); }
     Recording recording() const override;

@@ -111,9 +111,7 @@ void Playback::play(Run& run, const OnScan& onScan) {
 
 std::vector<std::string> warningsOfOthers(const io::ScanReader& reader) {
     std::vector<std::string> warnings;
-    for (const auto& other : reader.otherLabels())
-        warnings.push_back("scans of the sensor '" + other +
-                           "' are ignored; choose a sensor with --sensor-label");
+    for (const auto& other : reader.otherLabels()) warnings.push_back(io::warningOfOther(other));
     return warnings;
 }
 }  // namespace delio::run

@@ -112,6 +112,7 @@ RunRow Run::process(const Scan& scan, double read_ms) {
     const auto report = slam_.process(scan);
     for (const auto& failed : report.failed) switchOff(failed, scan.index);
     auto& rows = record_.rows;
+    if (rows.empty()) record_.epoch_s = mrpt::Clock::toDouble(scan.time) - scan.stamp_s;
     auto row = rowOf(scan, report, read_ms, rows.empty() ? nullptr : &rows.back());
     if (row.points == 0 && !row.reason.empty()) {
         const auto why = odometry::whyNoneIsLeft(scan, record_.options.scan());

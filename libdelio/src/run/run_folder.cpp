@@ -14,6 +14,7 @@
 #include "delio/map/page.h"
 #include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
+#include "mrpt/interpolator.h"
 #include "run/tables.h"
 
 namespace delio::run {
@@ -28,6 +29,7 @@ constexpr const char* kAll[] = {RunFolder::kSummary,
                                 RunFolder::kCam0,
                                 RunFolder::kOdometryCam0,
                                 RunFolder::kTum,
+                                RunFolder::kInterpolator,
                                 RunFolder::kGeoreference,
                                 RunFolder::kGeoTrajectory,
                                 RunFolder::kEnuTum,
@@ -128,7 +130,10 @@ Options RunFolder::options() const {
 void RunFolder::writeTrajectories(const RunRecord& record) const {
     io::writeKitti(record.final, path(kTrajectory));
     io::writeKitti(record.odometry, path(kOdometry));
-    if (!record.final.stamps_s.empty()) io::writeTum(record.final, path(kTum));
+    if (!record.final.stamps_s.empty()) {
+        io::writeTum(record.final, path(kTum));
+        io::writeInterpolator(record.final, record.epoch_s, path(kInterpolator));
+    }
     if (!record.calibration.hasTr || record.rows.empty()) return;
     const auto inCam0 = [&](const io::Trajectory& vehicle) {
         return io::lidarToCam0(ofSensor(vehicle, record.rows), record.calibration.Tr);

@@ -27,6 +27,7 @@ const Words kNames = {"config.ini",
                       "summary.yaml",
                       "trajectory_kitti.txt",
                       "trajectory_kitti_cam0.txt",
+                      "trajectory_mrpt.txt",
                       "trajectory_odometry_kitti.txt",
                       "trajectory_tum.txt"};
 

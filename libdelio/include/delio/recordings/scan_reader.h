@@ -47,6 +47,12 @@ struct LiveReport {
     std::size_t droppedScans = 0;  //!< that were not processed, for lack of time
 };
 
+/** Pose of a sensor, which maps its coordinates to those of a frame. */
+struct SensorMount {
+    std::string frame;  //!< e.g. "base_link"
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+};
+
 /** Reads the scans of one LiDAR of a drive in order, from any format. Memory does not grow with the
  *  length of the drive. */
 class ScanReader {
@@ -75,6 +81,10 @@ class ScanReader {
     virtual const std::string& label() const = 0;
     /** Other LiDARs found so far, which are ignored. */
     virtual const std::set<std::string>& otherLabels() const = 0;
+
+    /** The sensor's pose in the root of the bag's /tf_static. Nothing where Scan::sensorPose is all
+     *  that the source says. */
+    virtual std::optional<SensorMount> mount() { return {}; }
 
     /** Part of the drive read so far, 0 to 1; nothing where that is not known. */
     virtual std::optional<double> fraction() const = 0;
@@ -127,7 +137,8 @@ struct ScanSource {
     std::string path;
     /** The sensor to read: a rawlog's sensorLabel, a bag's topic, the serial number in an .osf; of
      * a folder of .bin files the layout of their points. Empty: that of the first scan of a rawlog;
-     * of a bag its only one; of an .osf its first; the layout that the first file has. */
+     * of a bag its only one; of an .osf its first; the layout that the first file has. Several,
+     * with commas between them, or `all`: their scans are merged in the frame of the first. */
     std::string label;
     /** Where the files lie that a rawlog keeps outside of itself; empty: beside it. */
     std::string imagesFolder;
@@ -135,10 +146,18 @@ struct ScanSource {
      *  the .json beside the recording, what the recording holds, or the model's usual one. */
     std::string sensorFile;
     LiveSettings live = {};  //!< of "udp://..."
+    /** Poses of the sensors in the vehicle, instead of the recording's: lines `LABEL x y z yaw
+     * pitch roll`, metres and degrees. Empty: none. */
+    std::string extrinsicsFile = {};
+    /** Points in this box of the vehicle's frame, metres, are left out. Empty: none are. */
+    Eigen::AlignedBox3d vehicleBox = {};
 };
 
 /** True for "udp://...". */
 bool isLive(const std::string& path);
+
+/** What a program says of a LiDAR that the reader ignores. */
+std::string warningOfOther(const std::string& label);
 
 /** Opens `source` and reads its first three scans, so that all of recording() is known, and meta()
  *  also where the points had to be looked at for it. Throws Error if there is nothing to read, the

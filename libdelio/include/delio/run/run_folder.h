@@ -50,7 +50,9 @@ class RunFolder {
     static constexpr const char* kCam0 = "trajectory_kitti_cam0.txt";
     /** Poses before the pose graph, likewise, where it changed them. */
     static constexpr const char* kOdometryCam0 = "trajectory_odometry_kitti_cam0.txt";
-    static constexpr const char* kTum = "trajectory_tum.txt";            //!< final poses with times
+    static constexpr const char* kTum = "trajectory_tum.txt";  //!< final poses with times
+    /** Final poses with Unix times: text of MRPT's pose interpolator. */
+    static constexpr const char* kInterpolator = "trajectory_mrpt.txt";
     static constexpr const char* kGeoreference = "georeference.yaml";    //!< of a drive with fixes
     static constexpr const char* kGeoTrajectory = "trajectory_geo.csv";  //!< on the earth
     static constexpr const char* kEnuTum = "trajectory_enu_tum.txt";     //!< east, north, up

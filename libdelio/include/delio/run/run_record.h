@@ -94,6 +94,7 @@ struct RunRecord {
     /** Poses after the pose graph; in the frame of the stored map, if the drive was found in one.
      */
     io::Trajectory final;
+    double epoch_s = 0;                         //!< Unix time of second 0 of the stamps
     bool stampsRise = true;                     //!< false: the final trajectory has no times
     graph::PoseGraph graph;                     //!< optimised
     graph::OptimisationResult optimisation;     //!< of the whole graph
