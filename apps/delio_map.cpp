@@ -29,31 +29,18 @@ using Text = TCLAP::ValueArg<std::string>;
 using Number = TCLAP::ValueArg<double>;
 using Words = TCLAP::ValuesConstraint<std::string>;
 
-/** `count` finite numbers with commas between. */
-std::optional<std::vector<double>> numbersIn(std::string text, std::size_t count) {
-    std::vector<double> numbers;
-    text += ',';
-    for (std::size_t from = 0, to; (to = text.find(',', from)) != text.npos; from = to + 1) {
-        const auto number = numberIn<double>(std::string_view(text).substr(from, to - from));
-        if (!number || !std::isfinite(*number)) return {};
-        numbers.push_back(*number);
-    }
-    if (numbers.size() != count) return {};
-    return numbers;
-}
-
 std::optional<Eigen::AlignedBox3d> boxIn(const std::string& text) {
-    const auto n = numbersIn(text, 6);
-    if (!n) return {};
-    const Eigen::AlignedBox3d box(Eigen::Vector3d(n->data()), Eigen::Vector3d(n->data() + 3));
+    const auto n = cli::numbersIn(text, 6);
+    if (n.empty()) return {};
+    const Eigen::AlignedBox3d box(Eigen::Vector3d(n.data()), Eigen::Vector3d(n.data() + 3));
     if (box.isEmpty()) return {};
     return box;
 }
 
 std::optional<map::GeoReference> placeIn(const std::string& text) {
-    const auto n = numbersIn(text, 4);
-    if (!n) return {};
-    const map::GeoReference place{(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
+    const auto n = cli::numbersIn(text, 4);
+    if (n.empty()) return {};
+    const map::GeoReference place{n[0], n[1], n[2], n[3]};
     if (std::abs(place.latitude_deg) > 90 || std::abs(place.longitude_deg) > 180 ||
         std::abs(place.altitude_m) > 1e6 || std::abs(place.heading_deg) > 360)
         return {};

@@ -5,7 +5,7 @@
 
 namespace delio {
 namespace {
-constexpr double kStep_m = 1;       // a scan goes into the map every so many metres
+constexpr double kStep_m = 1;         // a scan goes into the map every so many metres
 constexpr double kTurn_rad = 0.1;     // or so much rotation
 constexpr float kReach_m = 60;        // of the points of a scan
 constexpr float kPath_m = 0.1F;       // between places of the trajectory

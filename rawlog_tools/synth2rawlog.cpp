@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "cli.h"
-#include "delio/core/numbers.h"
 #include "delio/version.h"
 #include "drive.h"
 #include "drive_writer.h"
@@ -222,27 +221,15 @@ bool isMetres(double value) { return value >= 0 && std::isfinite(value); }
 
 bool isRate(double value) { return value >= 0 && value < 1; }
 
-/** `count` finite numbers with commas between; else empty. */
-std::vector<double> numbersIn(std::string text, std::size_t count) {
-    std::vector<double> numbers;
-    std::istringstream in(text + ",");
-    for (std::string word; std::getline(in, word, ',');) {
-        const auto number = numberIn<double>(word);
-        if (!number || !std::isfinite(*number)) return {};
-        numbers.push_back(*number);
-    }
-    return numbers.size() == count ? numbers : std::vector<double>{};
-}
-
 /** The receiver asked for. */
 std::optional<GnssRequest> gnssOf(Arguments& args) {
     if (!args.gnss.isSet()) return std::nullopt;
     GnssRequest gnss;
     gnss.sigma_m = args.gnss.getValue();
     gnss.jumps = args.gnssJumps.getValue();
-    gnss.antenna = Eigen::Vector3d(numbersIn(args.antenna.getValue(), 3).data());
+    gnss.antenna = Eigen::Vector3d(cli::numbersIn(args.antenna.getValue(), 3).data());
     if (args.gnssGap.isSet()) {
-        const auto gap = numbersIn(args.gnssGap.getValue(), 2);
+        const auto gap = cli::numbersIn(args.gnssGap.getValue(), 2);
         gnss.gapFirst_s = gap[0];
         gnss.gapLast_s = gap[1];
     }
@@ -258,8 +245,9 @@ std::string faultInGnss(Arguments& args) {
     if (!isMetres(args.gnss.getValue())) return "--gnss must be at least 0 m";
     if (!isRate(args.gnssJumps.getValue()))
         return "--gnss-jumps must be at least 0 and less than 1";
-    if (numbersIn(args.antenna.getValue(), 3).empty()) return "--antenna needs X,Y,Z in metres";
-    if (args.gnssGap.isSet() && numbersIn(args.gnssGap.getValue(), 2).empty())
+    if (cli::numbersIn(args.antenna.getValue(), 3).empty())
+        return "--antenna needs X,Y,Z in metres";
+    if (args.gnssGap.isSet() && cli::numbersIn(args.gnssGap.getValue(), 2).empty())
         return "--gnss-gap needs FROM,TO in seconds";
     return "";
 }

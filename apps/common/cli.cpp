@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -21,6 +22,7 @@
 
 #include "command_line_output.h"
 #include "delio/core/error.h"
+#include "delio/core/numbers.h"
 #include "delio/core/printable.h"
 
 /** Replaces MRPT's function: containers of MRPT 2.5.8 do not check whether an allocation succeeded.
@@ -144,6 +146,18 @@ std::vector<std::string> lastOfEach(TCLAP::CmdLine& cmd, const std::vector<std::
     std::abort();
 }
 }  // namespace
+
+std::vector<double> numbersIn(std::string text, std::size_t count) {
+    std::vector<double> numbers;
+    text += ',';
+    for (std::size_t from = 0, to; (to = text.find(',', from)) != text.npos; from = to + 1) {
+        const auto number = numberIn<double>(std::string_view(text).substr(from, to - from));
+        if (!number || !std::isfinite(*number)) return {};
+        numbers.push_back(*number);
+    }
+    if (numbers.size() != count) return {};
+    return numbers;
+}
 
 int run(TCLAP::CmdLine& cmd, const HelpText& help, int argc, const char* const* argv,
         TCLAP::SwitchArg& verbose, const std::function<int()>& body) {

@@ -4,6 +4,7 @@
 #include <iosfwd>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "help_text.h"
 
@@ -28,6 +29,9 @@ struct Count {
     operator unsigned() const { return value; }
 };
 std::istream& operator>>(std::istream& in, Count& count);
+
+/** The numbers in a text of `count` finite numbers with commas between; otherwise empty. */
+std::vector<double> numbersIn(std::string text, std::size_t count);
 
 /** Runs a tool: parses the command line into `cmd` (whose arguments the caller has added; `help`
  *  says the rest of --help), then calls `body`, and turns every ending into the contract's exit
