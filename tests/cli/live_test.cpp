@@ -102,11 +102,11 @@ TEST_F(Live, PrintsPosesAsTheyCome) {
     DELIO_NEED_DATA("mrpt/vlp16_packets_1206.bin");
     const auto tum = drive(vlp16(), {"--poses", "tum"});
     ASSERT_EQ(tum.exitCode, 0) << tum.err;
-    // The eighth scan corrects the earlier ones: their lines are out by then.
+    // The ninth scan, as the first turn is not whole, corrects earlier ones: their lines are out.
     const auto printed = test::linesOf(tum.out),
                written = test::linesOf(readText(out_ / "trajectory_tum.txt"));
     ASSERT_EQ(printed.size(), written.size());
-    for (std::size_t i = 7; i < printed.size(); ++i) EXPECT_EQ(printed[i], written[i]);
+    for (std::size_t i = 8; i < printed.size(); ++i) EXPECT_EQ(printed[i], written[i]);
     EXPECT_NE(tum.err.find("peak memory"), std::string::npos) << tum.err;
     const test::UdpEnd listener;
     const auto json = drive(vlp16(), {"--force", "--poses", "json", "--publish",
