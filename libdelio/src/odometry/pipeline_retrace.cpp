@@ -99,7 +99,7 @@ void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
     upright_ = ahead.upright_;
     takeScale(ahead.scale_);
     kernel_ = ahead.kernel_;
-    constexpr std::size_t kSettled = 4;  // scans since the motion is known well
+    constexpr std::size_t kSettled = 5;  // scans since the motion is known well
     unevenness_ = ahead.unevenness_.ofLatest(kSettled);
     usualInlierRatio_ = ahead.usualInlierRatio_;
     const auto& scans = ahead.beginning_;
