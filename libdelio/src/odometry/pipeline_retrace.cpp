@@ -52,7 +52,9 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
     const bool isHopeful = tracked > 0 || !prediction_.hasMotion() || beginning_.size() < kFirst;
     if (beginning_.size() >= kMost || !isHopeful) return beginning_.clear();
     if (tracked + 1 < kFirst + kLater) return;
-    retrace(beginning_.size() - kLater, kFirst);
+    // Scans that need no de-skewing are registered well from the second one on.
+    const bool wasTracked = tracked + 1 >= beginning_.size();
+    if (hasTimes(cloud) || !wasTracked) retrace(beginning_.size() - kLater, kFirst);
     beginning_.clear();
 }
 

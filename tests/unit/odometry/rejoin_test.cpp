@@ -13,7 +13,6 @@ namespace {
 using Eigen::Isometry3d;
 
 constexpr std::size_t kLost = 10, kFound = 13, kScans = 26;
-constexpr std::size_t kRetraced = 8;  // scans, of which the last one corrects the first ones
 
 /** Half a metre a scan. While nothing useful is seen, the vehicle turns by 20 deg. */
 Isometry3d truthAt(std::size_t i) {
@@ -56,8 +55,7 @@ TEST(PlaneOdometry, TakesTheMapAgainThatItLeftWhenItWasLost) {
         poses.push_back(i == 0 ? Isometry3d::Identity() : poses.back() * step.increment.pose);
         for (const auto& [scansAgo, pose] : step.corrected) {
             ASSERT_LE(scansAgo, i);
-            const bool isStart = i + 1 == kRetraced;
-            EXPECT_TRUE(isStart || i - scansAgo >= kLost) << "an earlier scan was corrected";
+            EXPECT_GE(i - scansAgo, kLost) << "an earlier scan was corrected";
             poses[i - scansAgo] = poses[i] * pose;
         }
         wasLost = wasLost || step.lost;
