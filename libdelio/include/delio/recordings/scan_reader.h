@@ -50,7 +50,7 @@ struct LiveReport {
 /** Pose of a sensor, which maps its coordinates to those of a frame. */
 struct SensorMount {
     std::string frame;  //!< e.g. "base_link"
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to that frame
 };
 
 /** Reads the scans of one LiDAR of a drive in order, from any format. Memory does not grow with the
