@@ -49,7 +49,7 @@ struct LiveReport {
 
 /** Pose of a sensor, which maps its coordinates to those of a frame. */
 struct SensorMount {
-    std::string frame;  //!< e.g. "base_link"
+    std::string frame;                                       //!< e.g. "base_link"
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to that frame
 };
 
