@@ -61,6 +61,10 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
 /** Registers the first `count` scans of beginning_ again, the last of them first, as far as they
  *  are found; those before move along. Nothing is corrected where fewer than `least` are found. */
 void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
+    const std::size_t known = past_.size() + 1 - beginning_.size();
+    const bool isInStep =
+        known < past_.size() && past_[known].time_s == beginning_.front().scan.time_s;
+    if (!isInStep) return;  // stamps were the same
     PlaneOdometry back(given_);
     back.turnBack(*this, count);
     std::vector<ScanTrajectory> trajectories(count + 1, beginning_[count].scan.trajectory);
@@ -71,7 +75,6 @@ void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
         trajectories[--first] = *found;
     }
     if (count - first < least) return;
-    const std::size_t known = past_.size() + 1 - beginning_.size();
     const PastScan held = past_[known];
     // The trajectory of a scan is known best between its time and that of the scan after it.
     for (std::size_t i = first, k = first; i < count; ++i) {
