@@ -100,11 +100,7 @@ MapOptions MapOptions::atScale(double scale) const {
     MapOptions scaled = *this;
     if (!voxelSizeIsSet_ && voxelSize_m == standard.voxelSize_m) scaled.voxelSize_m *= scale;
     if (!minRangeIsSet_ && minRange_m == standard.minRange_m) scaled.minRange_m *= scale;
-    // Walls are near what moves in a room.
-    constexpr double kFinest = 0.5;
-    scaled.removal.margin_m *= scale;
-    if (removal.voxelSize_m == standard.removal.voxelSize_m)
-        scaled.removal.voxelSize_m *= std::max(scale, kFinest);
+    scaled.removal.margin_m *= scale;  // walls are near what moves in a room
     return scaled;
 }
 

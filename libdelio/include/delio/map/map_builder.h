@@ -48,9 +48,9 @@ struct MapOptions : StageOptions {
     double maxRange_m = 60.0;
     RemovalOptions removal;  //!< a section of its own
 
-    /** The options with the voxel sizes, the least range and the margin of the removal, which are
-     *  given for streets, times `scale` (the removal's voxels at least half as large). A length
-     * that has another value than by default, or was loaded from a text, stays. */
+    /** The options with the voxel size, the least range and the margin of the removal, which are
+     *  given for streets, times `scale`. A length that has another value than by default, or was
+     *  loaded from a text, stays. */
     MapOptions atScale(double scale) const;
 
     /** As StageOptions has it; notes which lengths the text sets (see atScale()). */
