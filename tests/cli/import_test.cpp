@@ -72,8 +72,8 @@ TEST_F(ImportedMap, ADriveIsLocalisedInTheCloudsCoordinates) {
 }
 
 TEST_F(ImportedMap, RefusesWhatItCannotUse) {
-    expectRefusal({"-o", map_}, 2, "-i or --import");
-    expectRefusal({"--import", cloud_, "-i", cloud_, "-o", map_}, 2, "-i or --import");
+    expectRefusal({"-o", map_}, 2, "-i, --clean or --import");
+    expectRefusal({"--import", cloud_, "-i", cloud_, "-o", map_}, 2, "-i, --clean or --import");
     expectRefusal({"--import", cloud_, "-o", folder_ / "map.ply"}, 2, "-o OUT.delio");
     expectRefusal({"--import", cloud_, "-o", map_, "--frame", "ground"}, 2,
                   "--frame has no effect");
