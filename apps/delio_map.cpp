@@ -8,6 +8,7 @@
 
 #include "clean_folder.h"
 #include "cli.h"
+#include "control_points.h"
 #include "delio/core/error.h"
 #include "delio/core/numbers.h"
 #include "delio/earth/georeference.h"
@@ -109,7 +110,7 @@ struct Arguments {
     Number spacing;
     Text colourBy, colormap;
     Number resolution, height;
-    Text frame, georeference;
+    Text frame, georeference, control;
     TCLAP::SwitchArg force, verbose;
 };
 
@@ -154,6 +155,11 @@ Arguments::Arguments()
                    "and longitude (deg), altitude (m above the WGS84 ellipsoid) and heading (of "
                    "the vehicle's x axis, deg clockwise from north)",
                    false, "", &places, cmd),
+      control("", "control",
+              "Known points: name, x, y, z (m, in the map), latitude, longitude or easting, "
+              "northing, zone, and height. Those with 1 in the column use place the map, the "
+              "others are checked",
+              false, "", "POINTS.csv", cmd),
       force("", "force", "Overwrite existing files", cmd),
       verbose("", "verbose", "Print progress and full error texts", cmd) {}
 
@@ -162,6 +168,7 @@ std::string Arguments::fault() {
         return "give either -i, --clean or --import";
     if (import.isSet()) return importFault();
     if (isGraph()) return clean.isSet() ? "--clean writes no graph" : graphFault();
+    if (georeference.isSet() && control.isSet()) return "give either --georeference or --control";
     if (georeference.isSet() && frame.isSet() && frame.getValue() != "utm")
         return "--georeference gives east-north-up or, with --frame utm, UTM: no other --frame";
     const MapOutput& kind = mapOutputFor(output.getValue());
@@ -177,9 +184,9 @@ std::string Arguments::fault() {
 std::string Arguments::importFault() {
     if (fs::path(output.getValue()).extension() != ".delio")
         return "--import writes a stored map: give -o OUT.delio";
-    const auto none = withoutEffect(
-        {&edits, &crop, &colourBy, &colormap, &resolution, &height, &frame, &georeference},
-        "with --import");
+    const auto none = withoutEffect({&edits, &crop, &colourBy, &colormap, &resolution, &height,
+                                     &frame, &georeference, &control},
+                                    "with --import");
     if (!none.empty()) return none;
     if (spacing.isSet() && !(spacing.getValue() >= 0.05 && spacing.getValue() <= 2))
         return "--spacing of an imported cloud must be 0.05 to 2 m";
@@ -200,9 +207,9 @@ bool Arguments::isGraph() {
 std::string Arguments::graphFault() {
     if (fs::path(output.getValue()).extension() != (edits.isSet() ? ".delio" : ".csv"))
         return "--edits writes a stored map: give -o OUT.delio";
-    return withoutEffect(
-        {&crop, &spacing, &colourBy, &colormap, &resolution, &height, &frame, &georeference},
-        "on the graph of a map");
+    return withoutEffect({&crop, &spacing, &colourBy, &colormap, &resolution, &height, &frame,
+                          &georeference, &control},
+                         "on the graph of a map");
 }
 
 MapOutputOptions Arguments::options() {
@@ -220,6 +227,7 @@ std::string frameFileOf(const std::string& output) { return output + ".frame.yam
 std::vector<std::string> outputsOf(const std::string& output) {
     auto files = filesOf(output);
     files.push_back(frameFileOf(output));
+    files.push_back(controlFileOf(output));
     return files;
 }
 
@@ -233,9 +241,10 @@ void refuseMissingFolder(const std::string& output) {
 void checkFiles(Arguments& asked) {
     const std::string output = asked.output.getValue();
     if (!asked.clean.isSet()) mapFileIn(asked.input.getValue());
-    cli::refuseOverlap(asked.clean.isSet() ? pcdFilesIn(asked.clean.getValue())
-                                           : mapFilesIn(asked.input.getValue()),
-                       outputsOf(output));
+    auto inputs = asked.clean.isSet() ? pcdFilesIn(asked.clean.getValue())
+                                      : mapFilesIn(asked.input.getValue());
+    if (asked.control.isSet()) inputs.push_back(asked.control.getValue());
+    cli::refuseOverlap(inputs, outputsOf(output));
     for (const auto& file : outputsOf(output)) cli::refuseExisting(file, asked.force.getValue());
     refuseMissingFolder(output);
 }
@@ -258,7 +267,7 @@ std::string frameOf(Arguments& asked, bool isGeoreferenced) {
     if (!asked.frame.isSet() && asked.georeference.isSet()) return "enu";
     if ((frame == "enu" || frame == "utm") && !isGeoreferenced)
         throw Error("'" + asked.input.getValue() + "' is not georeferenced: --frame " + frame +
-                    " needs --georeference, or a map of a drive with GNSS fixes");
+                    " needs --georeference, --control, or a map of a drive with GNSS fixes");
     return frame;
 }
 
@@ -291,44 +300,47 @@ void moveToUtm(MapInput& map, const earth::MapToUtm& utm) {
     map.wkt = earth::wktOf(utm.zone());
 }
 
-/** Writes the file that says which frame a map is in. */
-using SaveFrame = std::function<void(const std::string& path)>;
+/** Writes a file beside the map, of which this is the path. */
+using SaveBeside = std::function<void(const std::string& map)>;
 
 /** Brings the map into the frame that was asked for. */
-SaveFrame changeFrame(MapInput& map, Arguments& asked) {
+SaveBeside changeFrame(MapInput& map, Arguments& asked) {
     const auto place = placeIn(asked.georeference.getValue());
     const auto earth = earthOf(map, place);
     const std::string frame = frameOf(asked, earth.has_value());
     if (frame == "ground") {
         const Eigen::Isometry3d level = map::groundFrame(map.points, map.firstPose());
         move(map, level);
-        return [=](const std::string& path) { map::saveFrame(level, {}, path); };
+        return [=](const std::string& out) { map::saveFrame(level, {}, frameFileOf(out)); };
     }
     if (frame == "enu") {
         move(map, earth->enuFromMap);
         map::GeoReference origin = place.value_or(
             map::GeoReference{earth->origin.latitude_deg, earth->origin.longitude_deg,
                               earth->origin.height_m, earth::heading_deg(earth->enuFromMap)});
-        return [=](const std::string& path) { map::saveFrame(earth->enuFromMap, origin, path); };
+        return [=](const std::string& out) {
+            map::saveFrame(earth->enuFromMap, origin, frameFileOf(out));
+        };
     }
     if (frame == "utm") {
         moveToUtm(map, earth::MapToUtm(*earth));
-        return [=](const std::string& path) { map::saveUtmFrame(*earth, path); };
+        return [=](const std::string& out) { map::saveUtmFrame(*earth, frameFileOf(out)); };
     }
     if (map.offset.isZero() || fs::path(asked.output.getValue()).extension() == ".las") return {};
-    return [offset = map.offset](const std::string& path) {
-        map::saveFrame(Eigen::Isometry3d(Eigen::Translation3d(-offset)), {}, path);
+    return [offset = map.offset](const std::string& out) {
+        map::saveFrame(Eigen::Isometry3d(Eigen::Translation3d(-offset)), {}, frameFileOf(out));
     };
 }
 
 /** All of the files or, where one cannot be written, none. */
 void write(const MapInput& map, const std::string& path, const MapOutputOptions& options,
-           const SaveFrame& saveFrame) {
+           std::initializer_list<SaveBeside> besides) {
     io::PartialFolder partial(io::folderOf(path), path);
     const std::string temporary = partial.path() / fs::path(path).filename();
     try {
         mapOutputFor(path).write(map, temporary, options);
-        if (saveFrame) saveFrame(frameFileOf(temporary));
+        for (const auto& save : besides)
+            if (save) save(temporary);
     } catch (const Error& e) {
         throw Error(partial.asInPlace(e.what()));
     }
@@ -354,6 +366,14 @@ void convert(Arguments& asked) {
     if (asked.clean.isSet())
         say("removed " + std::to_string(map.dynamic.size()) + " dynamic points");
 
+    SaveBeside saveErrors;
+    if (asked.control.isSet()) {
+        const auto points = placeByControl(asked.control.getValue(), map.earth);
+        cli::inform(summaryOf(points, *map.earth));
+        saveErrors = [points, place = *map.earth](const std::string& out) {
+            io::writeControlErrors(points, place, controlFileOf(out));
+        };
+    }
     const auto saveFrame = changeFrame(map, asked);
     if (const auto box = boxIn(asked.crop.getValue())) {
         map::crop(map.points, *box);
@@ -362,7 +382,7 @@ void convert(Arguments& asked) {
     if (map.points.empty()) throw Error("no map point lies within --crop");
     map::thinOut(map.points, asked.spacing.getValue());
     map::thinOut(map.dynamic, asked.spacing.getValue());
-    write(map, output, asked.options(), saveFrame);
+    write(map, output, asked.options(), {saveFrame, saveErrors});
     say("wrote " + std::to_string(map.points.size()) + " points as '" + output + "'");
 }
 
@@ -417,7 +437,8 @@ cli::HelpText help() {
          "map for delio-slam --map; the edges of its graph (.csv)"},
         {"OUT.frame.yaml",
          "with another frame than the map's: the transformation from the map's frame, or the "
-         "offset and zone of UTM"}};
+         "offset and zone of UTM"},
+        {"OUT.control.csv", "with --control: the error of each point, metres east, north and up"}};
     help.examples = {{{"delio-map -i 07-results -o 07.pcd --frame ground --spacing 0.5",
                        "Levelled and thinned to 0.5 m"},
                       {"delio-map --import site.las -o site.delio",

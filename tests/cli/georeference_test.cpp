@@ -152,4 +152,94 @@ TEST_F(OnEarth, WithoutFixesNothingChanges) {
     EXPECT_EQ(slam("bad", {"--no-gnss", "--gnss", at("bad.csv")}).exitCode, 2);
     EXPECT_EQ(slam("bad", {"--antenna", "1,2"}).exitCode, 2);
 }
+
+/** A line of control points for a point of the map, `off` metres east of its true place. */
+std::string controlLine(const std::string& name, const Eigen::Vector3d& inMap,
+                        const earth::Georeference& truth, double off, bool isUsed) {
+    const auto place = earth::EnuFrame(truth.origin)
+                           .geodeticOf(truth.enuFromMap * inMap + Eigen::Vector3d(off, 0, 0));
+    std::string line = name;
+    for (const double value :
+         {inMap.x(), inMap.y(), inMap.z(), place.latitude_deg, place.longitude_deg, place.height_m})
+        line += "," + rounded(value, 17);
+    return line + (isUsed ? ",1\n" : ",0\n");
+}
+
+TEST_F(OnEarth, ControlPointsPlaceAndCheckTheMap) {
+    drive();
+    ASSERT_EQ(slam("out").exitCode, 0);
+    earth::Georeference truth;
+    truth.origin = {49.011, 8.4228, 112.8};
+    truth.enuFromMap = Eigen::Translation3d(3, -4, 1.5) *
+                       Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.02, -0.01, 1).normalized());
+    const std::string header = "name,x,y,z,latitude,longitude,height,use\n";
+    const Eigen::Vector3d a(2, 20, -1.7), b(40, -12, 3), c(80, 15, 0.5), d(55, 2, -1);
+    const std::string three = controlLine("a", a, truth, 0, true) +
+                              controlLine("b", b, truth, 0, true) +
+                              controlLine("c", c, truth, 0, true);
+    test::writeText(at("points.csv"), header + three + controlLine("d", d, truth, 0.25, false));
+    const auto map = [&](const std::string& out, const std::string& points) {
+        return test::runTool("delio-map",
+                             {"-i", at("out"), "-o", at(out), "--control", at(points)});
+    };
+    const auto result = map("map.las", "points.csv");
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_NE(result.err.find("3 used, RMS 0.000 m horizontally, 0.000 m in height; 1 checked, RMS "
+                              "0.250 m horizontally, 0.000 m in height"),
+              std::string::npos)
+        << result.err;
+    EXPECT_EQ(test::readText(at("map.las.control.csv")),
+              "name,used,east_error_m,north_error_m,up_error_m\na,1,0.0000,0.0000,0.0000\n"
+              "b,1,0.0000,0.0000,0.0000\nc,1,0.0000,0.0000,0.0000\nd,0,-0.2500,0.0000,0.0000\n");
+    const auto las = map::loadLas(at("map.las"));
+    earth::UtmZone zone;
+    ASSERT_TRUE(earth::zoneIn(las.wkt, zone));
+    const auto plain = test::runTool("delio-map", {"-i", at("out"), "-o", at("plain.las")});
+    ASSERT_EQ(plain.exitCode, 0) << plain.err;
+    const auto inMap = map::loadLas(at("plain.las"));
+    ASSERT_EQ(inMap.points.size(), las.points.size());
+    for (std::size_t i = 0; i < las.points.size(); i += 1000) {
+        const auto there =
+            earth::utmOf(truth.geodeticOf(inMap.points[i].position.cast<double>()), zone);
+        EXPECT_LT((las.points[i].position.cast<double>() + las.offset - there).norm(), 0.01);
+    }
+
+    // UTM is as good; and without the column `use`, all points place a map that has no place.
+    std::string utm = "x;y;z;easting;northing;height;zone\n";
+    for (const auto& p : {a, b, c, d}) {
+        const auto there = earth::utmOf(truth.geodeticOf(p), zone);
+        for (const double value : {p.x(), p.y(), p.z(), there.x(), there.y(), there.z()})
+            utm += rounded(value, 17) + ";";
+        utm += "32N\n";
+    }
+    test::writeText(at("utm.csv"), utm);
+    const auto byUtm = map("utm.las", "utm.csv");
+    EXPECT_NE(byUtm.err.find("4 used, RMS 0.000 m"), std::string::npos) << byUtm.err;
+
+    const auto refused = [&](const std::string& text, const std::string& why) {
+        test::writeText(at("bad.csv"), text);
+        const auto bad = map("bad.las", "bad.csv");
+        EXPECT_EQ(bad.exitCode, 1);
+        EXPECT_NE(bad.err.find(why), std::string::npos) << bad.err;
+        EXPECT_FALSE(fs::exists(at("bad.las")));
+    };
+    refused("name,x,y\n", "line 1");
+    refused(header, "no control points");
+    refused(header + "a,1,2,3,95,8,100,1\n", "line 2: the place is not on the earth");
+    refused(header + "a,1,2,nan,49,8,100,1\n", "line 2: z is missing or not a number");
+    refused(header + "a,1,2,3,49,8,100,yes\n", "line 2: use must be 0 or 1");
+    refused(header + controlLine("a", a, truth, 0, true) + controlLine("b", b, truth, 0, true),
+            "at least three");
+    refused(header + controlLine("a", a, truth, 0, true) + controlLine("b", b, truth, 0, true) +
+                controlLine("c", 2 * b - a, truth, 0, true),
+            "on one line");
+    refused(header + controlLine("a", a, truth, 0, true) + controlLine("b", b, truth, 80, true) +
+                controlLine("c", c, truth, 0, true),
+            "does not fit");
+    refused(header + controlLine("a", a, truth, 0, false), "not georeferenced");
+    EXPECT_EQ(test::runTool("delio-map", {"-i", at("out"), "-o", at("bad.las"), "--control",
+                                          at("points.csv"), "--georeference", "1,2,3,4"})
+                  .exitCode,
+              2);
+}
 }  // namespace

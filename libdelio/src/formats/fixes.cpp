@@ -1,7 +1,5 @@
 #include "delio/formats/fixes.h"
 
-#include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -18,22 +16,6 @@ namespace fs = std::filesystem;
 namespace {
 constexpr double kDay_s = 86400;
 constexpr double kFirstUnix_s = 5e8, kLastUnix_s = 5e9;
-
-std::vector<std::string> cellsOf(std::string_view line) {
-    std::vector<std::string> cells{""};
-    for (const char c : line)
-        if (c == ',' || c == ';')
-            cells.emplace_back();
-        else if (c != '"' && c != ' ' && c != '\t' && c != '\r')
-            cells.back() += c;
-    return cells;
-}
-
-std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
 
 /** Columns of a csv by their names; -1: missing. */
 struct CsvColumns {
@@ -112,7 +94,7 @@ earth::Fixes fixesOfCsv(const fs::path& file, std::string_view rest) {
     std::size_t row = 0;
     while (const auto line = nextLine(rest, &row)) {
         if (line->front() == '#') continue;
-        const auto cells = cellsOf(*line);
+        const auto cells = cellsIn(*line);
         const std::string where = "'" + file.string() + "', line " + std::to_string(row);
         if (columns) {
             fixes.push_back(fixOfCells(*columns, cells, where));
@@ -139,7 +121,7 @@ std::vector<std::string> sentenceIn(std::string_view line) {
         if (parsed.ec != std::errc{} || said != sum) return {};
         line = line.substr(0, star);
     }
-    return cellsOf(line);
+    return cellsIn(line);
 }
 
 /** "ddmm.mmm" in degrees. */

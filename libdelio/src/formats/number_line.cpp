@@ -1,5 +1,7 @@
 #include "number_line.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdio>
 #include <cstring>
@@ -78,6 +80,22 @@ std::vector<std::string_view> wordsIn(std::string_view line) {
         at = pastGap(at, end);
     }
     return words;
+}
+
+std::vector<std::string> cellsIn(std::string_view line) {
+    std::vector<std::string> cells{""};
+    for (const char c : line)
+        if (isSeparator(c))
+            cells.emplace_back();
+        else if (c != '"' && !isBlank(c))
+            cells.back() += c;
+    return cells;
+}
+
+std::string lowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
 }
 
 std::optional<double> unixTimeOfDate(const std::string& text) {

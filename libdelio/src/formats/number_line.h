@@ -20,6 +20,12 @@ std::size_t numbersIn(std::string_view line, std::vector<double>& values);
 /** The words of such a line. */
 std::vector<std::string_view> wordsIn(std::string_view line);
 
+/** The cells of a line of a CSV, between commas or semicolons, without quotes and blanks. */
+std::vector<std::string> cellsIn(std::string_view line);
+
+/** The cell in lower case, as the name of a column. */
+std::string lowerCase(std::string text);
+
 /** Unix seconds of "2011-09-26 13:02:25.951199337", as KITTI raw writes dates (UTC is assumed: it
  *  gives no zone); nothing where `text` does not begin with a date and time. */
 std::optional<double> unixTimeOfDate(const std::string& text);

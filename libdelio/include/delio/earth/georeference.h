@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "delio/core/increment.h"
 #include "delio/earth/coordinates.h"
@@ -23,6 +24,22 @@ struct Georeference {
         return EnuFrame(origin).geodeticOf(enuFromMap * inMap);
     }
 };
+
+/** A known point on the ground (ground control point), and where the map has it. */
+struct ControlPoint {
+    std::string name;
+    Eigen::Vector3d inMap = Eigen::Vector3d::Zero();  //!< metres
+    Geodetic place;
+    bool isUsed = false;  //!< it places the map; false: it is checked only
+};
+
+/** Places a map by its used points: rigid least squares. Throws Error where fewer than three are
+ *  used, where they lie on one line, or where they contradict each other by more than a quarter of
+ *  their extent. The covariance is that of the residuals; with three points it is a rough one. */
+Georeference georeferenceOf(const std::vector<ControlPoint>& points);
+
+/** From where the point is to where the map has it: east, north, up, metres. */
+Eigen::Vector3d errorOf(const ControlPoint& point, const Georeference& place);
 
 /** How a map was georeferenced by GNSS fixes. */
 struct GnssFigures {

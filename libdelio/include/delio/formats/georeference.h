@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "delio/earth/georeference.h"
 #include "delio/formats/trajectory.h"
@@ -13,6 +14,18 @@ void writeGeoreference(const earth::Georeference& place, const earth::GnssFigure
 /** Origin, transformation and covariance of such a file. Throws Error for one that is missing or
  *  malformed. */
 earth::Georeference readGeoreference(const std::string& path);
+
+/** Reads control points from a CSV with a header line: `x`, `y`, `z` (metres, the map's frame);
+ *  `latitude`, `longitude` (deg) or `easting`, `northing` (m) and `zone` ("32N", UTM); `height` (m
+ *  above the ellipsoid); and, as far as you wish, `name` and `use` (1: the point places the map, 0:
+ *  it is checked). `areUsed`: where there is no column `use`. Throws Error, which names file and
+ *  line, for a malformed one. */
+std::vector<earth::ControlPoint> readControlPoints(const std::string& path, bool areUsed);
+
+/** Writes a row per point: its name, whether it was used, and its error (east, north, up, metres).
+ *  Throws Error if that fails. */
+void writeControlErrors(const std::vector<earth::ControlPoint>& points,
+                        const earth::Georeference& place, const std::string& path);
 
 /** Writes a row per pose: stamp_s (where there are stamps), latitude, longitude (deg), height (m
  *  above the ellipsoid), east, north, up (m), UTM easting, northing (m), and heading of the
