@@ -103,7 +103,8 @@ void writeControlErrors(const std::vector<earth::ControlPoint>& points,
     replaceTextFile(path, [&](std::ostream& out) {
         out << "name,used,east_error_m,north_error_m,up_error_m\n";
         for (const auto& point : points) {
-            const Eigen::Vector3d error = errorOf(point, place);
+            // Tenths of a millimetre, and no "-0".
+            const Eigen::Vector3d error = (errorOf(point, place) * 1e4).array().round() / 1e4 + 0.0;
             out << point.name << ',' << point.isUsed << ',' << fixed(error.x(), 4) << ','
                 << fixed(error.y(), 4) << ',' << fixed(error.z(), 4) << '\n';
         }
