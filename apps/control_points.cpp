@@ -10,7 +10,7 @@ namespace delio {
 namespace {
 bool isUsed(const earth::ControlPoint& point) { return point.isUsed; }
 
-/** "4 used, RMS 0.012 m horizontally, 0.020 m in height"; empty: there are none of them. */
+/** "4 used, RMS 0.012 m horizontally, 0.020 m in height"; empty without such points. */
 std::string errorsOf(const std::vector<earth::ControlPoint>& points,
                      const earth::Georeference& place, bool used) {
     double squared = 0, squaredUp = 0;

@@ -106,11 +106,23 @@ struct Arguments {
                "",
                "FOLDER",
                cmd};
-    Text import, edits, output, crop;
+    Text import, edits, output;
+    Text crop{"",    "crop", "Keep the points in this box (metres, in the output frame)",
+              false, "",     &boxes,
+              cmd};
     Number spacing;
     Text colourBy, colormap;
     Number resolution, height;
-    Text frame, georeference, control;
+    Text frame, georeference;
+    Text control{"",
+                 "control",
+                 "Known points: name, x, y, z (m, in the map), latitude, longitude or easting, "
+                 "northing, zone, and height. Those with 1 in the column use place the map, the "
+                 "others are checked",
+                 false,
+                 "",
+                 "POINTS.csv",
+                 cmd};
     TCLAP::SwitchArg force, verbose;
 };
 
@@ -131,8 +143,6 @@ Arguments::Arguments()
              "File to write; a .yaml for ROS's map_server comes with a .pgm image; a .delio with "
              "--import and --edits; a .csv lists the edges of a stored map",
              true, "", "OUT.ply|.pcd|.las|.3Dscene|.html|.gridmap|.yaml", cmd),
-      crop("", "crop", "Keep the points in this box (metres, in the output frame)", false, "",
-           &boxes, cmd),
       spacing(
           "", "spacing",
           "Minimum distance between points, metres; 0: keep all; of an imported cloud 0.05 to 2, "
@@ -155,11 +165,6 @@ Arguments::Arguments()
                    "and longitude (deg), altitude (m above the WGS84 ellipsoid) and heading (of "
                    "the vehicle's x axis, deg clockwise from north)",
                    false, "", &places, cmd),
-      control("", "control",
-              "Known points: name, x, y, z (m, in the map), latitude, longitude or easting, "
-              "northing, zone, and height. Those with 1 in the column use place the map, the "
-              "others are checked",
-              false, "", "POINTS.csv", cmd),
       force("", "force", "Overwrite existing files", cmd),
       verbose("", "verbose", "Print progress and full error texts", cmd) {}
 

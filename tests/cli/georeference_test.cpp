@@ -165,23 +165,34 @@ std::string controlLine(const std::string& name, const Eigen::Vector3d& inMap,
     return line + (isUsed ? ",1\n" : ",0\n");
 }
 
-TEST_F(OnEarth, ControlPointsPlaceAndCheckTheMap) {
-    drive();
-    ASSERT_EQ(slam("out").exitCode, 0);
+/** A map, and control points of it. */
+class Control : public OnEarth {
+ protected:
+    void SetUp() override {
+        drive();
+        ASSERT_EQ(slam("out").exitCode, 0);
+        truth.origin = {49.011, 8.4228, 112.8};
+        truth.enuFromMap = Eigen::Translation3d(3, -4, 1.5) *
+                           Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.02, -0.01, 1).normalized());
+    }
+
+    test::CommandResult map(const std::string& out, const std::string& points,
+                            const Words& more = {}) const {
+        Words words{"-i", at("out"), "-o", at(out), "--control", at(points)};
+        words.insert(words.end(), more.begin(), more.end());
+        return test::runTool("delio-map", words);
+    }
+
     earth::Georeference truth;
-    truth.origin = {49.011, 8.4228, 112.8};
-    truth.enuFromMap = Eigen::Translation3d(3, -4, 1.5) *
-                       Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.02, -0.01, 1).normalized());
     const std::string header = "name,x,y,z,latitude,longitude,height,use\n";
-    const Eigen::Vector3d a(2, 20, -1.7), b(40, -12, 3), c(80, 15, 0.5), d(55, 2, -1);
+    const Eigen::Vector3d a{2, 20, -1.7}, b{40, -12, 3}, c{80, 15, 0.5}, d{55, 2, -1};
+};
+
+TEST_F(Control, PlacesAndChecksTheMap) {
     const std::string three = controlLine("a", a, truth, 0, true) +
                               controlLine("b", b, truth, 0, true) +
                               controlLine("c", c, truth, 0, true);
     test::writeText(at("points.csv"), header + three + controlLine("d", d, truth, 0.25, false));
-    const auto map = [&](const std::string& out, const std::string& points) {
-        return test::runTool("delio-map",
-                             {"-i", at("out"), "-o", at(out), "--control", at(points)});
-    };
     const auto result = map("map.las", "points.csv");
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_NE(result.err.find("3 used, RMS 0.000 m horizontally, 0.000 m in height; 1 checked, RMS "
@@ -203,8 +214,10 @@ TEST_F(OnEarth, ControlPointsPlaceAndCheckTheMap) {
             earth::utmOf(truth.geodeticOf(inMap.points[i].position.cast<double>()), zone);
         EXPECT_LT((las.points[i].position.cast<double>() + las.offset - there).norm(), 0.01);
     }
+}
 
-    // UTM is as good; and without the column `use`, all points place a map that has no place.
+TEST_F(Control, InUtmAndAllUsed) {
+    const earth::UtmZone zone{32, true};
     std::string utm = "x;y;z;easting;northing;height;zone\n";
     for (const auto& p : {a, b, c, d}) {
         const auto there = earth::utmOf(truth.geodeticOf(p), zone);
@@ -215,7 +228,9 @@ TEST_F(OnEarth, ControlPointsPlaceAndCheckTheMap) {
     test::writeText(at("utm.csv"), utm);
     const auto byUtm = map("utm.las", "utm.csv");
     EXPECT_NE(byUtm.err.find("4 used, RMS 0.000 m"), std::string::npos) << byUtm.err;
+}
 
+TEST_F(Control, RefusesBadPoints) {
     const auto refused = [&](const std::string& text, const std::string& why) {
         test::writeText(at("bad.csv"), text);
         const auto bad = map("bad.las", "bad.csv");
@@ -237,9 +252,6 @@ TEST_F(OnEarth, ControlPointsPlaceAndCheckTheMap) {
                 controlLine("c", c, truth, 0, true),
             "does not fit");
     refused(header + controlLine("a", a, truth, 0, false), "not georeferenced");
-    EXPECT_EQ(test::runTool("delio-map", {"-i", at("out"), "-o", at("bad.las"), "--control",
-                                          at("points.csv"), "--georeference", "1,2,3,4"})
-                  .exitCode,
-              2);
+    EXPECT_EQ(map("bad.las", "bad.csv", {"--georeference", "1,2,3,4"}).exitCode, 2);
 }
 }  // namespace

@@ -27,9 +27,9 @@ struct Georeference {
 
 /** A known point on the ground (ground control point), and where the map has it. */
 struct ControlPoint {
-    std::string name;
+    std::string name;                                 //!< as the user writes it
     Eigen::Vector3d inMap = Eigen::Vector3d::Zero();  //!< metres
-    Geodetic place;
+    Geodetic place;                                   //!< true place
     bool isUsed = false;  //!< it places the map; false: it is checked only
 };
 
