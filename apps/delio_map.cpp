@@ -189,9 +189,9 @@ std::string Arguments::fault() {
 std::string Arguments::importFault() {
     if (fs::path(output.getValue()).extension() != ".delio")
         return "--import writes a stored map: give -o OUT.delio";
-    const auto none = withoutEffect({&edits, &crop, &colourBy, &colormap, &resolution, &height,
-                                     &frame, &georeference, &control},
-                                    "with --import");
+    auto none = withoutEffect({&edits, &crop, &colourBy, &colormap, &resolution, &height, &frame,
+                               &georeference, &control},
+                              "with --import");
     if (!none.empty()) return none;
     if (spacing.isSet() && !(spacing.getValue() >= 0.05 && spacing.getValue() <= 2))
         return "--spacing of an imported cloud must be 0.05 to 2 m";

@@ -1,6 +1,7 @@
 #include "delio/odometry/aligner.h"
 
 #include <mrpt/maps/CPointsMap.h>
+#include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
@@ -17,6 +18,8 @@
 #include "delio/graph/pose_pdf.h"
 #include "delio/odometry/odometry.h"
 #include "odometry/initial_guess.h"
+#include "odometry/paper_odometry.h"
+#include "odometry/spin_axis.h"
 #include "paper/normals.h"
 
 namespace delio {
@@ -224,6 +227,58 @@ mrpt::poses::CPose3DPDF::Ptr Aligner::Align3DPDF(
 }
 
 mrpt::poses::CPosePDF::Ptr Aligner::AlignPDF(
+    const CMetricMap* m1, const CMetricMap* m2, const CPosePDFGaussian& initialEstimationPDF,
+    mrpt::optional_ref<mrpt::slam::TMetricMapAlignmentResult> outInfo) {
+    const auto in3D = Align3DPDF(m1, m2, CPose3DPDFGaussian(initialEstimationPDF), outInfo);
+    return std::make_shared<CPosePDFGaussian>(*in3D);
+}
+
+namespace {
+/** Features of a scan, which is one of a pair. */
+std::shared_ptr<const odometry::PaperFeatures> featuresOf(
+    const CMetricMap* map, const std::string& which, unsigned number,
+    const std::shared_ptr<const PaperOdometryOptions>& options) {
+    const Eigen::Matrix3Xf points = pointsOf(map, which);
+    auto cloud = mrpt::maps::CSimplePointsMap::Create();
+    cloud->reserve(static_cast<std::size_t>(points.cols()));
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        cloud->insertPointFast(points(0, i), points(1, i), points(2, i));
+    Scan scan;
+    scan.points = cloud;
+    auto usable = odometry::preprocess(scan, options->scan);
+    const auto upright = odometry::uprightOf(usable.points).value_or(Eigen::Matrix3f::Identity());
+    usable.rings = odometry::neighbouringRings(usable, upright);
+    Step step;
+    return odometry::featuresOf(usable, upright, number, options, step);
+}
+}  // namespace
+
+mrpt::poses::CPose3DPDF::Ptr PaperAligner::Align3DPDF(
+    const CMetricMap* m1, const CMetricMap* m2, const CPose3DPDFGaussian& initialEstimationPDF,
+    mrpt::optional_ref<mrpt::slam::TMetricMapAlignmentResult> outInfo) {
+    Stopwatch watch;
+    const Eigen::Isometry3d guess = fromMrpt(initialEstimationPDF.mean);
+    if (!guess.matrix().allFinite()) throw Error("Aligner: the initial estimate is not finite");
+    const auto shared = std::make_shared<const PaperOdometryOptions>(options);
+    const auto from = featuresOf(m1, "first", 0, shared), to = featuresOf(m2, "second", 1, shared);
+    const auto found = odometry::registerFeatures(*from, *to, guess, 0, options);
+    if (!found.predictedReason.empty())
+        throw Error("Aligner: the second map is not registered to the first: " +
+                    found.predictedReason);
+    if (outInfo) {
+        auto& out = outInfo.value().get();
+        out.executionTime = watch.lap_ms() / 1e3;
+        if (auto* icp = dynamic_cast<mrpt::slam::CICP::TReturnInfo*>(&out)) {
+            icp->nIterations = found.rotation.iterations + found.translation.iterations;
+            icp->goodness = found.translation.overlap;
+            icp->quality = std::min(found.rotation.observability.minCoeff(),
+                                    found.translation.observability.minCoeff());
+        }
+    }
+    return std::make_shared<CPose3DPDFGaussian>(graph::posePdfOf(found.increment));
+}
+
+mrpt::poses::CPosePDF::Ptr PaperAligner::AlignPDF(
     const CMetricMap* m1, const CMetricMap* m2, const CPosePDFGaussian& initialEstimationPDF,
     mrpt::optional_ref<mrpt::slam::TMetricMapAlignmentResult> outInfo) {
     const auto in3D = Align3DPDF(m1, m2, CPose3DPDFGaussian(initialEstimationPDF), outInfo);

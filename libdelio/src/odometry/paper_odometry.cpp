@@ -84,6 +84,44 @@ PaperRegistration registerFeatures(const PaperFeatures& from, const PaperFeature
     return found;
 }
 
+std::shared_ptr<const PaperFeatures> featuresOf(
+    const PointCloud& cloud, const Eigen::Matrix3f& upright, unsigned number,
+    const std::shared_ptr<const PaperOdometryOptions>& options, Step& step) {
+    auto features = std::make_shared<PaperFeatures>();
+    features->options = options;
+    const auto raw = stage("normals", step,
+                           [&] { return paper::estimateNormals(cloud.points, options->normals); });
+    const auto normals =
+        stage("bilateral", step, [&] { return paper::filterBilaterally(raw, options->bilateral); });
+    features->pattern =
+        stage("outliers", step, [&] { return paper::removeOutliers(normals, options->outliers); });
+    std::size_t modes = 0;  // 0 where they are not needed
+    features->pattern = stage("mean_shift", step, [&] {
+        if (!paper::needsModes(features->pattern, options->meanShift)) return features->pattern;
+        const auto found = paper::seekModes(normals.directions, options->meanShift);
+        modes = found.size();
+        return paper::patternOfModes(normals, found, options->meanShift, options->outliers);
+    });
+    paper::weighGround(features->pattern, upright.transpose().col(2), options->pattern);
+    // Another draw for every scan: of two scans made from nearly one place, the same draw gives
+    // nearly the same lines, each of which then pairs with itself and holds the vehicle at rest.
+    auto lineOptions = options->lines;
+    lineOptions.seed += number;
+    features->lines = stage("lines", step, [&] {
+        const auto drawn = paper::drawLines(upright * cloud.points, cloud.rings, lineOptions);
+        return paper::rotated(drawn, upright.transpose().cast<double>());
+    });
+    if (options->check.enabled)
+        features->check = stage("check_points", step, [&] {
+            return checkPointsOf(cloud.points, upright, options->check, options->pointMap);
+        });
+    step.details = {{"normals", static_cast<double>(normals.directions.cols())},
+                    {"pattern", static_cast<double>(features->pattern.directions.cols())},
+                    {"modes", static_cast<double>(modes)},
+                    {"lines", static_cast<double>(features->lines.midpoints.cols())}};
+    return features;
+}
+
 PaperOdometry::PaperOdometry(const PaperOdometryOptions& options)
     : options_(std::make_shared<PaperOdometryOptions>(options)),
       arrivals_(needsTimes(options.scan)),
@@ -92,44 +130,6 @@ PaperOdometry::PaperOdometry(const PaperOdometryOptions& options)
 /** The paper's rings and sectors are about z. */
 Eigen::Matrix3f PaperOdometry::upright() const {
     return upright_.value_or(Eigen::Matrix3f::Identity());
-}
-
-/** Section III and IV-A: the pattern of the normals, and the lines. */
-std::shared_ptr<const PaperFeatures> PaperOdometry::extract(const PointCloud& cloud,
-                                                            Step& step) const {
-    auto features = std::make_shared<PaperFeatures>();
-    features->options = options_;
-    const auto raw = stage("normals", step,
-                           [&] { return paper::estimateNormals(cloud.points, options_->normals); });
-    const auto normals = stage("bilateral", step,
-                               [&] { return paper::filterBilaterally(raw, options_->bilateral); });
-    features->pattern =
-        stage("outliers", step, [&] { return paper::removeOutliers(normals, options_->outliers); });
-    std::size_t modes = 0;  // 0 where they are not needed
-    features->pattern = stage("mean_shift", step, [&] {
-        if (!paper::needsModes(features->pattern, options_->meanShift)) return features->pattern;
-        const auto found = paper::seekModes(normals.directions, options_->meanShift);
-        modes = found.size();
-        return paper::patternOfModes(normals, found, options_->meanShift, options_->outliers);
-    });
-    paper::weighGround(features->pattern, upright().transpose().col(2), options_->pattern);
-    // Another draw for every scan: of two scans made from nearly one place, the same draw gives
-    // nearly the same lines, each of which then pairs with itself and holds the vehicle at rest.
-    auto lineOptions = options_->lines;
-    lineOptions.seed += scans_;
-    features->lines = stage("lines", step, [&] {
-        const auto drawn = paper::drawLines(upright() * cloud.points, cloud.rings, lineOptions);
-        return paper::rotated(drawn, upright().transpose().cast<double>());
-    });
-    if (options_->check.enabled)
-        features->check = stage("check_points", step, [&] {
-            return checkPointsOf(cloud.points, upright(), options_->check, options_->pointMap);
-        });
-    step.details = {{"normals", static_cast<double>(normals.directions.cols())},
-                    {"pattern", static_cast<double>(features->pattern.directions.cols())},
-                    {"modes", static_cast<double>(modes)},
-                    {"lines", static_cast<double>(features->lines.midpoints.cols())}};
-    return features;
 }
 
 /** The increment since the last scan, of a registration against the last usable one. */
@@ -171,7 +171,8 @@ Step PaperOdometry::process(const Scan& scan) {
         return made;
     });
     const std::string skipped = reference_ ? reasonToSkip(arrival, prediction_) : "";
-    const auto features = extract(skipped.empty() ? cloud : PointCloud{}, step);
+    const auto features =
+        featuresOf(skipped.empty() ? cloud : PointCloud{}, upright(), scans_, options_, step);
     ++scans_;
     const bool usable =
         features->pattern.directions.cols() > 0 && features->lines.midpoints.cols() > 0;

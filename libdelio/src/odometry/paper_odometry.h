@@ -40,6 +40,13 @@ struct PaperFeatures : public ScanFeatures {
                                const Eigen::Isometry3d& guess) const override;
 };
 
+/** Sections III and IV-A: the pattern of the normals, and the lines. `upright` turns the cloud's
+ *  frame such that the sensor spins about z; `number` of the scan: each draws other lines. Times
+ * and figures go into `step`. */
+std::shared_ptr<const PaperFeatures> featuresOf(
+    const PointCloud& cloud, const Eigen::Matrix3f& upright, unsigned number,
+    const std::shared_ptr<const PaperOdometryOptions>& options, Step& step);
+
 /** Rotation from the patterns of the normals (III-D), once; then translation from the line clouds
  * of the unrotated scan (IV-B). `guess` maps frame `to` to frame `from`. With `search_m` > 0,
  *  translations up to so many metres off the guess are tried. */
@@ -64,7 +71,6 @@ class PaperOdometry : public Odometry {
 
  private:
     Eigen::Matrix3f upright() const;
-    std::shared_ptr<const PaperFeatures> extract(const PointCloud& cloud, Step& step) const;
     void takeIncrement(const PaperRegistration& registration, double duration_s, Step& step);
 
     std::shared_ptr<const PaperOdometryOptions> options_;

@@ -16,6 +16,7 @@
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
+#include "delio/slam/options.h"
 #include "poses.h"
 #include "ring_scan.h"
 
@@ -121,6 +122,48 @@ TEST(Aligner, IsNearerToTheTruthThanCICPInTheSameProgram) {
         EXPECT_GT(info.goodness, 0.8);
         EXPECT_GT(info.executionTime, 0);
     }
+}
+
+/** The paper's registration. */
+PaperAligner paperAligner() { return PaperAligner(Options::ofProfile("paper").paper); }
+
+TEST(PaperAligner, IsNearerToTheTruthThanCICPInTheSameProgram) {
+    const Pair pair;
+    mrpt::slam::CICP icp;
+    icp.options.thresholdDist = 1;
+    icp.options.thresholdAng = 3 * kDeg;
+    icp.options.maxIterations = 200;
+    PaperAligner aligner = paperAligner();
+    for (const auto& off : {poseAt(0, 0, 0), poseAt(0.3, -0.2, 0, 2 * kDeg)}) {
+        mrpt::slam::CICP::TReturnInfo icpInfo, info;
+        const Isometry3d byIcp = aligned(icp, pair, kMotion * off, icpInfo);
+        const Isometry3d byPaper = aligned(aligner, pair, kMotion * off, info);
+        EXPECT_LT(metresBetween(byPaper, kMotion), metresBetween(byIcp, kMotion));
+        EXPECT_LT(degreesBetween(byPaper, kMotion), degreesBetween(byIcp, kMotion) / 2);
+        EXPECT_GT(info.goodness, 0.5);
+        EXPECT_LE(info.goodness, 1);
+        EXPECT_GT(info.nIterations, 2U);
+        EXPECT_GT(info.executionTime, 0);
+    }
+}
+
+TEST(PaperAligner, RefusesWhatItCannotAlign) {
+    const Pair pair;
+    PaperAligner aligner = paperAligner();
+    mrpt::maps::CSimplePointsMap three;
+    for (int i = 0; i < 3; ++i) three.insertPoint(10.0F, static_cast<float>(i), 0);
+    const auto why = [&](const mrpt::maps::CMetricMap* first,
+                         const mrpt::maps::CMetricMap* second) {
+        try {
+            aligner.Align3D(first, second, CPose3D());
+        } catch (const Error& e) {
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(why(nullptr, pair.second.get()).find("no first map"), std::string::npos);
+    EXPECT_NE(why(pair.first.get(), &three).find("too few"), std::string::npos)
+        << why(pair.first.get(), &three);
 }
 
 TEST(Aligner, GivesThePoseInThePlaneFor2D) {

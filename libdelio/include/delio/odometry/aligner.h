@@ -104,4 +104,36 @@ class Aligner : public mrpt::slam::CMetricMapsAlignmentAlgorithm {
         const mrpt::poses::CPosePDFGaussian& initialEstimationPDF,
         mrpt::optional_ref<mrpt::slam::TMetricMapAlignmentResult> outInfo = std::nullopt) override;
 };
+
+/** The paper's registration of two scans wherever an MRPT program uses mrpt::slam::CICP: the
+ * rotation from the pattern of the normals, then the translation from the lines between the rings
+ * of the unrotated second scan.
+ *
+ *  Maps, estimate and result are those of Aligner. Each map has to be one scan of a spinning sensor
+ *  in the sensor's frame; its rings are found from the points. An axis that neither pattern nor
+ * lines constrain keeps the estimate. Of the TReturnInfo of CICP, `goodness` is the overlap of the
+ * lines, 0 to 1, and `quality` the smallest observability. The same bytes for any number of
+ * threads.
+ *
+ *  Throws delio::Error, one line, where a map is missing, is no CPointsMap or has no finite point,
+ *  where the estimate is not finite, and where rotation or translation are not found. */
+class PaperAligner : public mrpt::slam::CMetricMapsAlignmentAlgorithm {
+ public:
+    PaperOdometryOptions options;  //!< may be changed between two calls
+
+    /** With options that are copied: those of a profile are Options::ofProfile("paper").paper. */
+    explicit PaperAligner(const PaperOdometryOptions& o) : options(o) {}
+
+    /** A CPose3DPDFGaussian, as Aligner's. */
+    mrpt::poses::CPose3DPDF::Ptr Align3DPDF(
+        const mrpt::maps::CMetricMap* m1, const mrpt::maps::CMetricMap* m2,
+        const mrpt::poses::CPose3DPDFGaussian& initialEstimationPDF,
+        mrpt::optional_ref<mrpt::slam::TMetricMapAlignmentResult> outInfo = std::nullopt) override;
+
+    /** A CPosePDFGaussian: x, y and yaw of what Align3DPDF() finds. */
+    mrpt::poses::CPosePDF::Ptr AlignPDF(
+        const mrpt::maps::CMetricMap* m1, const mrpt::maps::CMetricMap* m2,
+        const mrpt::poses::CPosePDFGaussian& initialEstimationPDF,
+        mrpt::optional_ref<mrpt::slam::TMetricMapAlignmentResult> outInfo = std::nullopt) override;
+};
 }  // namespace delio
