@@ -172,8 +172,7 @@ Step PaperOdometry::process(const Scan& scan) {
     });
     const std::string skipped = reference_ ? reasonToSkip(arrival, prediction_) : "";
     const auto features =
-        featuresOf(skipped.empty() ? cloud : PointCloud{}, upright(), scans_, options_, step);
-    ++scans_;
+        featuresOf(skipped.empty() ? cloud : PointCloud{}, upright(), scans_++, options_, step);
     const bool usable =
         features->pattern.directions.cols() > 0 && features->lines.midpoints.cols() > 0;
     PaperRegistration registration;
