@@ -5,6 +5,7 @@
 namespace delio {
 struct LiveView::Window {};
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): as in live_view.cpp
 LiveView::LiveView(std::shared_ptr<const LiveMap>) {
     throw Error(
         "this delio-slam was built without the live view; install libmrpt-gui-dev and rebuild, or "
