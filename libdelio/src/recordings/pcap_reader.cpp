@@ -171,7 +171,7 @@ void PcapReader::askOuster(std::uint32_t address) {
     if (source_.live.record.empty()) return;
     const std::string beside = fs::path(source_.live.record).replace_extension(".json");
     try {
-        replaceTextFile(beside, [&](std::ostream& out) { out << json; });
+        replaceTextFile(beside, [&text = json](std::ostream& out) { out << text; });
     } catch (const Error& e) {
         if (source_.live.onWarning)
             source_.live.onWarning(std::string(e.what()) + "; it is needed to read the recording");
