@@ -229,15 +229,13 @@ void PreparedScene::addScaleBar(const ScaleBar& bar, LegendLayer& layer) const {
 
 void PreparedScene::addArrow(const NorthArrow& arrow, LegendLayer& layer) const {
     const TFontParams font = this->font();
-    const auto place = [&](const Eigen::Vector2d& px) {  // from the lower left corner
-        return Eigen::Vector2d(px.x(), options_.height_px - px.y()) * double{enlarged_};
-    };
-    const double size = arrow.size_px * double{enlarged_};
-    const Eigen::Vector2d corner = place(arrow.middle_px) - Eigen::Vector2d(size, size) / 2;
-    layer.addPlate(corner.x(), corner.y(), size, size);
-    const Eigen::Vector2d letter = place(arrow.letter_px);
-    layer.addText(letter.x() - LegendLayer::widthOf(arrow.letter, font) / 2,
-                  letter.y() - 0.35 * double{font.vfont_scale}, arrow.letter, font);
+    // Pixels of the rendered picture, from its lower left corner.
+    const auto right = [&](double x_px) { return x_px * double{enlarged_}; };
+    const auto up = [&](double y_px) { return (options_.height_px - y_px) * double{enlarged_}; };
+    const double half = arrow.size_px / 2, size = arrow.size_px * double{enlarged_};
+    layer.addPlate(right(arrow.middle_px.x() - half), up(arrow.middle_px.y() + half), size, size);
+    layer.addText(right(arrow.letter_px.x()) - LegendLayer::widthOf(arrow.letter, font) / 2,
+                  up(arrow.letter_px.y()) - 0.35 * double{font.vfont_scale}, arrow.letter, font);
 }
 
 TColor PreparedScene::ink() const {
