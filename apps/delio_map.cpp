@@ -110,9 +110,17 @@ struct Arguments {
     Text crop{"",    "crop", "Keep the points in this box (metres, in the output frame)",
               false, "",     &boxes,
               cmd};
+    Number maxHeight{"",
+                     "max-height",
+                     "Leave out points higher than this above the ground around them, metres: "
+                     "rooms without their ceilings",
+                     false,
+                     0,
+                     &lengths,
+                     cmd};
     Number spacing;
     Text colourBy, colormap;
-    Number resolution, height, maxHeight;
+    Number resolution, height;
     Text frame, georeference;
     Text control{"",
                  "control",
@@ -155,10 +163,6 @@ Arguments::Arguments()
              "Height of the robot: points between 0.3 m and this height above the ground are "
              "obstacles",
              false, 2, &lengths, cmd),
-      maxHeight("", "max-height",
-                "Leave out points higher than this above the ground around them, metres: rooms "
-                "without their ceilings",
-                false, 0, &lengths, cmd),
       frame("", "frame",
             "Output frame. map: unchanged; ground: levelled, z = 0 on the ground below the first "
             "pose; enu, utm: of a georeferenced map, east-north-up or UTM. A .las of a "
