@@ -4,6 +4,7 @@
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <set>
 
@@ -177,16 +178,22 @@ TEST_F(MapTool, LeavesOutWhatIsHigh) {
 }
 
 TEST_F(MapTool, APageKnowsNorth) {
-    const Words run = {"-i", at("run"), "--georeference", "49,8,100,0", "--force"};  // x to north
-    const auto about = [&](const Words& more) {
-        expectSuccess(run + Words{"-o", at("page.html")} + more);
+    const auto northOf = [&](const Words& more) {
+        expectSuccess(Words{"-i", at("run"), "-o", at("page.html"), "--force"} + more);
         const auto page = test::readText(at("page.html"));
-        const auto found = page.find("\"north\":[");
-        return found == page.npos ? "" : page.substr(found, page.find(']', found) + 1 - found);
+        double x = 0, y = 0;
+        const auto found = page.find("\n\"north\":[");
+        if (found != page.npos)
+            EXPECT_EQ(std::sscanf(page.c_str() + found, "\n\"north\":[%lf,%lf]", &x, &y), 2);
+        return Eigen::Vector2d(x, y);
     };
-    EXPECT_EQ(about({}), "\"north\":[0.000,1.000]");  // moved to east, north, up
-    expectSuccess({"-i", at("run"), "-o", at("plain.html")});
-    EXPECT_EQ(test::readText(at("plain.html")).find("\"north\":["), std::string::npos);
+    EXPECT_EQ(northOf({}), Eigen::Vector2d::Zero());
+    const Words place = {"--georeference", "49,8,100,30"};
+    EXPECT_LT((northOf(place) - Eigen::Vector2d(0, 1)).norm(), 1e-3);
+    // A degree west of the middle of its zone, north leans to the east of the grid.
+    const double lean = M_PI / 180 * std::sin(49 * M_PI / 180);
+    const Eigen::Vector2d inGrid = northOf(place + Words{"--frame", "utm"});
+    EXPECT_LT((inGrid - Eigen::Vector2d(lean, 1)).norm(), 1.1e-3);
 }
 
 TEST_F(MapTool, ColoursAreThoseAskedFor) {
