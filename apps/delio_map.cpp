@@ -416,8 +416,8 @@ void importMap(Arguments& asked) {
     cli::refuseExisting(output, asked.force.getValue());
     refuseMissingFolder(output);
     const io::OutputLock lock(output);
-    const auto made = places::importCloud(
-        cloud, asked.spacing.isSet() ? asked.spacing.getValue() : kSpacing_m, output);
+    const auto made =
+        importCloud(cloud, asked.spacing.isSet() ? asked.spacing.getValue() : kSpacing_m, output);
     const auto& offset = made.origin.offset;
     if (made.outliers > 0)
         cli::inform("dropped " + std::to_string(made.outliers) +

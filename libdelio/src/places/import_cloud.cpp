@@ -13,7 +13,7 @@
 #include "places/descriptor.h"
 #include "places/tiles.h"
 
-namespace delio::places {
+namespace delio {
 using places::kTile_m;
 
 namespace {
@@ -264,4 +264,4 @@ ImportFigures importCloud(const std::string& path, double spacing_m, const std::
     figures.places = cloud.places();
     return figures;
 }
-}  // namespace delio::places
+}  // namespace delio

@@ -40,9 +40,9 @@ void writePly(const Cloud& cloud, const std::string& path) {
 
 class ImportedTown : public testing::Test {
  protected:
-    places::ImportFigures import(const Cloud& cloud, double spacing = 0.3) const {
+    ImportFigures import(const Cloud& cloud, double spacing = 0.3) const {
         writePly(cloud, ply_);
-        return places::importCloud(ply_, spacing, path_);
+        return importCloud(ply_, spacing, path_);
     }
     std::string refusalOf(const Cloud& cloud) const {
         try {
