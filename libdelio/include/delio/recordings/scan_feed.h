@@ -11,10 +11,11 @@
 
 #include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
+#include "delio/odometry/wheels.h"
 
 namespace delio::io {
-/** A bounded queue of scans and IMU samples, from the threads of sensors' drivers to the one that
- *  processes them. Where scans wait that are too many, the oldest one is dropped as a whole; IMU
+/** A bounded queue of scans, IMU and odometry samples, from the threads of sensors' drivers to the one that
+ *  processes them. Where scans wait that are too many, the oldest one is dropped as a whole; their
  *  samples are kept. Every function may be called by any thread. */
 class ScanFeed {
  public:
@@ -22,6 +23,7 @@ class ScanFeed {
     struct Item {
         Scan scan;                         //!< as it was added
         std::vector<ImuSample> imu;        //!< in the order in which they were added
+        std::vector<OdometrySample> odometry;  //!< likewise
         std::optional<double> received_s;  //!< Unix time at which the sensor's last packet came
     };
 
@@ -33,6 +35,8 @@ class ScanFeed {
     void add(Scan scan, std::optional<double> received_s = {});
     /** Adds a sample of the IMU, stamped as the scans. */
     void add(const ImuSample& sample);
+    /** Adds a pose by the wheels, likewise. */
+    void add(const OdometrySample& sample);
     /** There are no more. What waits can still be taken. */
     void close();
     /** The same; take() throws `fault` after the last scan. */
@@ -51,6 +55,7 @@ class ScanFeed {
     std::function<void()> onFirstDrop_;
     std::deque<Item> waiting_;
     std::vector<ImuSample> imu_;  //!< since the latest scan
+    std::vector<OdometrySample> odometry_;  //!< likewise
     bool closed_ = false;
     std::exception_ptr fault_;
     std::size_t dropped_ = 0;

@@ -13,6 +13,7 @@
 #include "delio/graph/pose_graph.h"
 #include "delio/map/map_builder.h"
 #include "delio/odometry/imu.h"
+#include "delio/odometry/wheels.h"
 #include "delio/places/localisation.h"
 #include "delio/places/loops.h"
 #include "delio/places/stored_map.h"
@@ -109,6 +110,7 @@ struct RunRecord {
     double loop_search_ms = 0;                  //!< beside the drive, and after it
 
     std::optional<ImuReport> imu;  //!< what was found out about the IMU, where there is one
+    std::optional<OdometryReport> wheels;  //!< likewise of wheels or another odometry
     std::optional<earth::Georeference> georeference;  //!< of the final poses, where it is known
     earth::GnssFigures gnss;                          //!< of the drive's fixes
     /** Of the imported cloud that the drive was localised in. */
