@@ -29,7 +29,7 @@ struct DriveRequest {
     std::optional<GnssRequest> gnss;  //!< a receiver on the vehicle
     bool distort = false;  //!< every column is fired on the way: OUT_Images/NNNNNN.time says when
     bool labels = false;   //!< OUT_Images/NNNNNN.label says which points move
-    std::optional<ImuModel> imu;  //!< recorded beside the scans
+    std::optional<ImuModel> imu;       //!< recorded beside the scans
     std::optional<WheelModel> wheels;  //!< likewise
     bool embed = false, force = false;
 };

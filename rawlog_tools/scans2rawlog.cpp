@@ -148,7 +148,7 @@ class Conversion {
     io::ScanReader& reader_;
     std::vector<std::string> truth_;
     io::RawlogWriter writer_;
-    std::vector<ImuSample> imu_;  //!< before the next scan
+    std::vector<ImuSample> imu_;            //!< before the next scan
     std::vector<OdometrySample> odometry_;  //!< likewise
     double epoch_s_ = 0;
     std::string times_, poses_, fault_;

@@ -98,6 +98,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     learnFromWheels(step);
 
     step.standing = isStanding(step, interval.duration_s);
+    step.carried = isCarried_;
     step.lost = isLostAfter(step);
     step.track = track_;
     if (!step.predicted) unregistered_s_ = 0;

@@ -50,8 +50,8 @@ void PlaneOdometry::carryByWheels(PlaneEstimate& estimate) {
     const Eigen::Matrix3d along = axes * axes.transpose(),
                           across = Eigen::Matrix3d::Identity() - along;
     translation.translation += along * (byWheels - translation.translation);
-    translation.covariance = across * translation.covariance * across +
-                             std::pow(wheelStep_->sigma_m, 2) * along;
+    translation.covariance =
+        across * translation.covariance * across + std::pow(wheelStep_->sigma_m, 2) * along;
     translation.lever = across * translation.lever;
     isCarried_ = true;
 }

@@ -68,8 +68,8 @@ void WheelPrior::use(double time_s, const Isometry3d& pose) {
     const Vector3d speed_mps = moved.translation() / passed_s;
     const bool isFast = speed_mps.norm() > kMost_mps ||
                         angleOf(moved.linear()) > kMost_radps * passed_s + kNoise_rad;
-    const bool isSudden = speed_mps_ && (speed_mps - *speed_mps_).norm() >
-                                            kMost_mps2 * passed_s + kNoise_mps;
+    const bool isSudden =
+        speed_mps_ && (speed_mps - *speed_mps_).norm() > kMost_mps2 * passed_s + kNoise_mps;
     if (isFast || isSudden) {
         ++jumps_;
         ++run_;
@@ -97,10 +97,9 @@ std::optional<WheelPrior::Reading> WheelPrior::readingAt(double time_s) const {
     }
     const double gap_s = next->time_s - before.time_s;
     if (before.run != next->run || gap_s > kLongest_s) return {};
-    return Reading{
-        time_s,
-        odometry::between(before.pose, next->pose, (time_s - before.time_s) / gap_s),
-        before.run};
+    return Reading{time_s,
+                   odometry::between(before.pose, next->pose, (time_s - before.time_s) / gap_s),
+                   before.run};
 }
 
 std::optional<WheelStep> WheelPrior::unscaled(double from_s, double to_s) const {
@@ -128,8 +127,8 @@ void WheelPrior::observe(double from_s, double to_s, const Isometry3d& increment
     if (!step) return;
     if (!open_) open_.emplace();
     const Eigen::Matrix3d turned = increment.linear();
-    open_->lidar += open_->turned *
-                    (increment.translation() - (turned * step->lever - step->lever));
+    open_->lidar +=
+        open_->turned * (increment.translation() - (turned * step->lever - step->lever));
     open_->wheels += open_->turned * step->moved;
     open_->turned = open_->turned * turned;
     open_->end_s = to_s;

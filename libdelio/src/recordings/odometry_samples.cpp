@@ -23,13 +23,12 @@ bool isOdometry(const Topic& topic) {
 }
 
 bool isResult(const std::string& name) {
-    constexpr std::array kWords{"truth", "gt",   "slam", "lidar", "laser", "lio",
+    constexpr std::array kWords{"truth", "gt",     "slam", "lidar", "laser", "lio",
                                 "loam",  "visual", "vio",  "gps",   "gnss",  "map"};
     std::string lower = name;
     for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return std::any_of(kWords.begin(), kWords.end(), [&](const char* word) {
-        return lower.find(word) != std::string::npos;
-    });
+    return std::any_of(kWords.begin(), kWords.end(),
+                       [&](const char* word) { return lower.find(word) != std::string::npos; });
 }
 
 std::optional<OdometrySample> odometryOf(const Message& message, std::string& frame) {
@@ -44,8 +43,8 @@ std::optional<OdometrySample> odometryOf(const Message& message, std::string& fr
         for (double& value : position) value = in.real();
         for (double& value : quaternion) value = in.real();
         if (!(quaternion.norm() > 0)) return {};
-        sample.pose = isometry(Eigen::Quaterniond(quaternion.normalized()).toRotationMatrix(),
-                               position);
+        sample.pose =
+            isometry(Eigen::Quaterniond(quaternion.normalized()).toRotationMatrix(), position);
         return sample;
     } catch (const Error&) {
         return {};

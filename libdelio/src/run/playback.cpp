@@ -22,7 +22,8 @@ Playback::Reading Playback::read(std::size_t passedOver) {
         if (!reader_.skip()) break;
     }
     auto scan = reader_.next();
-    return {std::move(scan), reader_.takeImu(), reader_.takeOdometry(), reader_.fraction(), reader_.received_s()};
+    return {std::move(scan), reader_.takeImu(), reader_.takeOdometry(), reader_.fraction(),
+            reader_.received_s()};
 }
 
 /** The next scan is read while this one is registered; `read_ms_` is the waiting time. */

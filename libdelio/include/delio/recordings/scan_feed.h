@@ -14,17 +14,17 @@
 #include "delio/odometry/wheels.h"
 
 namespace delio::io {
-/** A bounded queue of scans, IMU and odometry samples, from the threads of sensors' drivers to the one that
- *  processes them. Where scans wait that are too many, the oldest one is dropped as a whole; their
- *  samples are kept. Every function may be called by any thread. */
+/** A bounded queue of scans, IMU and odometry samples, from the threads of sensors' drivers to the
+ * one that processes them. Where scans wait that are too many, the oldest one is dropped as a
+ * whole; their samples are kept. Every function may be called by any thread. */
 class ScanFeed {
  public:
     /** A scan, and the IMU samples that were added before it and after the scan before. */
     struct Item {
-        Scan scan;                         //!< as it was added
-        std::vector<ImuSample> imu;        //!< in the order in which they were added
+        Scan scan;                             //!< as it was added
+        std::vector<ImuSample> imu;            //!< in the order in which they were added
         std::vector<OdometrySample> odometry;  //!< likewise
-        std::optional<double> received_s;  //!< Unix time at which the sensor's last packet came
+        std::optional<double> received_s;      //!< Unix time at which the sensor's last packet came
     };
 
     /** `mostWaiting`: scans that may wait; at least 1. `onFirstDrop`: called when the first one is
@@ -54,7 +54,7 @@ class ScanFeed {
     std::size_t mostWaiting_;
     std::function<void()> onFirstDrop_;
     std::deque<Item> waiting_;
-    std::vector<ImuSample> imu_;  //!< since the latest scan
+    std::vector<ImuSample> imu_;            //!< since the latest scan
     std::vector<OdometrySample> odometry_;  //!< likewise
     bool closed_ = false;
     std::exception_ptr fault_;

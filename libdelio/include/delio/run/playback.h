@@ -51,8 +51,8 @@ class Playback {
 
  private:
     struct Reading {
-        std::optional<Scan> scan;    //!< nothing at the end
-        std::vector<ImuSample> imu;  //!< that were read with it
+        std::optional<Scan> scan;              //!< nothing at the end
+        std::vector<ImuSample> imu;            //!< that were read with it
         std::vector<OdometrySample> odometry;  //!< likewise
         std::optional<double> fraction, received_s;
     };

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "delio/odometry/imu.h"
-#include "delio/odometry/wheels.h"
 #include "delio/odometry/scan.h"
+#include "delio/odometry/wheels.h"
 #include "delio/recordings/scan_feed.h"
 #include "delio/slam/slam.h"
 
