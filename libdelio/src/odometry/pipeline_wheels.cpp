@@ -47,8 +47,13 @@ void PlaneOdometry::carryByWheels(PlaneEstimate& estimate) {
     if (!wheelStep_ || !estimate.valid || axes.cols() == 0) return;
     const Eigen::Matrix3d turned = pose_.linear().transpose() * estimate.rotation.rotation;
     const Eigen::Vector3d byWheels = pose_ * wheelStep_->translation(turned);
+    // Wheels that contradict the axes that the scan shows are not mounted as they say.
+    constexpr double kMost_m = 0.1, kMostOfWay = 0.1;
     const Eigen::Matrix3d along = axes * axes.transpose(),
                           across = Eigen::Matrix3d::Identity() - along;
+    const double moved_m = (byWheels - pose_.translation()).norm();
+    if ((across * (byWheels - translation.translation)).norm() > kMost_m + kMostOfWay * moved_m)
+        return;
     translation.translation += along * (byWheels - translation.translation);
     translation.covariance =
         across * translation.covariance * across + std::pow(wheelStep_->sigma_m, 2) * along;
