@@ -157,8 +157,8 @@ void bindRun(py::module_& module) {
            const OptionalPath& sensorFile, const OptionalPath& images, const OptionalPath& truth,
            const std::string& truthFrame, const OptionalPath& map, const py::object& initialPose,
            bool extend, bool loops, bool graph, bool buildMap, bool keepDynamic, bool pictures,
-           bool force, bool imu, bool odometry, bool gnss, const OptionalPath& fixes, const py::object& antenna,
-           const py::object& progress, const py::kwargs& options) {
+           bool force, bool imu, bool odometry, bool gnss, const OptionalPath& fixes,
+           const py::object& antenna, const py::object& progress, const py::kwargs& options) {
             run::PlaybackSettings playback;
             playback.start = start;
             playback.count = count;
@@ -189,7 +189,7 @@ void bindRun(py::module_& module) {
         py::arg("initial_pose") = py::none(), py::arg("extend") = false, py::arg("loops") = true,
         py::arg("graph") = true, py::arg("build_map") = true, py::arg("keep_dynamic") = false,
         py::arg("pictures") = true, py::arg("force") = false, py::arg("imu") = true,
-        py::arg("odometry") = true, py::arg("gnss") = true, py::arg("fixes") = py::none(), py::arg("antenna") = py::none(),
-        py::arg("progress") = py::none(), kRunText);
+        py::arg("odometry") = true, py::arg("gnss") = true, py::arg("fixes") = py::none(),
+        py::arg("antenna") = py::none(), py::arg("progress") = py::none(), kRunText);
 }
 }  // namespace delio::python

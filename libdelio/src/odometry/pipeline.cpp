@@ -76,8 +76,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     time_s_ = arrivals_.sinceStart_s();
     const Interval& interval = arrival.interval;
     unregistered_s_ += interval.elapsed_s;
-    advanceGyro(cloud, scan);
-    advanceWheels(cloud, scan);
+    advancePriors(cloud, scan);
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
     step.interrupted = !isEmpty && interval.kind == IntervalKind::kUnknown;
@@ -98,7 +97,6 @@ Step PlaneOdometry::process(const Scan& scan) {
     learnFromWheels(step);
 
     step.standing = isStanding(step, interval.duration_s);
-    step.carried = isCarried_;
     step.lost = isLostAfter(step);
     step.track = track_;
     if (!step.predicted) unregistered_s_ = 0;

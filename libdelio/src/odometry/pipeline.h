@@ -96,6 +96,11 @@ class PlaneOdometry : public Odometry {
     void turnBack(const PlaneOdometry& ahead, std::size_t first);
     std::optional<ScanTrajectory> stepBack(const Latest& scan);
 
+    void advancePriors(const PointCloud& cloud, const Scan& scan) {
+        advanceGyro(cloud, scan);
+        advanceWheels(cloud, scan);
+    }
+
     // The rotation by a gyroscope (pipeline_gyro.cpp).
     void advanceGyro(const PointCloud& cloud, const Scan& scan);
     std::optional<Attempt> attemptByGyro(const PointCloud& cloud, double duration_s, double since_s,
@@ -112,7 +117,7 @@ class PlaneOdometry : public Odometry {
     Attempt attemptByWheels(const PointCloud& cloud, double duration_s, Attempt alone, Step& step);
     Eigen::Isometry3d predictedByWheels(const Eigen::Isometry3d& predicted);
     void carryByWheels(PlaneEstimate& estimate);
-    void learnFromWheels(const Step& step);
+    void learnFromWheels(Step& step);
 
     // The stages of track(), in their order.
     Extrapolation predictMotion(double duration_s);

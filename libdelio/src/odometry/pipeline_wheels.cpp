@@ -62,7 +62,8 @@ void PlaneOdometry::carryByWheels(PlaneEstimate& estimate) {
 }
 
 /** From two scans in a row that show every axis. */
-void PlaneOdometry::learnFromWheels(const Step& step) {
+void PlaneOdometry::learnFromWheels(Step& step) {
+    step.carried = isCarried_;
     if (wheels_.isEmpty()) return;
     wheels_.count(time_s_, isCarried_);
     const bool isObserved = std::holds_alternative<Tracking>(state_) && !step.predicted &&

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <vector>
 
 #include "delio/core/geometry.h"
 
@@ -16,7 +17,10 @@ using Eigen::Vector3d;
 
 constexpr double kScan_s = 0.1, kSample_s = 0.02;
 
-Matrix3d yawed(double rad) { return rotationExp(rad * Vector3d::UnitZ()); }
+Matrix3d yawed(double rad) {
+    const Eigen::AngleAxisd turn(rad, Vector3d::UnitZ());
+    return turn.toRotationMatrix();
+}
 
 /** A car at 10 m/s, which turns left and right, with wheels and a LiDAR in the middle of its roof.
  */
@@ -35,15 +39,15 @@ struct Car {
     Isometry3d told = Isometry3d::Identity();  //!< by the wheels
     std::size_t samples = 0, scans = 0;
 
-    /** Vehicle to world. */
+    /** Vehicle to world, along arcs of changing curvature. */
     static Isometry3d at(double time_s) {
-        // In steps along an arc whose curvature changes: integrated once, finely.
         constexpr double kStep_s = 1e-3, kSpeed_mps = 10;
         double x = 0, y = 0;
         const auto yaw = [](double s) { return 0.3 * std::sin(0.4 * s); };
-        for (double t = 0; t < time_s - kStep_s / 2; t += kStep_s) {
-            x += kSpeed_mps * kStep_s * std::cos(yaw(t + kStep_s / 2));
-            y += kSpeed_mps * kStep_s * std::sin(yaw(t + kStep_s / 2));
+        for (int i = 0; i < std::lround(time_s / kStep_s); ++i) {
+            const double middle_s = (i + 0.5) * kStep_s;
+            x += kSpeed_mps * kStep_s * std::cos(yaw(middle_s));
+            y += kSpeed_mps * kStep_s * std::sin(yaw(middle_s));
         }
         return isometry(yawed(yaw(time_s)), {x, y, 0});
     }
