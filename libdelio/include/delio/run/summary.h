@@ -45,7 +45,7 @@ struct Summary {
     std::size_t not_found_in_map = 0;                    //!< scans before it was found
     /** Samples, calibration and residual of the IMU, where there is one. */
     Figures imu;
-    Figures odometry;
+    Figures odometry;  //!< samples, scale and agreement of wheels, where there are any
     Figures georeference;                  //!< empty: not georeferenced
     double path_m = 0;                     //!< length of the final way
     double vertical_correction_deg = 0;    //!< that was added to each point's vertical angle
