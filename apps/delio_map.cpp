@@ -10,13 +10,13 @@
 #include "cli.h"
 #include "control_points.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/earth/georeference.h"
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 #include "delio/map/frames.h"
 #include "delio/map/map_point.h"
 #include "delio/places/edit_graph.h"
-#include "delio/places/import_cloud.h"
+#include "delio/places/stored_map.h"
 #include "delio/run/run_folder.h"
 #include "delio/version.h"
 #include "map_input.h"
@@ -416,8 +416,8 @@ void importMap(Arguments& asked) {
     cli::refuseExisting(output, asked.force.getValue());
     refuseMissingFolder(output);
     const io::OutputLock lock(output);
-    const auto made =
-        importCloud(cloud, asked.spacing.isSet() ? asked.spacing.getValue() : kSpacing_m, output);
+    const auto made = places::importCloud(
+        cloud, asked.spacing.isSet() ? asked.spacing.getValue() : kSpacing_m, output);
     const auto& offset = made.origin.offset;
     if (made.outliers > 0)
         cli::inform("dropped " + std::to_string(made.outliers) +

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "delio/core/error.h"
-#include "delio/core/printable.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 #include "map/page_cloud.h"
 
 namespace delio::map {

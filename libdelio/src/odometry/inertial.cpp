@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "delio/core/geometry.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::odometry {
 namespace {

@@ -1,4 +1,4 @@
-#include "delio/places/import_cloud.h"
+#include "delio/places/stored_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "places/descriptor.h"
 #include "places/tiles.h"
 
-namespace delio {
+namespace delio::places {
 using places::kTile_m;
 
 namespace {
@@ -264,4 +264,4 @@ ImportFigures importCloud(const std::string& path, double spacing_m, const std::
     figures.places = cloud.places();
     return figures;
 }
-}  // namespace delio
+}  // namespace delio::places

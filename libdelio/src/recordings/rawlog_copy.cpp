@@ -7,7 +7,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include "delio/core/error.h"
-#include "delio/graph/pose_pdf.h"
+#include "delio/graph/pose_graph.h"
 #include "files/gz.h"
 #include "mrpt/object_archive.h"
 

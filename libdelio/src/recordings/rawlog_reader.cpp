@@ -15,7 +15,7 @@
 
 #include "decode_observation.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/odometry/scan.h"
 #include "files/gz.h"
 #include "files/input_file.h"

@@ -11,8 +11,7 @@
 #include <utility>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/core/printable.h"
+#include "delio/core/text.h"
 #include "delio/recordings/rawlog_reader.h"
 #include "files/names.h"
 #include "open_merged.h"

@@ -15,7 +15,7 @@
 #include "core/voxel_grid.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/graph/pose_pdf.h"
+#include "delio/graph/pose_graph.h"
 #include "delio/slam/slam.h"
 #include "mrpt/imu_observation.h"
 #include "mrpt/odometry_observation.h"

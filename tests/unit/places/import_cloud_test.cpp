@@ -1,4 +1,4 @@
-#include "delio/places/import_cloud.h"
+#include "delio/places/stored_map.h"
 
 #include <gtest/gtest.h>
 
@@ -40,9 +40,9 @@ void writePly(const Cloud& cloud, const std::string& path) {
 
 class ImportedTown : public testing::Test {
  protected:
-    ImportFigures import(const Cloud& cloud, double spacing = 0.3) const {
+    places::ImportFigures import(const Cloud& cloud, double spacing = 0.3) const {
         writePly(cloud, ply_);
-        return importCloud(ply_, spacing, path_);
+        return places::importCloud(ply_, spacing, path_);
     }
     std::string refusalOf(const Cloud& cloud) const {
         try {

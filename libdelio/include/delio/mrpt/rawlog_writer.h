@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "delio/earth/fix.h"
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
