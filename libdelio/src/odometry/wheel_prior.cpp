@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "delio/core/geometry.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::odometry {
 namespace {
