@@ -19,7 +19,7 @@ namespace delio::io {
  * whole; their samples are kept. Every function may be called by any thread. */
 class ScanFeed {
  public:
-    /** A scan, and the IMU samples that were added before it and after the scan before. */
+    /** A scan, and the samples that were added before it and after the scan before. */
     struct Item {
         Scan scan;                             //!< as it was added
         std::vector<ImuSample> imu;            //!< in the order in which they were added
