@@ -20,7 +20,7 @@ namespace {
 std::string odometryMessage(double stamp_s, Kind kind) {
     test::WireWriter message(kind);
     message.header(stamp_s, "odom");
-    message.text("base");
+    message.text("axle");
     const double half = std::sqrt(0.5);
     for (const double value : {stamp_s - kBegin_s, 2.0, 3.0, 0.0, 0.0, half, half})
         message.real(value);
@@ -70,7 +70,7 @@ TEST(OdometrySamples, OfABagHaveThePoseInTfStatic) {
     bag.topics.push_back({"/tf_static", "tf2_msgs/TFMessage"});
     bag.messages.push_back(
         {4, kBegin_s + 1,
-         transformsMessage({{"/velodyne", {1, 0, 2}}, {"base", {1, 3, 2.5}}}, Kind::kRos1)});
+         transformsMessage({{"/velodyne", {1, 0, 2}}, {"axle", {1, 3, 2.5}}}, Kind::kRos1)});
     const test::TemporaryFolder folder;
     const auto file = folder / "d.bag";
     writeRos1Bag(file, bag);
