@@ -188,6 +188,7 @@ std::string describe(const Recording& recording) {
                                               : ", not de-skewed by the recorder") +
                 how;
     if (!recording.imu.empty()) text += ", IMU " + recording.imu;
+    if (!recording.odometry.empty()) text += ", odometry " + recording.odometry;
     if (recording.scans) text += ", " + std::to_string(*recording.scans) + " scans";
     return text + " (" + recording.kind + ")";
 }
