@@ -110,6 +110,14 @@ struct Arguments {
     Text crop{"",    "crop", "Keep the points in this box (metres, in the output frame)",
               false, "",     &boxes,
               cmd};
+    Number maxHeight{"",
+                     "max-height",
+                     "Leave out points higher than this above the ground around them, metres: "
+                     "rooms without their ceilings",
+                     false,
+                     0,
+                     &lengths,
+                     cmd};
     Number spacing;
     Text colourBy, colormap;
     Number resolution, height;
@@ -179,6 +187,8 @@ std::string Arguments::fault() {
     const MapOutput& kind = mapOutputFor(output.getValue());
     if (kind.isGrid && (colourBy.isSet() || colormap.isSet()))
         return "--color-by and --colormap have no effect on a grid";
+    if (kind.isGrid && maxHeight.isSet())
+        return "--max-height has no effect on a grid; its obstacles end at --height";
     if (!kind.isGrid && (resolution.isSet() || height.isSet()))
         return "--resolution and --height only apply to grids (.gridmap, .yaml)";
     if (kind.isGrid && !(height.getValue() > map::OccupancyOptions().low_m))
@@ -189,8 +199,8 @@ std::string Arguments::fault() {
 std::string Arguments::importFault() {
     if (fs::path(output.getValue()).extension() != ".delio")
         return "--import writes a stored map: give -o OUT.delio";
-    auto none = withoutEffect({&edits, &crop, &colourBy, &colormap, &resolution, &height, &frame,
-                               &georeference, &control},
+    auto none = withoutEffect({&edits, &crop, &colourBy, &colormap, &resolution, &height,
+                               &maxHeight, &frame, &georeference, &control},
                               "with --import");
     if (!none.empty()) return none;
     if (spacing.isSet() && !(spacing.getValue() >= 0.05 && spacing.getValue() <= 2))
@@ -212,8 +222,8 @@ bool Arguments::isGraph() {
 std::string Arguments::graphFault() {
     if (fs::path(output.getValue()).extension() != (edits.isSet() ? ".delio" : ".csv"))
         return "--edits writes a stored map: give -o OUT.delio";
-    return withoutEffect({&crop, &spacing, &colourBy, &colormap, &resolution, &height, &frame,
-                          &georeference, &control},
+    return withoutEffect({&crop, &spacing, &colourBy, &colormap, &resolution, &height, &maxHeight,
+                          &frame, &georeference, &control},
                          "on the graph of a map");
 }
 
@@ -283,6 +293,7 @@ void move(MapInput& map, const Eigen::Isometry3d& outFromMap) {
         for (auto& pose : way) pose = outFromMap * pose;
     for (auto& pose : map.keyframes) pose = outFromMap * pose;
     for (auto& pose : map.sensor.poses) pose = outFromMap * pose;
+    if (map.earth) map.earth->enuFromMap = map.earth->enuFromMap * outFromMap.inverse();
 }
 
 /** Into UTM less an offset, which the file of the frame names. */
@@ -301,6 +312,7 @@ void moveToUtm(MapInput& map, const earth::MapToUtm& utm) {
         for (auto& pose : way) movePose(pose);
     for (auto& pose : map.keyframes) movePose(pose);
     for (auto& pose : map.sensor.poses) movePose(pose);
+    if (map.earth) map.earth->enuFromMap.linear() *= utm.rotation().transpose();
     map.offset = utm.offset();
     map.wkt = earth::wktOf(utm.zone());
 }
@@ -313,6 +325,7 @@ SaveBeside changeFrame(MapInput& map, Arguments& asked) {
     const auto place = placeIn(asked.georeference.getValue());
     const auto earth = earthOf(map, place);
     const std::string frame = frameOf(asked, earth.has_value());
+    map.earth = earth;
     if (frame == "ground") {
         const Eigen::Isometry3d level = map::groundFrame(map.points, map.firstPose());
         move(map, level);
@@ -380,11 +393,12 @@ void convert(Arguments& asked) {
         };
     }
     const auto saveFrame = changeFrame(map, asked);
+    if (asked.maxHeight.isSet()) map::cutAbove(map.points, map.dynamic, asked.maxHeight.getValue());
     if (const auto box = boxIn(asked.crop.getValue())) {
         map::crop(map.points, *box);
         map::crop(map.dynamic, *box);
     }
-    if (map.points.empty()) throw Error("no map point lies within --crop");
+    if (map.points.empty()) throw Error("no map point lies within --crop and --max-height");
     map::thinOut(map.points, asked.spacing.getValue());
     map::thinOut(map.dynamic, asked.spacing.getValue());
     write(map, output, asked.options(), {saveFrame, saveErrors});

@@ -80,17 +80,19 @@ class RangeConstraint : public TCLAP::Constraint<double> {
 
 /** Opens whichever kind of file it is, by its name. */
 mrpt::opengl::COpenGLScene::Ptr open(const std::string& path, const picture::SceneOptions& options,
-                                     bool colormapGiven) {
+                                     bool colormapGiven, std::optional<double> maxHeight_m) {
     if (std::filesystem::path(path).extension() == ".3Dscene") {
         if (options.colourBy != picture::ColourBy::Height)
             throw delio::Error(
                 "a .3Dscene holds only points and colours; give the map's .ply instead");
         auto scene = picture::loadScene(path);
+        if (maxHeight_m) picture::cutAbove(*scene, *maxHeight_m);
         if (colormapGiven) picture::recolour(*scene, options.colormap);
         return scene;
     }
     constexpr double kStoredSpacing_m = 0.3;
-    const auto map = delio::readMap(path, kStoredSpacing_m);
+    auto map = delio::readMap(path, kStoredSpacing_m);
+    if (maxHeight_m) map::cutAbove(map.points, map.dynamic, *maxHeight_m);
     return picture::mapScene(map.points, map.drawnWays(), options);
 }
 
@@ -113,8 +115,8 @@ struct Arguments {
     SizeConstraint sizes;
     ColourConstraint colours;
     RangeConstraint degrees{"DEG", -360, 360}, elevations{"DEG", -90, 90};
-    RangeConstraint metres{"M", 1e-3, 1e6}, pixels{"P", 0.1, 100}, strengths{"S", 0, 4},
-        factors{"F", 0.2, 20};
+    RangeConstraint metres{"M", 1e-3, 1e6}, heights{"M", 1e-3, 1000}, pixels{"P", 0.1, 100},
+        strengths{"S", 0, 4}, factors{"F", 0.2, 20};
     std::vector<std::string> colormapNames = map::colormapNames();
     std::vector<std::string> valueNames = map::colourByNames();
     Words colormaps{colormapNames}, values{valueNames};
@@ -122,7 +124,7 @@ struct Arguments {
     Text input, output, size;
     Number azimuth, elevation, zoom;
     TCLAP::SwitchArg ortho;
-    Number pointSize, shading, marks;
+    Number maxHeight, pointSize, shading, marks;
     Text colormap, colourBy, background;
     TCLAP::ValueArg<delio::cli::Count> frames;
     TCLAP::SwitchArg force, verbose;
@@ -144,7 +146,11 @@ Arguments::Arguments()
                 false, 55, &elevations, cmd),
       zoom("", "zoom", "Width of the visible area, metres (default: everything)", false, 0, &metres,
            cmd),
-      ortho("", "ortho", "Orthographic view from above with a scale bar", cmd),
+      ortho("", "ortho", "Orthographic view from above: a plan", cmd),
+      maxHeight("", "max-height",
+                "Leave out points higher than this above the ground around them, metres; with "
+                "--ortho a floor plan of rooms",
+                false, 0, &heights, cmd),
       pointSize(
           "", "point-size",
           "Point size, pixels (default: 2 at 1080 lines, larger in larger images and close-ups)",
@@ -169,7 +175,8 @@ picture::SnapshotOptions Arguments::view() {
     picture::SnapshotOptions options;
     std::tie(options.width_px, options.height_px) = sizeIn(size.getValue()).value();
     if (azimuth.isSet()) options.azimuth_deg = azimuth.getValue();
-    options.ortho = options.scaleBar = ortho.getValue();
+    options.ortho = ortho.getValue();
+    options.scaleBar = options.northArrow = true;
     options.elevation_deg = options.ortho && !elevation.isSet() ? 90 : elevation.getValue();
     if (zoom.isSet()) options.zoom_m = zoom.getValue();
     if (pointSize.isSet()) options.pointSize_px = static_cast<float>(pointSize.getValue());
@@ -221,7 +228,9 @@ void render(Arguments& asked) {
     const std::string& input = asked.input.getValue();
     delio::cli::refuseOverlap(delio::mapFilesIn(input), files);
     for (const auto& file : files) delio::cli::refuseExisting(file, asked.force.getValue());
-    const auto scene = open(input, asked.scene(), asked.colormap.isSet());
+    std::optional<double> maxHeight_m;
+    if (asked.maxHeight.isSet()) maxHeight_m = asked.maxHeight.getValue();
+    const auto scene = open(input, asked.scene(), asked.colormap.isSet(), maxHeight_m);
     say("read '" + input + "'");
     picture::checkPngName(asked.output.getValue());
     const delio::io::OutputLock lock(asked.output.getValue());
@@ -235,8 +244,8 @@ delio::cli::HelpText help() {
                    {"OUT_000.png ...", "with --orbit: one per viewing direction"}};
     help.examples = {
         {{"delio-snapshot -i 07-results/map.3Dscene -o 07.png --azimuth 30", "View from the side"},
-         {"delio-snapshot -i 07.ply -o top.png --ortho --color-by intensity",
-          "View from above with a scale bar"}}};
+         {"delio-snapshot -i flat.ply -o plan.png --ortho --max-height 2",
+          "Floor plan of rooms, without ceilings"}}};
     help.interrupted = "existing files are unchanged";
     return help;
 }

@@ -111,10 +111,16 @@ Eigen::Isometry3d MapInput::firstPose() const {
     return Eigen::Isometry3d::Identity();
 }
 
+std::optional<Eigen::Vector3d> MapInput::north() const {
+    if (earth) return earth->north();
+    return {};
+}
+
 picture::MapWays MapInput::drawnWays() const {
     picture::MapWays drawn;
     drawn.loops = loops;
     drawn.keyframes = keyframes;
+    drawn.north = north();
     for (const auto& way : ways)
         (drawn.trajectory.empty() ? drawn.trajectory : drawn.others.emplace_back()) = way;
     return drawn;

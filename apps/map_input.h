@@ -30,6 +30,9 @@ struct MapInput {
     /** The vehicle's; where there is no way, the origin: a map begins there. */
     Eigen::Isometry3d firstPose() const;
 
+    /** Its direction, where the map is georeferenced. */
+    std::optional<Eigen::Vector3d> north() const;
+
     /** As they are drawn. */
     picture::MapWays drawnWays() const;
 };

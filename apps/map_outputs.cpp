@@ -41,6 +41,7 @@ void writePage(const MapInput& input, const std::string& path, const Options&) {
     page.dynamic = input.dynamic;
     if (!input.ways.empty()) page.trajectory = input.ways.front();
     page.loops = input.loops;
+    page.north = input.north();
     map::savePage(page, path);
 }
 

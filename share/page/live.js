@@ -78,8 +78,9 @@ function moveTo(place) {
   marker.position.copy(place);
   for (const offset of [[-30, -30, -3], [30, 30, 10]])
     box.expandByPoint(place.clone().add(vector(offset)));
-  about.z_most[0] = Math.min(about.z_most[0], place.z - 3);
-  about.z_most[1] = Math.max(about.z_most[1], place.z + 10);
+  for (const axis of ['x', 'y', 'z'])
+    Object.assign(about[axis + '_most'], about[axis] = [box.min[axis], box.max[axis]]);
+  limitCuts(false);
   if (byId('follow').checked) {
     camera.position.add(moved);
     controls.target.add(moved);
@@ -124,7 +125,6 @@ async function poll() {
 
 if (renderer) {
   scene.add(marker);
-  byId('color').value = 'ground';
   readAddress();
   poll();
 }

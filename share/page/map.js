@@ -32,14 +32,14 @@ attribute vec4 known;     // intensity, observations, time (low byte, high byte)
 uniform mat4 modelViewMatrix, projectionMatrix;
 uniform sampler2D ramp;
 uniform int mode;
-uniform float tileHeight;
+uniform vec3 tile, boxLow, boxHigh;
 uniform vec2 range, section;
 uniform vec3 plain;
 uniform float focal, size_m, least;
 varying vec3 colour;
 
 float valueOf(float ground) {
-  if (mode == 0) return tileHeight + ${quantum_m} * position.z;
+  if (mode == 0) return tile.z + ${quantum_m} * position.z;
   if (mode == 1) return ground;
   if (mode == 2) return known.x / 255.0;
   if (mode == 3) return (known.z + 256.0 * known.w) / 65535.0;
@@ -48,7 +48,9 @@ float valueOf(float ground) {
 
 void main() {
   float ground = ${groundQuantum_m} * position.w + float(${lowestGround_m});
-  if (ground < section.x || ground > section.y) {
+  vec3 place = tile + ${quantum_m} * position.xyz;
+  if (ground < section.x || ground > section.y || any(lessThan(place, boxLow)) ||
+      any(greaterThan(place, boxHigh))) {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside the picture
     gl_PointSize = 0.0;
     return;
@@ -97,7 +99,8 @@ class Cloud {
     this.uniforms = {
       ramp: {value: texture}, mode: {value: mode}, range: {value: new THREE.Vector2(0, 1)},
       section: {value: new THREE.Vector2(-1e6, 1e6)}, plain: {value: new THREE.Color(0xff3b30)},
-      focal: {value: 1}, size_m: {value: 0.1}, least: {value: 2}, tileHeight: {value: 0},
+      boxLow: {value: new THREE.Vector3()}, boxHigh: {value: new THREE.Vector3()},
+      focal: {value: 1}, size_m: {value: 0.1}, least: {value: 2}, tile: {value: new THREE.Vector3()},
     };
     this.material = new THREE.RawShaderMaterial(
         {vertexShader: pointVertex, fragmentShader: pointFragment, uniforms: this.uniforms});
@@ -118,7 +121,7 @@ class Cloud {
     points.position.fromArray(origin);
     points.userData.count = count;
     points.onBeforeRender = () => {
-      this.uniforms.tileHeight.value = origin[2];
+      this.uniforms.tile.value.copy(points.position);
       this.material.uniformsNeedUpdate = true;
     };
     this.object.add(points);
@@ -134,6 +137,8 @@ class Cloud {
   /** The point nearest to the camera of those within 10 pixels of (x, y), or null. */
   pointAt(x, y) {
     const reach_px = 10, section = this.uniforms.section.value;
+    const shown = new THREE.Box3(this.uniforms.boxLow.value, this.uniforms.boxHigh.value);
+    const place = new THREE.Vector3();
     const width = canvas.clientWidth, height = canvas.clientHeight;
     const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix,
                                                    camera.matrixWorldInverse).elements;
@@ -155,8 +160,10 @@ class Cloud {
         const ground = groundQuantum_m * places[i + 3] + lowestGround_m;
         if (off > 1 || w * (1 + off) >= bestScore || ground < section.x || ground > section.y)
           continue;
+        place.set(ox + quantum_m * px, oy + quantum_m * py, oz + quantum_m * pz);
+        if (!shown.containsPoint(place)) continue;
         bestScore = w * (1 + off);
-        best = vector([ox + quantum_m * px, oy + quantum_m * py, oz + quantum_m * pz]);
+        best = place.clone();
       }
     }
     return best;
@@ -190,9 +197,65 @@ for (const place of about.trajectory) box.expandByPoint(vector(place));
 let renderer, controls, clouds = [], lines = {}, picked = [], pickedLines = null;
 let standard = null, asked = false, moving = false, fraction = 1, drawnAt = 0;
 
-/** From so far that every corner of the box is in the picture. */
+/** The section, a slider for each end; `limits` are what they reach from and to. */
+const cuts = [
+  {name: 'Height above ground', ends: ['low', 'high'], limits: () => cutLimits('ground')},
+  ...['x', 'y', 'z'].map(axis => ({name: axis, ends: [axis + '-min', axis + '-max'],
+                                   limits: () => cutLimits(axis)})),
+];
+
+/** What most points lie between and as much again, but no more than all of them. */
+function cutLimits(name) {
+  const [low, high] = about[name + '_most'], more = Math.max((high - low) / 2, 0.5);
+  return [Math.floor(10 * Math.max(about[name][0], low - more)) / 10,
+          Math.ceil(10 * Math.min(about[name][1], high + more)) / 10];
+}
+
+const isAtEnd = (slider, end) => slider.value === (end ? slider.max : slider.min);
+
+/** Gives the sliders their limits; those at an end stay there. */
+function limitCuts(reset) {
+  for (const {ends, limits} of cuts) {
+    const [min, max] = limits(), sliders = ends.map(byId);
+    const stays = sliders.map((slider, end) => reset || isAtEnd(slider, end));
+    for (const [end, slider] of sliders.entries()) {
+      Object.assign(slider, {min, max});
+      if (stays[end]) slider.value = end ? max : min;
+    }
+  }
+}
+
+/** Lower and upper end of a cut, metres; at its end a slider hides nothing. */
+function cutOf({ends}) {
+  return ends.map((id, end) => isAtEnd(byId(id), end) ? (end ? 1e6 : -1e6) : Number(byId(id).value));
+}
+
+function makeCuts() {
+  for (const {name, ends} of cuts) {
+    const row = document.createElement('div');
+    row.className = 'cut';
+    row.innerHTML = `<span>${name}</span><output></output><div>` + ends.map((id, end) =>
+        `<label><span class="unseen">${name}, ${end ? 'maximum' : 'minimum'}, metres</span>` +
+        `<input id="${id}" type="range" step="0.1"></label>`).join('') + '</div>';
+    byId('cuts').append(row);
+    // One end does not pass the other.
+    const [low, high] = ends.map(byId);
+    low.addEventListener('input', () => { if (+low.value > +high.value) high.value = low.value; });
+    high.addEventListener('input', () => { if (+high.value < +low.value) low.value = high.value; });
+  }
+}
+
+/** The box of the map, or of the section that is shown. */
+function shownBox() {
+  const [x, y, z] = cuts.slice(1).map(cutOf);
+  const shown = box.clone().intersect(new THREE.Box3(...[0, 1].map(end =>
+      new THREE.Vector3(x[end], y[end], z[end]))));
+  return shown.isEmpty() ? box : shown;
+}
+
+/** From so far that every corner of what is shown is in the picture. */
 function lookAtAll(forward) {
-  const centre = box.getCenter(new THREE.Vector3());
+  const box = shownBox(), centre = box.getCenter(new THREE.Vector3());
   const right = forward.clone().cross(camera.up).normalize(), upward = right.clone().cross(forward);
   const upright = Math.tan(camera.fov / 2 * Math.PI / 180), across = upright * camera.aspect;
   let distance = 1;
@@ -212,14 +275,15 @@ function lookAtAll(forward) {
 const looks = {
   /** From above and aside, the long side of the map along the picture's. */
   reset() {
-    const size = box.getSize(new THREE.Vector3());
+    const size = shownBox().getSize(new THREE.Vector3());
     const along = (size.x > size.y) === (camera.aspect > 1) ? [0, 0.8, -0.6] : [0.8, 0, -0.6];
     lookAtAll(vector(along));
     standard = looks.reset;
   },
-  /** From above, north (y) up. */
+  /** From above, north up; without a georeference y. */
   top() {
-    lookAtAll(vector([0, 1e-4, -1]).normalize());
+    const [x, y] = about.north || [0, 1];
+    lookAtAll(vector([1e-4 * x, 1e-4 * y, -1]).normalize());
     standard = looks.top;
   },
 };
@@ -246,6 +310,55 @@ function draw(now = performance.now()) {
                          camera.far / 100);
   camera.updateProjectionMatrix();
   renderer.render(scene, camera);
+  showScale();
+  showNorth();
+}
+
+/** A bar of a round length, in metres at the middle of the view. */
+function showScale() {
+  const longest_px = 140;
+  const metresPerPixel = 2 * camera.position.distanceTo(controls.target) *
+      Math.tan(camera.fov / 2 * Math.PI / 180) / canvas.clientHeight;
+  const most = longest_px * metresPerPixel, power = 10 ** Math.floor(Math.log10(most));
+  const length = power * [5, 2, 1].find(factor => factor * power <= most);
+  const text = length >= 1000 ? `${length / 1000} km` : `${Number(length.toPrecision(1))} m`;
+  byId('scale-bar').style.width = `${(length / metresPerPixel).toFixed(1)}px`;
+  byId('scale-text').textContent = text;
+  byId('scale').setAttribute('aria-label', `Scale bar: ${text} at the middle of the view`);
+}
+
+/** The arrow to north, as it lies in the picture. */
+function showNorth() {
+  const [x, y] = about.north || [0, 1], reach = 24;
+  const seen = vector([x, y, 0]).transformDirection(camera.matrixWorldInverse);
+  const turn = Math.atan2(seen.x, seen.y);
+  byId('needle').setAttribute('transform', `rotate(${(turn * 180 / Math.PI).toFixed(1)})`);
+  byId('north-letter').setAttribute('x', (reach * Math.sin(turn)).toFixed(1));
+  byId('north-letter').setAttribute('y', (-reach * Math.cos(turn)).toFixed(1));
+}
+
+/** Keys beyond the arrows, which OrbitControls takes: + and - zoom, Shift and arrows turn. */
+function pressKey(event) {
+  const step = Math.PI / 36, turns = {ArrowLeft: [-step, 0], ArrowRight: [step, 0],
+                                      ArrowUp: [0, -step], ArrowDown: [0, step]};
+  const zoom = {'+': 0.9, '=': 0.9, '-': 1 / 0.9}[event.key];
+  const turn = event.shiftKey && turns[event.key];
+  if (event.ctrlKey || event.metaKey || !zoom && !turn) return;
+  event.preventDefault();
+  event.stopImmediatePropagation();
+  standard = null;
+  const offset = camera.position.clone().sub(controls.target);
+  const upright = new THREE.Quaternion().setFromUnitVectors(camera.up, new THREE.Vector3(0, 1, 0));
+  const at = new THREE.Spherical().setFromVector3(offset.applyQuaternion(upright));
+  at.radius *= zoom || 1;
+  if (turn) {
+    at.theta += turn[0];
+    at.phi = Math.min(Math.max(at.phi + turn[1], 1e-4), Math.PI - 1e-4);
+  }
+  offset.setFromSpherical(at).applyQuaternion(upright.inverse());
+  camera.position.copy(controls.target).add(offset);
+  controls.update();
+  redraw();
 }
 
 function fit() {
@@ -307,10 +420,10 @@ function prepare() {
   for (const name of ['trajectory', 'odometry', 'truth', 'loops'])
     byId(name).parentElement.hidden = !lines[name];
   byId('dynamic').parentElement.hidden = about.dynamic.shown === 0;
-  const low = Math.floor(10 * about.ground[0]), high = Math.ceil(10 * about.ground[1]);
-  for (const id of ['low', 'high']) Object.assign(byId(id), {min: low, max: high});
-  byId('low').value = low;
-  byId('high').value = high;
+  limitCuts(true);
+  byId('north-letter').textContent = about.north ? 'N' : 'y';
+  byId('north').setAttribute('aria-label', about.north ? 'Arrow to north' :
+      'Arrow along the y axis of the map, which is not georeferenced');
   const grouped = count => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
   const {shown, total} = about.points;
   const size = ['x', 'y', 'z'].map(axis => Math.round(about[axis][1] - about[axis][0]));
@@ -321,17 +434,21 @@ function prepare() {
 
 /** Applies the controls to the picture. */
 function update() {
-  const {low, high} = {low: byId('low'), high: byId('high')};
-  if (Number(low.value) > Number(high.value)) high.value = low.value;
-  // At its end a slider hides nothing.
-  const from = low.value === low.min ? -1e6 : low.value / 10;
-  const to = high.value === high.max ? 1e6 : high.value / 10;
-  byId('low-text').textContent = from === -1e6 ? 'all' : `${from.toFixed(1)} m`;
-  byId('high-text').textContent = to === 1e6 ? 'all' : `${to.toFixed(1)} m`;
+  const [ground, x, y, z] = cuts.map(cutOf), slack = 0.001;
+  for (const [i, cut] of cuts.entries()) {
+    const [from, to] = cut.ends.map((id, end) =>
+        isAtEnd(byId(id), end) ? null : Number(byId(id).value).toFixed(1));
+    byId('cuts').children[i].querySelector('output').textContent =
+        from && to ? `${from} to ${to} m` : from ? `from ${from} m` : to ? `to ${to} m` : 'all';
+  }
   byId('size-text').textContent = `${byId('size').value} cm`;
   const name = byId('color').value, {range, unit, isFraction} = values[name];
   const ramp = rampOf(byId('colours').value);
-  for (const cloud of clouds) cloud.uniforms.section.value.set(from - 0.001, to + 0.001);
+  for (const cloud of clouds) {
+    cloud.uniforms.section.value.set(ground[0] - slack, ground[1] + slack);
+    cloud.uniforms.boxLow.value.set(x[0], y[0], z[0]).addScalar(-slack);
+    cloud.uniforms.boxHigh.value.set(x[1], y[1], z[1]).addScalar(slack);
+  }
   const uniforms = clouds[0].uniforms, limits = isFraction ? [0, 1] : range;
   uniforms.ramp.value.image.data = ramp;
   uniforms.ramp.value.needsUpdate = true;
@@ -358,7 +475,6 @@ function readAddress() {
     const input = byId(name);
     if (!input || !input.matches('#panel input, #panel select')) continue;
     if (input.type === 'checkbox') input.checked = text === '1';
-    else if (name === 'low' || name === 'high') input.value = Math.round(10 * Number(text));
     else if (input.tagName === 'INPUT' || [...input.options].some(
         option => option.value === text && !option.disabled)) input.value = text;
   }
@@ -370,6 +486,7 @@ function readAddress() {
 function start() {
   renderer = new THREE.WebGLRenderer({canvas, antialias: true});
   renderer.setClearColor(0x14171c);
+  makeCuts();
   clouds.push(new Cloud(about.points, '', 0));
   if (about.dynamic.shown) clouds.push(new Cloud(about.dynamic, 'dynamic-', -1));
   for (const cloud of clouds) scene.add(cloud.object);
@@ -378,6 +495,7 @@ function start() {
   const ends = about.loops.map(loop => loop.map(pose => about.trajectory[pose]));
   if (ends.length) lines.loops = linesOf(ends, 0xff5ad1, 2);
   if (about.trajectory.length > 1) lines.trajectory = pathOf(about.trajectory, 0xffffff);
+  canvas.addEventListener('keydown', pressKey);
   controls = new THREE.OrbitControls(camera, canvas);
   controls.addEventListener('change', redraw);
   let still;
@@ -395,6 +513,10 @@ function start() {
   });
   canvas.addEventListener('webglcontextlost',
                           () => complain('WebGL was lost; reload the page.'));
+  byId('whole').addEventListener('click', () => {
+    limitCuts(true);
+    update();
+  });
   for (const view in looks) byId(view).addEventListener('click', looks[view]);
   for (const input of byId('panel').querySelectorAll('input, select'))
     input.addEventListener('input', update);

@@ -166,6 +166,28 @@ TEST_F(MapTool, TakesAPartOfTheMap) {
     expectSame(map::loadPcd(at("thin.pcd")), expected);
 }
 
+TEST_F(MapTool, LeavesOutWhatIsHigh) {
+    expectSuccess({"-i", at("map.ply"), "-o", at("low.ply"), "--max-height", "1.5"});
+    auto expected = points_;
+    map::MapPoints dynamic;
+    map::cutAbove(expected, dynamic, 1.5);
+    EXPECT_EQ(expected.size(), points_.size() - 200 * 7);  // the upper half of the wall
+    expectSame(map::loadPly(at("low.ply")), expected);
+}
+
+TEST_F(MapTool, APageKnowsNorth) {
+    const Words run = {"-i", at("run"), "--georeference", "49,8,100,0", "--force"};  // x to north
+    const auto about = [&](const Words& more) {
+        expectSuccess(run + Words{"-o", at("page.html")} + more);
+        const auto page = test::readText(at("page.html"));
+        const auto found = page.find("\"north\":[");
+        return found == page.npos ? "" : page.substr(found, page.find(']', found) + 1 - found);
+    };
+    EXPECT_EQ(about({}), "\"north\":[0.000,1.000]");  // moved to east, north, up
+    expectSuccess({"-i", at("run"), "-o", at("plain.html")});
+    EXPECT_EQ(test::readText(at("plain.html")).find("\"north\":["), std::string::npos);
+}
+
 TEST_F(MapTool, ColoursAreThoseAskedFor) {
     const auto write = [&](const Words& more) {
         expectSuccess(Words{"-i", at("map.ply"), "-o", at("out.ply"), "--force"} + more);
@@ -330,6 +352,7 @@ TEST_F(MapTool, RefusesABadCommandLine) {
         expectRefusal(in + Words{"--georeference", place}, 2, "georeference");
     for (const char* number : {"-1", "nan", "inf", "many", "1x", "1001"}) {
         expectRefusal(in + Words{"--spacing", number}, 2, "spacing");
+        expectRefusal(in + Words{"--max-height", number}, 2, "max-height");
         expectRefusal(grid + Words{"--resolution", number}, 2, "resolution");
         expectRefusal(grid + Words{"--height", number}, 2, "height");
     }
@@ -342,6 +365,7 @@ TEST_F(MapTool, RefusesABadCommandLine) {
     // What would have no effect.
     expectRefusal(in + Words{"--resolution", "0.1"}, 2, "grid");
     expectRefusal(in + Words{"--height", "1"}, 2, "grid");
+    expectRefusal(grid + Words{"--max-height", "1"}, 2, "grid");
     expectRefusal(grid + Words{"--color-by", "time"}, 2, "grid");
     expectRefusal(grid + Words{"--colormap", "gray"}, 2, "grid");
     expectRefusal(in + Words{"--no-such-option"}, 2);

@@ -98,6 +98,7 @@ TEST_F(SnapshotTool, EveryOptionChangesThePicture) {
     for (const std::vector<std::string>& option : {std::vector<std::string>{"--azimuth", "-30"},
                                                    {"--elevation", "20"},
                                                    {"--zoom", "8"},
+                                                   {"--max-height", "0.5"},
                                                    {"--ortho"},
                                                    {"--point-size", "5"},
                                                    {"--shading", "0"},
@@ -108,6 +109,32 @@ TEST_F(SnapshotTool, EveryOptionChangesThePicture) {
                                                    {"--color-by", "intensity"},
                                                    {"--colormap", "gray"}})
         EXPECT_NE(render(option), plain) << option[0];
+}
+
+TEST_F(SnapshotTool, WhatIsHighIsLeftOutOfEveryKindOfMap) {
+    for (const char* name : {"map.simplemap", "map.ply", "map.3Dscene"}) {
+        const auto colouredBelow = [&](const std::string& height) {
+            const auto result =
+                runTool("delio-snapshot",
+                        {"-i", at(name), "-o", at("p.png"), "--force", "--size", "300x200",
+                         "--ortho", "--point-size", "1", "--max-height", height});
+            EXPECT_EQ(result.exitCode, 0) << result.err;
+            EXPECT_EQ(result.out + result.err, "");
+            mrpt::img::CImage image;
+            EXPECT_TRUE(image.loadFromFile(at("p.png")));
+            int coloured = 0;
+            for (unsigned row = 0; row < 200; ++row)
+                for (unsigned column = 0; column < 300; ++column) {
+                    const auto* bgr = image.ptr<std::uint8_t>(column, row);
+                    const auto [low, high] = std::minmax({bgr[0], bgr[1], bgr[2]});
+                    coloured += high - low > 60;
+                }
+            return coloured;
+        };
+        const int all = colouredBelow("1000"), low = colouredBelow("1.5");
+        EXPECT_GT(low, all / 10) << name;
+        EXPECT_LT(low, 0.9 * all) << name;
+    }
 }
 
 TEST_F(SnapshotTool, MarksMakeTheLegendLarger) {
@@ -232,6 +259,8 @@ TEST_F(SnapshotTool, RefusesABadCommandLine) {
     expectRefusal({"-i", in, "-o", out, "--point-size", "0"}, 2);
     for (const char* strength : {"-0.1", "4.1", "strong"})
         expectRefusal({"-i", in, "-o", out, "--shading", strength}, 2);
+    for (const char* height : {"0", "-1", "1001", "nan", "high", "2m"})
+        expectRefusal({"-i", in, "-o", out, "--max-height", height}, 2);
     expectRefusal({"-i", in, "-o", out, "--colormap", "jet"}, 2);
     for (const char* count : {"0", "-3", "1001", "many"})
         expectRefusal({"-i", in, "-o", out, "--orbit", count}, 2);

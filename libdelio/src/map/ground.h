@@ -25,6 +25,11 @@ class GroundHeight {
 
     double at(double x, double y) const;
 
+    /** Height of a point above it. */
+    double above(const Eigen::Vector3f& p) const {
+        return double{p.z()} - at(double{p.x()}, double{p.y()});
+    }
+
  private:
     static std::uint64_t cellOf(double x, double y);
     static double lowOf(std::vector<float>& heights);
@@ -38,10 +43,8 @@ template <typename PointAt>
 std::vector<float> heightsAboveGround(std::size_t count, const PointAt& pointAt) {
     const GroundHeight ground(count, pointAt);
     std::vector<float> heights(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Eigen::Vector3f p = pointAt(i);
-        heights[i] = static_cast<float>(double{p.z()} - ground.at(double{p.x()}, double{p.y()}));
-    }
+    for (std::size_t i = 0; i < count; ++i)
+        heights[i] = static_cast<float>(ground.above(pointAt(i)));
     return heights;
 }
 

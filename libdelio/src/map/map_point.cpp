@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "map/ground.h"
 #include "map/voxel_set.h"
 
 namespace delio::map {
@@ -50,6 +51,13 @@ void crop(MapPoints& points, const Eigen::AlignedBox3d& box) {
     removeIf(points, [&](const MapPoint& point) {
         return !box.contains(Eigen::Vector3d(point.position.cast<double>()));
     });
+}
+
+void cutAbove(MapPoints& points, MapPoints& dynamic, double height) {
+    const GroundHeight ground(points.size(), [&](std::size_t i) { return points[i].position; });
+    for (auto* each : {&points, &dynamic})
+        removeIf(*each,
+                 [&](const MapPoint& point) { return ground.above(point.position) > height; });
 }
 
 void thinOut(MapPoints& points, double spacing) {

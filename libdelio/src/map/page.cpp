@@ -117,6 +117,8 @@ class About {
             out << (i == 0 ? "[" : ",[") << content_.loops[i].first << ','
                 << content_.loops[i].second << ']';
         out << ']';
+        if (content_.north)
+            out << ",\n\"north\":[" << content_.north->x() << ',' << content_.north->y() << ']';
         writeColours(out);
         out << "}\n";
     }

@@ -109,11 +109,20 @@ CImage sideBySide(const CImage& left, const CImage& right) {
     return sheet;
 }
 
+MapWays waysOf(const run::RunRecord& record, std::vector<Eigen::Isometry3d> trajectory) {
+    MapWays ways{std::move(trajectory), record.truth, {}, record.closedLoops()};
+    if (record.georeference) ways.north = record.georeference->north();
+    return ways;
+}
+
 void drawMap(const run::RunRecord& record, const map::BuiltMap& map, const run::RunFolder& folder) {
-    const auto scene = mapScene(
-        map.points, {record.final.poses, record.truth, map.keyPoses, record.closedLoops()});
+    MapWays ways = waysOf(record, record.final.poses);
+    ways.keyframes = map.keyPoses;
+    const auto scene = mapScene(map.points, ways);
     saveScene(*scene, folder.path(run::RunFolder::kScene));
-    savePicture(*scene, SnapshotOptions(), folder.path(run::RunFolder::kMapPicture));
+    SnapshotOptions view;
+    view.scaleBar = view.northArrow = true;
+    savePicture(*scene, view, folder.path(run::RunFolder::kMapPicture));
 }
 
 void drawRemoval(const run::RunRecord& record, const map::BuiltMap& map, const std::string& path) {
@@ -132,10 +141,10 @@ void drawRemoval(const run::RunRecord& record, const map::BuiltMap& map, const s
 }
 
 void drawTrajectory(const run::RunRecord& record, const std::string& path) {
-    const auto view = topView();
-    const auto loops = record.closedLoops();
+    auto view = topView();
+    view.northArrow = true;
     const auto pictureOf = [&](const io::Trajectory& trajectory, const char* name) {
-        return picture(*trajectoryScene({trajectory.poses, record.truth, {}, loops}, name), view);
+        return picture(*trajectoryScene(waysOf(record, trajectory.poses), name), view);
     };
     savePng(record.optimised() ? sideBySide(pictureOf(record.odometry, "unoptimised"),
                                             pictureOf(record.final, "optimised"))

@@ -126,11 +126,65 @@ ScaleBar::ScaleBar(const View& view, const SnapshotOptions& options) {
     height_px = static_cast<int>(std::lround(6 * marks));
     right_px = static_cast<int>(options.width_px) - static_cast<int>(25 * marks);
     bottom_px = static_cast<int>(options.height_px) - static_cast<int>(25 * marks);
-    text = metresText(length_m);
+    text = metresText(length_m) + (options.ortho ? "" : " in the middle");
 }
 
 void ScaleBar::drawInto(mrpt::img::CImage& image, const mrpt::img::TColor& ink) const {
     image.filledRectangle(right_px - width_px, bottom_px - height_px, right_px, bottom_px, ink);
+}
+
+NorthArrow::NorthArrow(const View& view, const SnapshotOptions& options,
+                       const std::optional<Eigen::Vector3d>& north)
+    : letter(north ? "N" : "y") {
+    constexpr double kSize = 84, kReach = 26, kLetter = 12, kRight = 25, kBottom = 75;
+    constexpr double kFlattest = 0.4;  // so that it is seen from the side, too
+    const double marks = sizeOfMarks(options);
+    size_px = kSize * marks;
+    middle_px = {options.width_px - kRight * marks - size_px / 2,
+                 options.height_px - (options.scaleBar ? kBottom : kRight) * marks - size_px / 2};
+    const Eigen::Vector2d along = north.value_or(Eigen::Vector3d::UnitY()).head<2>().normalized();
+    const Eigen::Vector2d right = view.right.head<2>(), forward(-right.y(), right.x());
+    const double rise = view.up.head<2>().dot(forward);
+    const double upright = std::copysign(std::max(std::abs(rise), kFlattest), rise);
+    const auto onScreen = [&](const Eigen::Vector2d& v) {
+        return Eigen::Vector2d(right.dot(v), -upright * forward.dot(v));
+    };
+    const Eigen::Vector2d tip = onScreen(along);
+    axes_px_ << kReach * marks * tip, kReach * marks * onScreen({along.y(), -along.x()});
+    letter_px = middle_px + axes_px_.col(0) + kLetter * marks * tip.normalized();
+}
+
+void NorthArrow::drawInto(mrpt::img::CImage& image, const TColor& ink) const {
+    constexpr double kBack = -0.8, kNotch = -0.4, kWide = 0.6;
+    constexpr int kSamples = 4;
+    const Eigen::Matrix2d inArrow = axes_px_.inverse();
+    // Behind the edge from the tip to a corner, and before that from the corner to the notch.
+    const auto isIn = [&](const Eigen::Vector2d& p) {
+        const double across = std::abs(p.y()) / kWide;
+        return p.x() <= 1 - across * (1 - kBack) && p.x() >= kNotch + across * (kBack - kNotch);
+    };
+    const auto coverage = [&](const Eigen::Vector2d& pixel) {
+        double covered = 0;
+        for (int k = 0; k < kSamples * kSamples; ++k) {
+            const Eigen::Vector2d sample(k % kSamples + 0.5, k / kSamples + 0.5);
+            const Eigen::Vector2d p = inArrow * (pixel + sample / kSamples - middle_px);
+            if (isIn(p)) covered += p.y() > 0 ? 1 : 0.55;
+        }
+        return covered / (kSamples * kSamples);
+    };
+    const auto first = [&](double middle) { return std::max(0, int(middle - size_px / 2)); };
+    const auto last = [&](double middle, std::size_t size) {
+        return std::min(static_cast<int>(size), int(middle + size_px / 2));
+    };
+    const std::uint8_t inks[] = {ink.B, ink.G, ink.R};
+    for (int y = first(middle_px.y()); y < last(middle_px.y(), image.getHeight()); ++y)
+        for (int x = first(middle_px.x()); x < last(middle_px.x(), image.getWidth()); ++x) {
+            const double covered = coverage(Eigen::Vector2d(x, y));
+            auto* bgr = image.ptr<std::uint8_t>(static_cast<unsigned>(x), static_cast<unsigned>(y));
+            for (int channel = 0; channel < 3; ++channel)
+                bgr[channel] = static_cast<std::uint8_t>(
+                    std::lround(bgr[channel] + covered * (inks[channel] - double(bgr[channel]))));
+        }
 }
 
 LegendLayer::LegendLayer(const mrpt::img::TColorf& background, double around_px)
@@ -141,10 +195,14 @@ LegendLayer::LegendLayer(const mrpt::img::TColorf& background, double around_px)
 void LegendLayer::addText(double x, double y, const std::string& text,
                           const mrpt::opengl::TFontParams& font) {
     scene_.getViewport()->addTextMessage(x, y, text, texts_++, font);
+    const double size = double{font.vfont_scale};
+    addPlate(x, y - 0.3 * size, widthOf(text, font), 1.3 * size);
+}
+
+double LegendLayer::widthOf(const std::string& text, const mrpt::opengl::TFontParams& font) {
     mrpt::opengl::CText measured(text);
     measured.setFont(font.vfont_name, static_cast<int>(font.vfont_scale));
-    const double size = double{font.vfont_scale};
-    addPlate(x, y - 0.3 * size, measured.computeTextExtension().first * size, 1.3 * size);
+    return measured.computeTextExtension().first * double{font.vfont_scale};
 }
 
 void LegendLayer::addBar(const mrpt::opengl::COpenGLViewport& bar, double x, double y, double width,
@@ -162,6 +220,24 @@ void LegendLayer::addPlate(double x, double y, double width, double height) {
     const auto pixel = [](double v) { return static_cast<int>(std::lround(v)); };
     plates_.push_back({pixel(x - around_px_), pixel(y - around_px_), pixel(x + width + around_px_),
                        pixel(y + height + around_px_)});
+}
+
+void LegendLayer::joinPlates() {
+    std::vector<Plate> joined;
+    for (Plate plate : plates_) {
+        const auto touches = [&](const Plate& other) {
+            return other.left <= plate.right && plate.left <= other.right &&
+                   other.bottom <= plate.top && plate.bottom <= other.top;
+        };
+        for (auto it = joined.begin();
+             (it = std::find_if(joined.begin(), joined.end(), touches)) != joined.end();) {
+            plate = {std::min(plate.left, it->left), std::min(plate.bottom, it->bottom),
+                     std::max(plate.right, it->right), std::max(plate.top, it->top)};
+            joined.erase(it);
+        }
+        joined.push_back(plate);
+    }
+    plates_ = std::move(joined);
 }
 
 bool LegendLayer::isInRows(int lowest, int highest) const {

@@ -5,6 +5,7 @@
 #include <mrpt/opengl/CSetOfLines.h>
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,14 +50,32 @@ bool isColourBar(mrpt::opengl::COpenGLViewport& viewport);
 /** Changes the colours of the bar, if there is one. */
 void recolourBar(mrpt::opengl::COpenGLScene& scene, map::Colormap colormap);
 
-/** A bar of a round length in the lower right corner of a picture, and its text. Pixels count from
- *  the upper left corner. */
+/** A bar of a round length in the lower right corner of a picture, and its text; in perspective, of
+ *  what is in the middle. Pixels count from the upper left corner. */
 struct ScaleBar {
     ScaleBar(const View& view, const SnapshotOptions& options);
     void drawInto(mrpt::img::CImage& image, const mrpt::img::TColor& ink) const;
 
     int width_px, height_px, right_px, bottom_px;
     std::string text;
+};
+
+/** An arrow on the ground above the scale bar, and its letter. Pixels count from the upper left
+ *  corner. */
+struct NorthArrow {
+    /** @param north its direction in the scene; unset: the arrow is that of the y axis */
+    NorthArrow(const View& view, const SnapshotOptions& options,
+               const std::optional<Eigen::Vector3d>& north);
+    /** With smooth edges: the half east of north in `ink`, the other one paler. */
+    void drawInto(mrpt::img::CImage& image, const mrpt::img::TColor& ink) const;
+
+    double size_px;             //!< of the square that the arrow and its letter turn in
+    Eigen::Vector2d middle_px;  //!< of the square
+    Eigen::Vector2d letter_px;  //!< middle of the letter
+    std::string letter;
+
+ private:
+    Eigen::Matrix2d axes_px_;  //!< from the middle to the tip, and as far to the right of that
 };
 
 /** Texts and a colour bar over a rendered picture, each on a plate of the background's colour, so
@@ -74,6 +93,10 @@ class LegendLayer {
                 double height);
     /** The plate of what somebody else draws there. */
     void addPlate(double x, double y, double width, double height);
+    /** Makes one plate of those that touch each other: a legend has one plate. */
+    void joinPlates();
+
+    static double widthOf(const std::string& text, const mrpt::opengl::TFontParams& font);
 
     /** To be rendered as large as the picture. */
     mrpt::opengl::COpenGLScene& scene() { return scene_; }

@@ -56,9 +56,10 @@ class PreparedScene {
 
     void lookFrom(const View& view);
 
-    /** The scene's own texts and its bar of colours, and the scale bar's text and plate. The
-     *  prepared scene has none of them. */
-    LegendLayer legend(const std::optional<ScaleBar>& bar) const;
+    /** The scene's own texts and its bar of colours, and texts and plates of the scale bar and the
+     *  arrow. The prepared scene has none of them. */
+    LegendLayer legend(const std::optional<ScaleBar>& bar,
+                       const std::optional<NorthArrow>& arrow) const;
 
     /** Stands out against the background. */
     mrpt::img::TColor ink() const;
@@ -75,7 +76,9 @@ class PreparedScene {
     /** Of the map's points, as they are rendered: such that surfaces look closed. */
     float mapPointSize(float stored_px, const View& view) const;
     void enlargeOtherViewports();
+    TFontParams font() const;
     void addScaleBar(const ScaleBar& bar, LegendLayer& layer) const;
+    void addArrow(const NorthArrow& arrow, LegendLayer& layer) const;
     /** From 1 on it is pixels, below a share of the picture. */
     double larger(double v) const { return v >= 1 ? v * double{marks_} : v; }
 
@@ -186,7 +189,8 @@ void PreparedScene::lookFrom(const View& view) {
                                         static_cast<float>(view.farthest));
 }
 
-LegendLayer PreparedScene::legend(const std::optional<ScaleBar>& bar) const {
+LegendLayer PreparedScene::legend(const std::optional<ScaleBar>& bar,
+                                  const std::optional<NorthArrow>& arrow) const {
     constexpr double kAround_px = 7;  // so that the plates of neighbouring lines touch
     LegendLayer layer(viewport_->getCustomBackgroundColor(), kAround_px * double{marks_});
     if (!hasLegend(options_)) return layer;
@@ -200,19 +204,38 @@ LegendLayer PreparedScene::legend(const std::optional<ScaleBar>& bar) const {
     }
     for (const auto& own : bars_) layer.addBar(*own.viewport, own.x, own.y, own.width, own.height);
     if (bar) addScaleBar(*bar, layer);
+    if (arrow) addArrow(*arrow, layer);
+    layer.joinPlates();
     return layer;
 }
 
-void PreparedScene::addScaleBar(const ScaleBar& bar, LegendLayer& layer) const {
+TFontParams PreparedScene::font() const {
     TFontParams font;
     font.vfont_name = "sans";
     font.vfont_scale = 14.0F * marks_;
     font.color = TColorf(ink());
+    return font;
+}
+
+void PreparedScene::addScaleBar(const ScaleBar& bar, LegendLayer& layer) const {
+    const TFontParams font = this->font();
     const auto pixels = [&](int px) { return px * double{enlarged_}; };
     const double bottom = pixels(static_cast<int>(options_.height_px) - bar.bottom_px);
-    const double left = pixels(bar.right_px - bar.width_px), height = pixels(bar.height_px);
-    layer.addPlate(left, bottom, pixels(bar.width_px), 2.5 * height + double{font.vfont_scale});
-    layer.addText(left, bottom + 2.5 * height, bar.text, font);
+    const double right = pixels(bar.right_px), height = pixels(bar.height_px);
+    const double width = std::max(pixels(bar.width_px), LegendLayer::widthOf(bar.text, font));
+    layer.addPlate(right - pixels(bar.width_px), bottom, pixels(bar.width_px), 2.5 * height);
+    layer.addText(right - width, bottom + 2.5 * height, bar.text, font);
+}
+
+void PreparedScene::addArrow(const NorthArrow& arrow, LegendLayer& layer) const {
+    const TFontParams font = this->font();
+    // Pixels of the rendered picture, from its lower left corner.
+    const auto right = [&](double x_px) { return x_px * double{enlarged_}; };
+    const auto up = [&](double y_px) { return (options_.height_px - y_px) * double{enlarged_}; };
+    const double half = arrow.size_px / 2, size = arrow.size_px * double{enlarged_};
+    layer.addPlate(right(arrow.middle_px.x() - half), up(arrow.middle_px.y() + half), size, size);
+    layer.addText(right(arrow.letter_px.x()) - LegendLayer::widthOf(arrow.letter, font) / 2,
+                  up(arrow.letter_px.y()) - 0.35 * double{font.vfont_scale}, arrow.letter, font);
 }
 
 TColor PreparedScene::ink() const {
@@ -233,6 +256,13 @@ struct Raster {
     }
     unsigned scale, width, height, padded;
 };
+
+std::optional<Eigen::Vector3d> northOf(COpenGLScene& scene) {
+    const auto mark = scene.getByName(kNorthName);
+    if (!mark) return {};
+    const double yaw = mark->getPose().yaw;
+    return Eigen::Vector3d(std::cos(yaw), std::sin(yaw), 0);
+}
 
 void checkSize(const SnapshotOptions& options) {
     const auto isGood = [](unsigned px) { return px >= 1 && px <= kMaxPictureSize_px; };
@@ -393,16 +423,19 @@ void orbit(COpenGLScene& scene, const SnapshotOptions& options, unsigned picture
     for (unsigned i = 0; i < pictures; ++i) {
         const View& view = views[i];
         std::optional<ScaleBar> bar;
-        if (options.ortho && options.scaleBar && hasLegend(options)) bar.emplace(view, options);
+        std::optional<NorthArrow> arrow;
+        if (options.scaleBar && hasLegend(options)) bar.emplace(view, options);
+        if (options.northArrow && hasLegend(options)) arrow.emplace(view, options, northOf(scene));
         CImage result;
         try {
             prepared.lookFrom(view);
-            LegendLayer legend = prepared.legend(bar);
+            LegendLayer legend = prepared.legend(bar, arrow);
             result = painter.paint(view, legend);
         } catch (const std::exception& e) {
             throw Error("cannot render the scene: " + plainMessage(e));
         }
         if (bar) bar->drawInto(result, prepared.ink());
+        if (arrow) arrow->drawInto(result, prepared.ink());
         use(i, result);
     }
 }

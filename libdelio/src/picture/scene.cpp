@@ -11,6 +11,7 @@
 #include <mrpt/opengl/CPointCloud.h>
 #include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CSetOfLines.h>
+#include <mrpt/opengl/CSetOfObjects.h>
 #include <mrpt/opengl/CSphere.h>
 #include <mrpt/opengl/stock_objects.h>
 
@@ -195,6 +196,41 @@ void addKeyframes(COpenGLScene& scene, const std::vector<Isometry3d>& poses, dou
         scene.insert(lines);
     }
 }
+/** An object that draws nothing: its x axis points north. */
+void addNorth(COpenGLScene& scene, const std::optional<Eigen::Vector3d>& north) {
+    if (!north) return;
+    const auto mark = mrpt::opengl::CSetOfObjects::Create();
+    mark->setName(kNorthName);
+    mark->setPose(mrpt::poses::CPose3D(0, 0, 0, std::atan2(north->y(), north->x()), 0, 0));
+    scene.insert(mark);
+}
+
+using mrpt::opengl::CPointCloudColoured;
+
+/** Those that are more than marks. Throws Error without any. */
+std::vector<CPointCloudColoured::Ptr> colouredClouds(COpenGLScene& scene) {
+    std::vector<CPointCloudColoured::Ptr> clouds;
+    scene.visitAllObjects([&](const CRenderizable::Ptr& object) {
+        const auto cloud = as<CPointCloudColoured>(object);
+        if (cloud && cloud->size() > 1) clouds.push_back(cloud);
+    });
+    if (clouds.empty()) throw Error("the scene has no coloured cloud of points");
+    return clouds;
+}
+
+void copyPoint(CPointCloudColoured& cloud, std::size_t from, std::size_t to) {
+    const auto p = cloud.getPoint3Df(from);
+    const TColor c = cloud.getPointColor(from);
+    cloud.setPoint_fast(to, p.x, p.y, p.z);
+    cloud.setPointColor_u8_fast(to, c.R, c.G, c.B, c.A);
+}
+
+std::vector<float> heightsOf(const CPointCloudColoured& cloud) {
+    return map::heightsAboveGround(cloud.size(), [&](std::size_t i) {
+        const auto& p = cloud.getPoint3Df(i);
+        return Eigen::Vector3f(p.x, p.y, p.z);
+    });
+}
 }  // namespace
 
 void addRemoved(COpenGLScene& scene, const map::MapPoints& removed) {
@@ -238,6 +274,7 @@ COpenGLScene::Ptr mapScene(const map::MapPoints& points, const MapWays& ways,
     addGrid(*scene, extent, extent.longer() / 20, ink);
     if (!options.caption.empty()) addLegendText(*scene, ++row, options.caption, ink);
     scene->insert(cloud);
+    addNorth(*scene, ways.north);
     if (!ways.keyframes.empty()) {
         addKeyframes(*scene, ways.keyframes, std::clamp(extent.longer() / 100, 0.5, 3.0));
         addLegendText(*scene, ++row, "axes: keyframes", ink);
@@ -267,17 +304,8 @@ COpenGLScene::Ptr mapScene(const map::MapPoints& points, const MapWays& ways,
 }
 
 void recolour(COpenGLScene& scene, Colormap colormap) {
-    std::vector<mrpt::opengl::CPointCloudColoured::Ptr> clouds;
-    scene.visitAllObjects([&](const mrpt::opengl::CRenderizable::Ptr& object) {
-        const auto cloud = std::dynamic_pointer_cast<mrpt::opengl::CPointCloudColoured>(object);
-        if (cloud && cloud->size() > 1) clouds.push_back(cloud);
-    });
-    if (clouds.empty()) throw Error("the scene has no coloured cloud that could be recoloured");
-    for (const auto& cloud : clouds) {
-        const auto heights = map::heightsAboveGround(cloud->size(), [&](std::size_t i) {
-            const auto& p = cloud->getPoint3Df(i);
-            return Eigen::Vector3f(p.x, p.y, p.z);
-        });
+    for (const auto& cloud : colouredClouds(scene)) {
+        const auto heights = heightsOf(*cloud);
         const ValueRange range = robustRange(heights);
         for (std::size_t i = 0; i < cloud->size(); ++i) {
             const TColor c = colourAt(colormap, range.fractionAt(double{heights[i]}));
@@ -286,6 +314,16 @@ void recolour(COpenGLScene& scene, Colormap colormap) {
         cloud->notifyChange();
     }
     recolourBar(scene, colormap);
+}
+
+void cutAbove(COpenGLScene& scene, double height) {
+    for (const auto& cloud : colouredClouds(scene)) {
+        const auto heights = heightsOf(*cloud);
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < heights.size(); ++i)
+            if (double{heights[i]} <= height) copyPoint(*cloud, i, kept++);
+        cloud->resize(kept);
+    }
 }
 
 COpenGLScene::Ptr trajectoryScene(const MapWays& ways, const std::string& name) {
@@ -318,6 +356,7 @@ COpenGLScene::Ptr trajectoryScene(const MapWays& ways, const std::string& name) 
     addLoops(*scene, ways, size_m, groundTruth.empty() ? 2 : 3);
     addMark(*scene, estimate.front(), kGreen, size_m, "start");
     addMark(*scene, estimate.back(), kYellow, size_m, "end");
+    addNorth(*scene, ways.north);
     return scene;
 }
 

@@ -18,6 +18,9 @@ constexpr const char* kMapName = "map";
 /** The name of the object that holds the points removed from the map. */
 constexpr const char* kRemovedName = "removed";
 
+/** The name of an object whose x axis points north. */
+constexpr const char* kNorthName = "north";
+
 /** How much larger than in a picture of 1080 lines the points of a map are. */
 inline double sizeOfPoints(const SnapshotOptions& options) {
     const double lines = std::min(options.width_px / 16.0 * 9, double(options.height_px));

@@ -65,6 +65,7 @@ map::PageContent pageOf(const RunRecord& record, const map::BuiltMap& map) {
     page.loops = record.closedLoops();
     page.truth = record.truth;
     if (record.optimised()) page.odometry = record.odometry.poses;
+    if (record.georeference) page.north = record.georeference->north();
     return page;
 }
 void writeOnEarth(const RunRecord& record, const RunFolder& folder) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "point_support.h"
 #include "poses.h"
 
@@ -25,6 +27,26 @@ TEST(MapEdit, CropsWithItsBorders) {
                              pointAt(0.5, -0.1, 0), pointAt(0.5, 0.5, 0.5)};
     map::crop(points, Eigen::AlignedBox3d(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()));
     expectEqual(points, {pointAt(0, 0, 0), pointAt(1, 1, 1), pointAt(0.5, 0.5, 0.5)});
+}
+
+TEST(MapEdit, CutsAboveTheGroundOfAHill) {
+    map::MapPoints points;
+    for (int x = 0; x < 60; ++x)
+        for (int y = 0; y < 15; ++y)
+            for (const double z : {0.0, 2.5, 4.0}) points.push_back(pointAt(x, y, 0.02 * x + z));
+    map::MapPoints dynamic = {pointAt(20, 7, 1.4), pointAt(20, 7, 4.4)};
+    auto expected = points;
+    expected.erase(std::remove_if(expected.begin(), expected.end(),
+                                  [](const map::MapPoint& p) {
+                                      return p.position.z() - 0.02F * p.position.x() > 3;
+                                  }),
+                   expected.end());
+    map::cutAbove(points, dynamic, 3.2);
+    expectEqual(points, expected);
+    expectEqual(dynamic, {pointAt(20, 7, 1.4)});
+    map::MapPoints none;
+    map::cutAbove(none, none, 1);
+    EXPECT_TRUE(none.empty());
 }
 
 TEST(MapEdit, ThinsToTheFirstOfEachVoxel) {

@@ -164,6 +164,32 @@ TEST_F(PageInBrowser, AnAddressSwitchesWhatIsShown) {
     EXPECT_GT(east.R, east.B + 50);
 }
 
+TEST_F(PageInBrowser, ShowsHeightAboveTheGroundAtFirst) {
+    const auto shot = ready("view=top&size=20");
+    const TColor street = shot.at(600, 350);
+    EXPECT_GT(street.B, street.R + 50);
+    EXPECT_EQ(shot.count(310, 60, 1280, 770, isDarkGray), 0);
+    EXPECT_NE(shot.dom.find("m above the ground</span>"), std::string::npos);
+}
+
+TEST_F(PageInBrowser, ASectionLooksInside) {
+    const auto shot = ready(std::string(kTopInGray) + "&x-min=0&y-max=5");
+    EXPECT_EQ(shot.count(310, 60, 1200, 770, isDarkGray), 0);  // no west
+    EXPECT_GT(shot.count(310, 60, 1200, 770, [](const TColor& c) { return c.R > 200; }), 50000);
+}
+
+TEST_F(PageInBrowser, AGeoreferencedMapHasNorthUp) {
+    auto content = toyMap();
+    content.north = Eigen::Vector3d::UnitX();
+    map::savePage(content, folder_ / "map.html");
+    const auto shot = ready(kTopInGray);
+    EXPECT_NE(shot.dom.find("aria-label=\"Arrow to north\""), std::string::npos);
+    EXPECT_NE(shot.dom.find("transform=\"rotate(0.0)\""), std::string::npos);
+    EXPECT_GT(shot.count(760, 100, 820, 300, isWhite),
+              0.5 * 60 * 200);  // the east of the map is up
+    EXPECT_GT(shot.count(760, 500, 820, 700, isDarkGray), 0.5 * 60 * 200);
+}
+
 TEST_F(PageInBrowser, FitsAPhone) {
     const std::string phone = "375,667";
     const auto shot = ready(kTopInGray, phone);
@@ -228,11 +254,40 @@ say('distance', found && Math.abs(found[1] - Math.hypot(15, 8, 6)) < 0.3 &&
 mouse('pointerdown', 0, 0);
 mouse('click', 0, 0);
 say('none', byId('result').hidden && !pickedLines);
-byId('low').value = 50;
-byId('low').dispatchEvent(new Event('input'));
-byId('high').value = 20;
-byId('high').dispatchEvent(new Event('input'));
-say('section', byId('high').value === '50');
+function slide(id, value) {
+  byId(id).value = value;
+  byId(id).dispatchEvent(new Event('input'));
+}
+slide('low', 5);
+slide('high', 2);
+say('section', byId('high').value === '2' && byId('low').value === '2');
+say('text', byId('cuts').textContent.includes('Height above ground2.0 to 2.0 m'));
+slide('x-min', -5);
+looks.reset();
+draw();
+say('cut', clouds[0].uniforms.boxLow.value.x === -5.001 && shownBox().min.x === -5);
+byId('whole').click();
+say('whole again', shownBox().equals(box) && byId('cuts').textContent.match(/all/g).length === 4);
+byId('top').click();
+function barIsTrue() {  // and of a round length: 1, 2 or 5 with zeros
+  draw();
+  const length = parseFloat(byId('scale-text').textContent), bar = byId('scale-bar').clientWidth;
+  const [from, to] = [0, length].map(x => seen(controls.target.clone().add(vector([x, 0, 0])))[0]);
+  return /^[125](0*|[.]0*)$/.test(length.toExponential()[0]) && Math.abs(to - from - bar) < 2 && bar < 150;
+}
+say('bar', barIsTrue());
+const wide = byId('scale-text').textContent;
+function press(key, more) {
+  canvas.dispatchEvent(new KeyboardEvent('keydown', {key, cancelable: true, ...more}));
+}
+for (let i = 0; i < 12; ++i) press('+');
+say('zoomed bar', barIsTrue() && byId('scale-text').textContent !== wide);
+const turned = () => byId('needle').getAttribute('transform');
+say('up', turned() === 'rotate(0.0)' && byId('north-letter').textContent === 'y' &&
+    byId('north').getAttribute('aria-label').includes('not georeferenced'));
+press('ArrowLeft', {shiftKey: true});
+draw();
+say('keys turn', turned() === 'rotate(-5.0)' || turned() === 'rotate(5.0)');
 fold(false);
 say('finger', [...document.querySelectorAll('button, select, input[type=range], .check')].every(
     each => each.getBoundingClientRect().height >= 40));
@@ -251,7 +306,9 @@ TEST_F(PageInBrowser, ObeysTheMouse) {
     test::writeText(folder_ / "map.html", page);
     const std::string all =
         "whole yes, turn yes, move yes, zoom yes, top yes, point yes, distance yes, none yes, "
-        "section yes, finger yes, width yes, labels yes, rest yes";
+        "section yes, text yes, cut yes, whole again yes, bar yes, zoomed bar yes, up yes, keys "
+        "turn "
+        "yes, finger yes, width yes, labels yes, rest yes";
     const auto saidAt = [&](const char* size) -> std::string {
         const auto shot = ready("", size);
         std::smatch found;

@@ -188,6 +188,64 @@ TEST(Snapshot, TheScaleBarIsTrue) {
     EXPECT_NE(bytesOf(picture::picture(*scene, options)), bytesOf(image));
 }
 
+/** Middle of the pixels that the second picture has and the first has not. */
+Eigen::Vector2d placeOfChange(const CImage& a, const CImage& b) {
+    Eigen::Vector2d sum(0, 0);
+    int count = 0;
+    for (int row = 0; row < static_cast<int>(a.getHeight()); ++row)
+        for (int column = 0; column < static_cast<int>(a.getWidth()); ++column)
+            if (pixel(a, column, row) != pixel(b, column, row)) {
+                sum += Eigen::Vector2d(column, row);
+                ++count;
+            }
+    EXPECT_GT(count, 50);
+    return sum / std::max(count, 1);
+}
+
+TEST(Snapshot, TheArrowPointsNorth) {
+    picture::MapWays ways;
+    ways.trajectory = someWay();
+    SnapshotOptions options = picture::topView();
+    options.width_px = 640;
+    options.height_px = 400;
+    options.azimuth_deg = -90;  // +x to the right
+    options.zoom_m = 1000;      // the corner is empty
+    const auto drawn = [&](const std::optional<Eigen::Vector3d>& north) {
+        ways.north = north;
+        const auto scene = picture::mapScene(someMap(), ways);
+        options.northArrow = false;
+        const auto without = picture::picture(*scene, options);
+        options.northArrow = true;
+        return placeOfChange(without, picture::picture(*scene, options));
+    };
+    const Eigen::Vector2d up = drawn(Eigen::Vector3d::UnitY()),
+                          down = drawn(-Eigen::Vector3d::UnitY());
+    const Eigen::Vector2d right = drawn(Eigen::Vector3d::UnitX());
+    // The letter is beyond the tip: what is drawn lies off the middle towards north.
+    EXPECT_LT(up.y(), down.y() - 2);
+    EXPECT_NEAR(up.x(), down.x(), 1.5);
+    EXPECT_GT(right.x(), up.x() + 1);
+    EXPECT_LT((drawn({}) - up).norm(), 2) << "y, where north is not known";
+    EXPECT_GT(up.x(), 0.85 * 640);
+}
+
+TEST(Snapshot, TheArrowIsTheSameInALoadedScene) {
+    const test::TemporaryFolder folder;
+    picture::MapWays ways;
+    ways.north = Eigen::Vector3d(0.6, -0.8, 0);
+    const auto scene = picture::mapScene(someMap(), ways);
+    picture::saveScene(*scene, folder / "map.3Dscene");
+    SnapshotOptions options;
+    options.width_px = 640;
+    options.height_px = 400;
+    options.northArrow = options.scaleBar = true;
+    const auto bytes = bytesOf(picture::picture(*scene, options));
+    EXPECT_EQ(bytesOf(picture::picture(*picture::loadScene(folder / "map.3Dscene"), options)),
+              bytes);
+    options.scaleBar = false;
+    EXPECT_NE(bytesOf(picture::picture(*scene, options)), bytes) << "a bar in perspective";
+}
+
 // Takes a while: run with --gtest_also_run_disabled_tests.
 TEST(Snapshot, DISABLED_FiveMillionPointsTakeLessThanFifteenSeconds) {
     mrpt::maps::CSimplePointsMap points;

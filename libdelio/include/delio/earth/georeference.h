@@ -19,6 +19,9 @@ struct Georeference {
     /** Gives the same place with the map's origin as that of east, north, up: via ECEF, exactly. */
     void moveOriginToMap();
 
+    /** Direction of north in the map's frame; unit length. */
+    Eigen::Vector3d north() const { return enuFromMap.linear().row(1).transpose(); }
+
     /** Latitude, longitude and height of a point of the map (metres). */
     Geodetic geodeticOf(const Eigen::Vector3d& inMap) const {
         return EnuFrame(origin).geodeticOf(enuFromMap * inMap);

@@ -34,6 +34,10 @@ void move(MapPoints& points, const Eigen::Isometry3d& otherFromMap);
 /** Keeps what lies in the box, metres, its borders included. */
 void crop(MapPoints& points, const Eigen::AlignedBox3d& box);
 
+/** Keeps what lies up to `height` metres above the ground of `points` around it (their heights as
+ *  ColourBy::Height shows them), of the dynamic points, too: a room without its ceiling. */
+void cutAbove(MapPoints& points, MapPoints& dynamic, double height);
+
 /** Keeps the first point in each voxel of `spacing` metres; 0: all. */
 void thinOut(MapPoints& points, double spacing);
 }  // namespace delio::map

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@ struct PageContent {
     std::vector<Eigen::Isometry3d> odometry;  //!< before the graph; not shown where it is the same
     std::vector<std::pair<std::size_t, std::size_t>> loops;  //!< indices of `trajectory`
     std::vector<Eigen::Isometry3d> truth;                    //!< true poses, where they are known
+    std::optional<Eigen::Vector3d> north;  //!< its direction, where the map is georeferenced
 };
 
 /** A page has at most so many points; a larger map is thinned evenly, and the page says so. A

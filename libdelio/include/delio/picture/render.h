@@ -21,7 +21,11 @@ struct SnapshotOptions {
     double elevation_deg = 55;     //!< above the horizon; 90 looks straight down
     std::optional<double> zoom_m;  //!< metres across the picture, through the content's middle
     bool ortho = false;            //!< parallel projection instead of perspective
-    bool scaleBar = false;         //!< in the lower right corner; with `ortho` only
+    /** In the lower right corner: of a round length; in perspective of the middle of the content.
+     */
+    bool scaleBar = false;
+    /** Above it: to north, where the scene has it (MapWays::north), else along its y axis. */
+    bool northArrow = false;
     /** Of all point clouds; unset: the scene's, which are meant for pictures of 1080 lines, larger
      * in larger pictures and from nearer (a map's: such that its surfaces look closed). */
     std::optional<float> pointSize_px;

@@ -4,6 +4,7 @@
 #include <mrpt/opengl/COpenGLScene.h>
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,7 @@ struct MapWays {
     /** Poses of the trajectory, by number, between which a loop was closed. */
     std::vector<std::pair<std::size_t, std::size_t>> loops;
     std::vector<std::vector<Eigen::Isometry3d>> others = {};  //!< of other drives, drawn alike
+    std::optional<Eigen::Vector3d> north = {};                //!< its direction, where it is known
 };
 
 /** A map and the ways through it, in the world's frame (metres, z up): points coloured by their
@@ -53,6 +55,10 @@ void addRemoved(mrpt::opengl::COpenGLScene& scene, const map::MapPoints& removed
 /** Gives a scene's coloured clouds, each by height above its ground, and the legend of mapScene()
  *  the colours of another colour map. Throws Error if the scene has no such cloud. */
 void recolour(mrpt::opengl::COpenGLScene& scene, map::Colormap colormap);
+
+/** Removes the points of a scene's coloured clouds that lie more than `height` metres above the
+ *  ground around them, as map::cutAbove() does. */
+void cutAbove(mrpt::opengl::COpenGLScene& scene, double height);
 
 /** Trajectories alone, on white: `ways.trajectory` in blue, under the name given, with its loops in
  *  orange, and, if it is given, the ground truth in red, with a grid. Both in the same frame. Made
