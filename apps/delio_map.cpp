@@ -160,8 +160,7 @@ Arguments::Arguments()
       colormap("", "colormap", "Colour map", false, "turbo", &colormaps, cmd),
       resolution("", "resolution", "Cell size of a grid, metres", false, 0.1, &lengths, cmd),
       height("", "height",
-             "Height of the robot: points between 0.3 m and this height above the ground are "
-             "obstacles",
+             "Height of the robot: points 0.3 m to this height above the ground are obstacles",
              false, 2, &lengths, cmd),
       frame("", "frame",
             "Output frame. map: unchanged; ground: levelled, z = 0 on the ground below the first "
