@@ -136,7 +136,7 @@ void ScaleBar::drawInto(mrpt::img::CImage& image, const mrpt::img::TColor& ink) 
 NorthArrow::NorthArrow(const View& view, const SnapshotOptions& options,
                        const std::optional<Eigen::Vector3d>& north)
     : letter(north ? "N" : "y") {
-    constexpr double kSize = 84, kReach = 26, kLetter = 12, kRight = 25, kBottom = 75;
+    constexpr double kSize = 84, kReach = 26, kLetter = 12, kRight = 25, kBottom = 64;
     constexpr double kFlattest = 0.4;  // so that it is seen from the side, too
     const double marks = sizeOfMarks(options);
     size_px = kSize * marks;

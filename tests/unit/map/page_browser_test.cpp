@@ -271,7 +271,7 @@ say('whole again', shownBox().equals(box) && byId('cuts').textContent.match(/all
 byId('top').click();
 function barIsTrue() {  // and of a round length: 1, 2 or 5 with zeros
   draw();
-  const length = parseFloat(byId('scale-text').textContent), bar = byId('scale-bar').clientWidth;
+  const length = parseFloat(byId('scale-text').textContent), bar = byId('scale-bar').getBoundingClientRect().width;
   const [from, to] = [0, length].map(x => seen(controls.target.clone().add(vector([x, 0, 0])))[0]);
   return /^[125](0*|[.]0*)$/.test(length.toExponential()[0]) && Math.abs(to - from - bar) < 2 && bar < 150;
 }
