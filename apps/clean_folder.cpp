@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "delio/core/error.h"
+#include "delio/map/cloud_files.h"
 #include "delio/map/map_builder.h"
-#include "delio/map/pcd.h"
 #include "delio/odometry/scan.h"
 
 namespace delio {

@@ -7,7 +7,7 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 #include "delio/picture/figures.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"

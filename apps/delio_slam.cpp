@@ -37,6 +37,7 @@ run::PlaybackSettings playbackOf(SlamCommandLine& line) {
     settings.count = line.count.getValue();
     settings.every = line.every.getValue();
     settings.imu = !line.noImu.getValue();
+    settings.odometry = !line.noOdometry.getValue();
     settings.gnss = !line.noGnss.getValue();
     settings.fixes = line.gnss.getValue();
     if (line.antenna.isSet()) settings.antenna = antennaIn(line.antenna.getValue());

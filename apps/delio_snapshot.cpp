@@ -9,8 +9,8 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/files/output_folder.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
 #include "delio/version.h"

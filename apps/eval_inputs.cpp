@@ -8,7 +8,7 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/core/printable.h"
+#include "delio/core/text.h"
 #include "delio/formats/scan_table.h"
 #include "delio/formats/trajectory.h"
 #include "delio/run/run_folder.h"

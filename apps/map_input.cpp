@@ -6,9 +6,7 @@
 
 #include "delio/core/error.h"
 #include "delio/formats/georeference.h"
-#include "delio/map/las.h"
-#include "delio/map/pcd.h"
-#include "delio/map/ply.h"
+#include "delio/map/cloud_files.h"
 #include "delio/map/simplemap.h"
 #include "delio/places/stored_map.h"
 #include "delio/run/run_folder.h"

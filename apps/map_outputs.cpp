@@ -3,10 +3,8 @@
 #include <filesystem>
 
 #include "delio/core/error.h"
-#include "delio/map/las.h"
+#include "delio/map/cloud_files.h"
 #include "delio/map/page.h"
-#include "delio/map/pcd.h"
-#include "delio/map/ply.h"
 #include "delio/picture/scene.h"
 
 namespace delio {

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <utility>
 
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/map/page.h"
 
 namespace delio {

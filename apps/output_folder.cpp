@@ -4,7 +4,7 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 
 namespace delio {
 namespace fs = std::filesystem;

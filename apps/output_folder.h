@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 
 namespace delio {
 /** The folder for results is made at once, so that an unwritable one is found before the work is

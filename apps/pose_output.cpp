@@ -9,7 +9,7 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/formats/trajectory.h"
 #include "delio/recordings/scan_reader.h"
 #include "delio/run/doubts.h"

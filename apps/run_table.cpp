@@ -56,6 +56,14 @@ std::string georeferenceOf(const run::RunRecord& record) {
     return text;
 }
 
+std::string wheelsOf(const OdometryReport& wheels) {
+    std::string text = format("%zu samples, carried %zu of %zu scans", wheels.samples,
+                              wheels.scansCarried, wheels.scans);
+    if (wheels.sigma)
+        text += format("; scale %.4f, %.1f cm per metre", wheels.scale, 100 * *wheels.sigma);
+    return text;
+}
+
 /** Scans that were not or barely measured. */
 template <typename Row>
 void putDoubts(const run::RunRecord& record, const Row& row) {
@@ -70,6 +78,7 @@ void putDoubts(const run::RunRecord& record, const Row& row) {
     if (doubts.standing.scans > 0)
         row("standing", run::textOf(doubts.standing, doubts.standing.scans));
     row("searched", run::textOf(doubts.searched, doubts.searched.scans));
+    if (record.wheels) row("wheel odometry", wheelsOf(*record.wheels));
 }
 }  // namespace
 

@@ -10,8 +10,7 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/files/output_file.h"
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 #include "delio/formats/trajectory.h"
 #include "delio/recordings/scan_reader.h"
 #include "delio/run/run_folder.h"

@@ -46,6 +46,7 @@ DriveWriter::DriveWriter(const DriveRequest& request, const Scene& scene, const 
       writer_(request.output, kLabel, request.embed, request.force),
       faults_(kFaultsHeader) {
     if (request.imu) imu_.emplace(*request.imu, drive, request.scanner.seed);
+    if (request.wheels) wheels_.emplace(*request.wheels, drive, request.scanner.seed);
     if (request.gnss)
         gnss_.emplace(
             *request.gnss, [this](double time_s) { return drive_.lidarPoseAt(time_s); },
@@ -69,7 +70,7 @@ int DriveWriter::write() {
 }
 
 void DriveWriter::writeScan(std::size_t scan) {
-    addImu(kScanPeriod_s * static_cast<double>(scan));
+    addSamples(kScanPeriod_s * static_cast<double>(scan));
     const Fault fault = faultOf(request_.faults, scan, request_.scanner.seed);
     if (fault != Fault::kNone) {
         const std::string written =
@@ -104,10 +105,14 @@ void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
     poses_ += poseRow(scan);
 }
 
-/** Samples up to this stamp. */
-void DriveWriter::addImu(double stamp_s) {
-    if (!imu_) return;
-    while (const auto sample = imu_->next(stamp_s)) writer_.add(*sample, io::kDriveEpoch_s);
+/** Of IMU and wheels, up to this stamp. */
+void DriveWriter::addSamples(double stamp_s) {
+    const auto add = [&](auto& source) {
+        if (!source) return;
+        while (const auto sample = source->next(stamp_s)) writer_.add(*sample, io::kDriveEpoch_s);
+    };
+    add(imu_);
+    add(wheels_);
 }
 
 /** Pose of cam0 in the world at the first scan, which relates two drives through one world. */
@@ -131,7 +136,7 @@ std::string DriveWriter::calibration() const {
 
 void DriveWriter::finish() {
     constexpr double kAfter_s = 0.3;
-    addImu(kScanPeriod_s * static_cast<double>(drive_.scans()) + kAfter_s);
+    addSamples(kScanPeriod_s * static_cast<double>(drive_.scans()) + kAfter_s);
     io::DriveMeta meta;
     meta.sensorModel = request_.sensor.name;
     meta.source = "synthetic";

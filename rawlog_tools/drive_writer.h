@@ -16,6 +16,7 @@
 #include "tile_window.h"
 #include "traffic.h"
 #include "traffic_caster.h"
+#include "wheels.h"
 
 namespace delio::synth {
 struct DriveRequest {
@@ -28,7 +29,8 @@ struct DriveRequest {
     std::optional<GnssRequest> gnss;  //!< a receiver on the vehicle
     bool distort = false;  //!< every column is fired on the way: OUT_Images/NNNNNN.time says when
     bool labels = false;   //!< OUT_Images/NNNNNN.label says which points move
-    std::optional<ImuModel> imu;  //!< recorded beside the scans
+    std::optional<ImuModel> imu;       //!< recorded beside the scans
+    std::optional<WheelModel> wheels;  //!< likewise
     bool embed = false, force = false;
 };
 
@@ -47,7 +49,7 @@ class DriveWriter {
  private:
     void writeScan(std::size_t scan);
     void add(std::size_t scan, const ScanPoints& points);
-    void addImu(double stamp_s);
+    void addSamples(double stamp_s);
     ScanPoints simulate(std::size_t scan);
     std::string poseRow(std::size_t scan) const;
     std::string origin() const;
@@ -63,6 +65,7 @@ class DriveWriter {
     Scanner scanner_;
     io::RawlogWriter writer_;
     std::optional<Imu> imu_;
+    std::optional<Wheels> wheels_;
     std::optional<GnssReceiver> gnss_;
     ScanPoints last_;  //!< what a repeated scan repeats
     std::string times_, poses_, faults_;

@@ -11,7 +11,7 @@
 
 #include "cli.h"
 #include "delio/core/error.h"
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/formats/trajectory.h"
 #include "delio/mrpt/rawlog_writer.h"

@@ -75,7 +75,7 @@ class Conversion {
         while (count == 0 || writer_.scans() < count) {
             const auto scan = next(passed);
             if (cli::interrupted()) return false;
-            for (const auto& sample : reader_.takeImu()) imu_.push_back(sample);
+            takeSamples();
             if (!scan) break;
             add(*scan);
             progress.update(writer_.scans(), reader_.fraction());
@@ -96,7 +96,7 @@ class Conversion {
         if (meta.sensorModel == "unknown" && !recording.sensor.empty())
             meta.sensorModel = recording.sensor;
         meta.epoch_s = epoch_s_;
-        for (const auto& sample : imu_) writer_.add(sample, epoch_s_);
+        writeSamples();
         meta.generator = std::string("scans2rawlog (delio ") + kVersion + ")";
         writer_.finish(meta, times_, reader_.calibration().text, poses_);
         return writer_.scans();
@@ -120,14 +120,23 @@ class Conversion {
         }
     }
 
+    void takeSamples() {
+        for (const auto& sample : reader_.takeImu()) imu_.push_back(sample);
+        for (const auto& sample : reader_.takeOdometry()) odometry_.push_back(sample);
+    }
+
+    void writeSamples() {
+        for (const auto& sample : std::exchange(imu_, {})) writer_.add(sample, epoch_s_);
+        for (const auto& sample : std::exchange(odometry_, {})) writer_.add(sample, epoch_s_);
+    }
+
     void add(const Scan& scan) {
         // Second 0 of the drive's stamps: MRPT's clock has the whole time.
         if (writer_.scans() == 0)
             epoch_s_ = reader_.meta() && reader_.meta()->epoch_s > 0
                            ? reader_.meta()->epoch_s
                            : std::round(mrpt::Clock::toDouble(scan.time) - scan.stamp_s);
-        for (const auto& sample : imu_) writer_.add(sample, epoch_s_);
-        imu_.clear();
+        writeSamples();
         writer_.add(scan, epoch_s_);
         char row[48];
         std::snprintf(row, sizeof(row), "%.9f\n", scan.stamp_s);
@@ -139,7 +148,8 @@ class Conversion {
     io::ScanReader& reader_;
     std::vector<std::string> truth_;
     io::RawlogWriter writer_;
-    std::vector<ImuSample> imu_;  //!< before the next scan
+    std::vector<ImuSample> imu_;            //!< before the next scan
+    std::vector<OdometrySample> odometry_;  //!< likewise
     double epoch_s_ = 0;
     std::string times_, poses_, fault_;
 };

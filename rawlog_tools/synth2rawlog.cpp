@@ -155,6 +155,23 @@ struct Arguments {
         "0,0,0",
         "ROLL,PITCH,YAW",
         cmd};
+    TCLAP::ValueArg<double> odometry{
+        "",
+        "odometry",
+        "Also record wheel odometry, 50 poses per second (CObservationOdometry, label odometry); "
+        "0.01: its distances are 1 % too long",
+        false,
+        0,
+        "SCALE_ERROR",
+        cmd};
+    TCLAP::ValueArg<std::string> slip{
+        "",
+        "slip",
+        "Time in which the wheels slip, seconds, and the part by which their distances grow",
+        false,
+        "",
+        "START,DURATION,PART",
+        cmd};
     TCLAP::ValueArg<double> noise{
         "", "noise", "Standard deviation of the range noise, metres", false, 0.01, "M", cmd};
     TCLAP::ValueArg<double> ringBias{
@@ -337,6 +354,29 @@ std::optional<ImuModel> imuOf(Arguments& args) {
     return model;
 }
 
+/** The same of the wheels. */
+std::string faultInWheels(Arguments& args) {
+    if (args.slip.isSet() && !args.odometry.isSet()) return "--slip needs --odometry";
+    if (!(std::abs(args.odometry.getValue()) < 1)) return "--odometry must be between -1 and 1";
+    if (!args.slip.isSet()) return "";
+    const auto slip = cli::numbersIn(args.slip.getValue(), 3);
+    if (slip.empty() || slip[1] < 0 || slip[2] <= -1)
+        return "--slip needs START,DURATION,PART: two times in seconds and more than -1";
+    return "";
+}
+
+std::optional<WheelModel> wheelsOf(Arguments& args) {
+    if (!args.odometry.isSet()) return {};
+    WheelModel model;
+    model.scaleError = args.odometry.getValue();
+    if (!args.slip.isSet()) return model;
+    const auto slip = cli::numbersIn(args.slip.getValue(), 3);
+    model.slipFirst_s = slip[0];
+    model.slipLast_s = slip[0] + slip[1];
+    model.slip = slip[2];
+    return model;
+}
+
 DriveRequest requestOf(Arguments& args) {
     DriveRequest request;
     request.output = args.output.getValue();
@@ -358,6 +398,7 @@ DriveRequest requestOf(Arguments& args) {
     request.distort = args.distort.getValue();
     request.labels = args.labels.getValue();
     request.imu = imuOf(args);
+    request.wheels = wheelsOf(args);
     request.embed = args.embed.getValue();
     request.force = args.force.getValue();
     return request;
@@ -374,6 +415,7 @@ int makeDrive(Arguments& args) {
     if (fault.empty()) fault = faultInMotion(args);
     if (fault.empty()) fault = faultInDrive(args);
     if (fault.empty()) fault = faultInImu(args);
+    if (fault.empty()) fault = faultInWheels(args);
     if (fault.empty()) fault = faultInGnss(args);
     if (!fault.empty()) {
         cli::inform(fault + "; see --help");

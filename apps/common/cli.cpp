@@ -22,8 +22,7 @@
 
 #include "command_line_output.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/core/printable.h"
+#include "delio/core/text.h"
 
 /** Replaces MRPT's function: containers of MRPT 2.5.8 do not check whether an allocation succeeded.
  *  A program's own functions take precedence over those of its libraries. */

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cli.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::cli {
 namespace {

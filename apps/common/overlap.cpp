@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "delio/core/error.h"
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 #include "delio/mrpt/rawlog_writer.h"
 
 namespace delio::cli {

@@ -17,6 +17,7 @@
 #include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
 #include "delio/odometry/step.h"
+#include "delio/odometry/wheels.h"
 #include "delio/recordings/scan_reader.h"
 #include "delio/slam/options.h"
 
@@ -144,8 +145,20 @@ any order; later ones wait. The paper's profiles ignore them.)")
             "ImuReport: what was found out about the IMU so far; None without samples.");
 }
 
+/** The same of wheels: add_odometry(sample) and odometry_report. */
+template <class Object>
+void defOdometry(py::class_<Object>& to) {
+    to.def("add_odometry", &Object::addOdometry, py::arg("sample"),
+           "Takes an OdometrySample of the drive: a loose prior for the motion along axes that the "
+           "scans do not show. As add_imu().")
+        .def_property_readonly("odometry_report", &Object::odometryReport,
+                               "OdometryReport: what was found out about the wheels so far; None "
+                               "without samples.");
+}
+
 void bindScans(py::module_& module);         //!< Scan, Scans, open_scans
 void bindImu(py::module_& module);           //!< ImuSample, ImuReport
+void bindWheels(py::module_& module);        //!< OdometrySample, OdometryReport
 void bindSteps(py::module_& module);         //!< Step
 void bindOdometry(py::module_& module);      //!< Odometry
 void bindSlam(py::module_& module);          //!< Slam

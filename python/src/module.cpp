@@ -61,6 +61,7 @@ PYBIND11_MODULE(_delio, module) {
     bindModule(module);
     bindScans(module);
     bindImu(module);
+    bindWheels(module);
     bindSteps(module);
     bindOdometry(module);
     bindTrajectories(module);

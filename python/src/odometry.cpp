@@ -189,6 +189,16 @@ class PythonOdometry {
         return slam_.imuReport();
     }
 
+    void addOdometry(const OdometrySample& sample) {
+        const InUse inUse(mutex_);
+        slam_.addOdometry(sample);
+    }
+
+    std::optional<OdometryReport> odometryReport() {
+        const InUse inUse(mutex_);
+        return slam_.odometryReport();
+    }
+
  private:
     Slam slam_;
     std::size_t scans_ = 0;
@@ -213,5 +223,6 @@ Raises delio.Error for an unknown profile or option. Memory does not grow with t
         py::arg("profile") = "accurate", py::kw_only(), py::arg("recording") = py::none());
     defProcess(odometry, "Registers the next scan and returns its Step.");
     defImu(odometry);
+    defOdometry(odometry);
 }
 }  // namespace delio::python

@@ -120,8 +120,8 @@ map: a stored map in which the drive is localised; initial_pose: (4, 4) of the v
 loops, graph, build_map: False leaves them out. keep_dynamic: write map_dynamic.ply.
 pictures: False leaves them out.
 force: overwrite existing files.
-imu, gnss: False leaves the recording's IMU or GNSS fixes out. fixes: a file (csv or NMEA) that
-    replaces the recording's fixes; antenna: (3,), position of the GNSS antenna in the vehicle,
+imu, odometry, gnss: False leaves the recording's IMU, wheel odometry or GNSS fixes out. fixes: a
+    file (csv or NMEA) that replaces the recording's fixes; antenna: (3,), position of the GNSS antenna in the vehicle,
     metres.
 progress: called with the number of processed scans. Ctrl-C, and what it raises, end the run; the
     results up to there are written.
@@ -157,13 +157,14 @@ void bindRun(py::module_& module) {
            const OptionalPath& sensorFile, const OptionalPath& images, const OptionalPath& truth,
            const std::string& truthFrame, const OptionalPath& map, const py::object& initialPose,
            bool extend, bool loops, bool graph, bool buildMap, bool keepDynamic, bool pictures,
-           bool force, bool imu, bool gnss, const OptionalPath& fixes, const py::object& antenna,
-           const py::object& progress, const py::kwargs& options) {
+           bool force, bool imu, bool odometry, bool gnss, const OptionalPath& fixes,
+           const py::object& antenna, const py::object& progress, const py::kwargs& options) {
             run::PlaybackSettings playback;
             playback.start = start;
             playback.count = count;
             playback.every = every;
             playback.imu = imu;
+            playback.odometry = odometry;
             playback.gnss = gnss;
             playback.fixes = textOf(fixes);
             if (!antenna.is_none()) playback.antenna = vectorIn(antenna, "antenna");
@@ -188,7 +189,7 @@ void bindRun(py::module_& module) {
         py::arg("initial_pose") = py::none(), py::arg("extend") = false, py::arg("loops") = true,
         py::arg("graph") = true, py::arg("build_map") = true, py::arg("keep_dynamic") = false,
         py::arg("pictures") = true, py::arg("force") = false, py::arg("imu") = true,
-        py::arg("gnss") = true, py::arg("fixes") = py::none(), py::arg("antenna") = py::none(),
-        py::arg("progress") = py::none(), kRunText);
+        py::arg("odometry") = true, py::arg("gnss") = true, py::arg("fixes") = py::none(),
+        py::arg("antenna") = py::none(), py::arg("progress") = py::none(), kRunText);
 }
 }  // namespace delio::python

@@ -171,6 +171,13 @@ void bindScans(py::module_& module) {
             },
             "list of ImuSample: samples of the recording's IMU that were read since the last call, "
             "in their order.")
+        .def(
+            "take_odometry",
+            [](Scans& scans) {
+                const InUse inUse(scans.mutex);
+                return scans.in->takeOdometry();
+            },
+            "list of OdometrySample: the same of the recording's wheel odometry.")
         .def_property_readonly(
             "calibration",
             [](const Scans& scans) -> py::object {

@@ -50,6 +50,16 @@ class PythonSlam {
         return finished_ ? run_.record().imu : run_.imuReport();
     }
 
+    void addOdometry(const OdometrySample& sample) {
+        const InUse inUse(mutex_);
+        run_.addOdometry(sample);
+    }
+
+    std::optional<OdometryReport> odometryReport() {
+        const InUse inUse(mutex_);
+        return finished_ ? run_.record().wheels : run_.odometryReport();
+    }
+
     void finish() {
         const py::gil_scoped_release release;
         const InUse inUse(mutex_);
@@ -134,6 +144,7 @@ void bindSlam(py::module_& module) {
         py::arg("graph") = true, py::arg("build_map") = true);
     defProcess(slam, "Processes the next scan and returns its Step, by the odometry alone.");
     defImu(slam);
+    defOdometry(slam);
     slam.def("finish", &PythonSlam::result, py::return_value_policy::copy,
              "Closes loops, optimises the pose graph and returns a RunResult. No scan is accepted "
              "afterwards.")

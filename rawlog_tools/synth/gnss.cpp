@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "delio/core/geometry.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "random.h"
 
 namespace delio::synth {

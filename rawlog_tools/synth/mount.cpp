@@ -4,7 +4,7 @@
 #include <sstream>
 #include <vector>
 
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::synth {
 namespace {

@@ -33,6 +33,7 @@ int main(int argc, char** argv) try {
     run.readSideFiles(reader->calibration(), reader->truth());
     while (const auto scan = reader->next()) {
         for (const auto& sample : reader->takeImu()) run.addImu(sample);
+        for (const auto& sample : reader->takeOdometry()) run.addOdometry(sample);
         run.process(*scan);
     }
     run.finish(/*complete=*/true);

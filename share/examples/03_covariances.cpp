@@ -2,7 +2,7 @@
 // another map would add edges to the same nodes. Writes the graph as text.
 //   03_covariances DRIVE OUT.graph
 #include <delio/core/increment.h>
-#include <delio/graph/pose_pdf.h>
+#include <delio/graph/pose_graph.h>
 #include <delio/recordings/scan_reader.h>
 #include <delio/slam/options.h>
 #include <mrpt/graphs/CNetworkOfPoses.h>

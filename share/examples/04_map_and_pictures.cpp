@@ -1,7 +1,7 @@
 // Builds a map as point cloud, scene for SceneViewer3D and pictures, without a display. Connects
 // odometry, pose graph and map by hand: delio::Slam calls each listener with every step.
 //   04_map_and_pictures DRIVE OUTDIR
-#include <delio/map/ply.h>
+#include <delio/map/cloud_files.h>
 #include <delio/picture/render.h>
 #include <delio/picture/scene.h>
 #include <delio/recordings/scan_reader.h>

@@ -14,7 +14,7 @@
 
 #include "anywhere.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace {
 using namespace delio;

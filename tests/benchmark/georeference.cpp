@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/evaluation/metrics.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/formats/fixes.h"

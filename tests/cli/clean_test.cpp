@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "command.h"
-#include "delio/map/pcd.h"
+#include "delio/map/cloud_files.h"
 #include "poses.h"
 #include "ring_scan.h"
 #include "test_data.h"

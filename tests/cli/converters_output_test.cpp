@@ -3,7 +3,7 @@
 #include <csignal>
 #include <thread>
 
-#include "delio/map/ply.h"
+#include "delio/map/cloud_files.h"
 #include "drive_state.h"
 #include "kitti_tools.h"
 

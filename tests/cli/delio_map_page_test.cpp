@@ -1,7 +1,7 @@
 // map.html, and what was taken out of a map: delio-slam writes them, delio-map again.
 #include <gtest/gtest.h>
 
-#include "delio/map/ply.h"
+#include "delio/map/cloud_files.h"
 #include "delio/run/run_folder.h"
 #include "delio_slam_fixture.h"
 

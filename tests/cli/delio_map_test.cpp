@@ -8,10 +8,9 @@
 #include <cstdlib>
 #include <set>
 
+#include "delio/map/cloud_files.h"
 #include "delio/map/map_builder.h"
 #include "delio/map/map_point.h"
-#include "delio/map/pcd.h"
-#include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
 #include "delio/picture/scene.h"
 #include "delio/run/run_folder.h"

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/formats/trajectory.h"
 #include "delio_slam_fixture.h"
 #include "poses.h"

@@ -8,9 +8,8 @@
 #include <sstream>
 
 #include "command.h"
+#include "delio/map/cloud_files.h"
 #include "delio/map/map_builder.h"
-#include "delio/map/pcd.h"
-#include "delio/map/ply.h"
 #include "delio/map/simplemap.h"
 #include "delio/picture/scene.h"
 #include "poses.h"

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "command.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/formats/georeference.h"
-#include "delio/map/las.h"
+#include "delio/map/cloud_files.h"
 #include "delio/places/stored_map.h"
 #include "delio/run/run_folder.h"
 #include "test_data.h"

@@ -2,7 +2,7 @@
 #include <iomanip>
 
 #include "delio/formats/trajectory.h"
-#include "delio/map/ply.h"
+#include "delio/map/cloud_files.h"
 #include "delio/run/run_folder.h"
 #include "delio_slam_fixture.h"
 #include "poses.h"

@@ -1,6 +1,4 @@
-#include "delio/map/las.h"
-#include "delio/map/pcd.h"
-#include "delio/map/ply.h"
+#include "delio/map/cloud_files.h"
 #include "target.h"
 
 /** Maps of points: .ply, .pcd and .las. */

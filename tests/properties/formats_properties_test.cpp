@@ -6,13 +6,11 @@
 #include <limits>
 #include <string>
 
-#include "delio/core/numbers.h"
-#include "delio/core/printable.h"
+#include "delio/core/text.h"
 #include "delio/formats/g2o.h"
 #include "delio/formats/trajectory.h"
 #include "delio/graph/pose_graph.h"
-#include "delio/map/pcd.h"
-#include "delio/map/ply.h"
+#include "delio/map/cloud_files.h"
 #include "generators.h"
 #include "test_data.h"
 

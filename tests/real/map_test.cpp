@@ -7,8 +7,8 @@
 
 #include "command.h"
 #include "delio/formats/trajectory.h"
+#include "delio/map/cloud_files.h"
 #include "delio/map/map_builder.h"
-#include "delio/map/ply.h"
 #include "delio/picture/render.h"
 #include "delio/picture/scene.h"
 #include "delio/run/run_folder.h"

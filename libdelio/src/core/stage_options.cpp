@@ -4,7 +4,7 @@
 #include <ostream>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio {
 namespace {

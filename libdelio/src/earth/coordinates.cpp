@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::earth {
 using Eigen::Vector3d;

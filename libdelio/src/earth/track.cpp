@@ -9,7 +9,7 @@
 
 #include "core/percentile.h"
 #include "delio/core/geometry.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::earth {
 using Eigen::Isometry3d;

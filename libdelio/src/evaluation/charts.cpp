@@ -18,10 +18,9 @@
 #include <ostream>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/core/printable.h"
+#include "delio/core/text.h"
 #include "delio/evaluation/comparison.h"
-#include "delio/files/output_file.h"
+#include "delio/files/output.h"
 
 namespace delio::evaluation {
 namespace fs = std::filesystem;

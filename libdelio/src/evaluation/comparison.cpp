@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/evaluation/metrics.h"
 
 namespace delio::evaluation {

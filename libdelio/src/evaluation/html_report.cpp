@@ -11,8 +11,7 @@
 #include <sstream>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/core/printable.h"
+#include "delio/core/text.h"
 
 namespace delio::evaluation {
 namespace {

@@ -12,8 +12,7 @@
 #include <string>
 
 #include "delio/core/error.h"
-#include "delio/files/output_file.h"
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 #include "evaluation/charts.h"
 #include "evaluation/html_report.h"
 

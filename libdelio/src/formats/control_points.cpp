@@ -3,8 +3,8 @@
 #include <ostream>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 #include "delio/formats/georeference.h"
 #include "files/input_file.h"
 #include "number_line.h"

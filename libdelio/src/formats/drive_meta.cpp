@@ -9,8 +9,7 @@
 #include <sstream>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/core/printable.h"
+#include "delio/core/text.h"
 #include "files/input_file.h"
 
 namespace delio::io {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "files/input_file.h"
 #include "number_line.h"
 

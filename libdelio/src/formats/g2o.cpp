@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 #include "graph/residual.h"
 
 namespace delio::io {

@@ -6,8 +6,8 @@
 #include <ostream>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 
 namespace delio::io {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "delio/core/error.h"
-#include "delio/files/output_file.h"
+#include "delio/files/output.h"
 #include "delio/version.h"
 #include "files/input_file.h"
 

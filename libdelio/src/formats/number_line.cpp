@@ -8,7 +8,7 @@
 #include <ctime>
 #include <limits>
 
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::io {
 namespace {

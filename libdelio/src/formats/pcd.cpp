@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "files/input_file.h"
 
 namespace delio::io {

@@ -3,7 +3,7 @@
 #include <array>
 #include <sstream>
 
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::io {
 namespace {

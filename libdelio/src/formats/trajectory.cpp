@@ -9,8 +9,8 @@
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/core/numbers.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 
 namespace delio::io {
 namespace {

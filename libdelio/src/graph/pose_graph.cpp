@@ -8,6 +8,7 @@
 #include "delio/core/error.h"
 #include "graph/doubtful_edges.h"
 #include "graph/levmarq_seam.h"
+#include "graph/residual.h"
 
 namespace delio::graph {
 namespace {
@@ -203,5 +204,17 @@ OptimisationResult PoseGraph::optimiseLast(std::size_t count, const PoseGraphOpt
     const auto result = minimise(graph, options.max_iterations);
     takeFreePoses(graph);
     return result;
+}
+
+mrpt::poses::CPose3DPDFGaussian posePdfOf(const Increment& increment) {
+    const auto inverseOf = [](const Matrix6& m) {
+        const Matrix6 inverse = m.ldlt().solve(Matrix6::Identity());
+        return Matrix6((inverse + inverse.transpose()) / 2);
+    };
+    mrpt::poses::CPose3DPDFGaussian pdf(toMrpt(increment.pose));
+    pdf.cov.asEigen() =
+        inverseOf(convertInformation(inverseOf(increment.covariance), increment.pose,
+                                     InformationOf::tangent, InformationOf::yawPitchRoll));
+    return pdf;
 }
 }  // namespace delio::graph

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 #include "map/ground.h"
 #include "mrpt/object_file.h"
 

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "delio/core/error.h"
-#include "delio/core/printable.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 #include "map/page_cloud.h"
 
 namespace delio::map {
@@ -117,8 +117,11 @@ class About {
             out << (i == 0 ? "[" : ",[") << content_.loops[i].first << ','
                 << content_.loops[i].second << ']';
         out << ']';
-        if (content_.north)
-            out << ",\n\"north\":[" << content_.north->x() << ',' << content_.north->y() << ']';
+        if (content_.north) {
+            // Thousandths, and no "-0".
+            const Eigen::Array3d north = (1e3 * content_.north->array()).round() / 1e3 + 0.0;
+            out << ",\n\"north\":[" << north.x() << ',' << north.y() << ']';
+        }
         writeColours(out);
         out << "}\n";
     }

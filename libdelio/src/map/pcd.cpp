@@ -1,10 +1,10 @@
-#include "delio/map/pcd.h"
+#include "delio/map/cloud_files.h"
 
 #include <cmath>
 #include <cstring>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "formats/pcd.h"
 #include "point_file.h"
 

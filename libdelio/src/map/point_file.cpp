@@ -7,8 +7,8 @@
 #include <limits>
 #include <string_view>
 
-#include "delio/core/numbers.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 
 namespace delio::map {
 namespace {

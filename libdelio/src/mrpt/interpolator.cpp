@@ -2,8 +2,8 @@
 
 #include "clock.h"
 #include "delio/core/geometry.h"
-#include "delio/core/numbers.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 
 namespace delio::io {
 // CPose3DInterpolator::saveToTextFile() writes commas where the locale has them.

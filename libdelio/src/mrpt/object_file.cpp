@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "delio/core/error.h"
-#include "delio/files/output_file.h"
+#include "delio/files/output.h"
 #include "files/gz.h"
 #include "object_archive.h"
 

@@ -13,6 +13,7 @@
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "imu_observation.h"
+#include "odometry_observation.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -158,6 +159,13 @@ void RawlogWriter::add(const ImuSample& sample, double epoch_s) {
     observation.sensorLabel = "imu";
     observation.timestamp = timeOf(sample.stamp_s, epoch_s);
     put(observation);
+}
+
+void RawlogWriter::add(const OdometrySample& sample, double epoch_s) {
+    const auto observation = observationOf(sample);
+    observation->sensorLabel = "odometry";
+    observation->timestamp = timeOf(sample.stamp_s, epoch_s);
+    put(*observation);
 }
 
 void RawlogWriter::put(const mrpt::obs::CObservation& observation) {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "delio/core/geometry.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::odometry {
 namespace {
@@ -29,17 +29,8 @@ std::string degrees(double rad, int digits) { return rounded(rad / kDeg, digits)
 }  // namespace
 
 void GyroPrior::add(const ImuSample& sample) {
-    constexpr std::size_t kMost = 200'000;
-    if (!std::isfinite(sample.stamp_s) || !sample.rate_radps.allFinite()) {
-        ++dropped_;
-        return;
-    }
-    auto place = waiting_.end();
-    while (place != waiting_.begin() && std::prev(place)->stamp_s > sample.stamp_s) --place;
-    waiting_.insert(place, sample);
-    if (waiting_.size() <= kMost) return;
-    waiting_.pop_front();
-    ++dropped_;
+    const bool isUsable = std::isfinite(sample.stamp_s) && sample.rate_radps.allFinite();
+    if (!isUsable || !waiting_.add(sample)) ++dropped_;
 }
 
 void GyroPrior::advance(const ScanClock& scan, const Eigen::Isometry3d& sensorPose) {
@@ -48,11 +39,10 @@ void GyroPrior::advance(const ScanClock& scan, const Eigen::Isometry3d& sensorPo
     if (std::abs(shift_s - shift_s_) > kSame_s) ++stretch_;  // a clock was set, or a pause
     shift_s_ = shift_s;
     const double end_s = scan.time_s + scan.last_s + kMostOffset_s;
-    for (; !waiting_.empty() && waiting_.front().stamp_s - shift_s <= end_s; waiting_.pop_front()) {
-        const ImuSample& sample = waiting_.front();
+    waiting_.takeUpTo(end_s, shift_s, [&](const ImuSample& sample) {
         if (sample.sensorPose) imuPose_ = sample.sensorPose->linear();
         use(sample.stamp_s - shift_s, sample.rate_radps);
-    }
+    });
     if (imuPose_) given_ = normalised(Matrix3d(sensorPose.linear().transpose() * *imuPose_));
     while (!readings_.empty() && readings_.front().time_s < end_s - kMemory_s)
         readings_.pop_front();

@@ -7,6 +7,7 @@
 
 #include "core/scan_trajectory.h"
 #include "delio/odometry/imu.h"
+#include "odometry/waiting_samples.h"
 
 namespace delio::odometry {
 /** A scan among the samples of an IMU. */
@@ -25,7 +26,7 @@ class GyroPrior {
     void add(const ImuSample& sample);
 
     /** No sample came. */
-    bool isEmpty() const { return samples_ == 0 && waiting_.empty(); }
+    bool isEmpty() const { return samples_ == 0 && waiting_.isEmpty(); }
 
     /** Uses the samples up to the scan. `sensorPose`: of the LiDAR, sensor to vehicle. */
     void advance(const ScanClock& scan, const Eigen::Isometry3d& sensorPose);
@@ -103,7 +104,7 @@ class GyroPrior {
     bool showsEnoughMotion() const;
     void explain(ImuReport& report) const;
 
-    std::deque<ImuSample> waiting_;  //!< by their stamps
+    WaitingSamples<ImuSample> waiting_;
     std::deque<Reading> readings_;
     std::deque<Pair> pairs_;
     double usual_s_ = 0;  //!< between samples

@@ -51,6 +51,10 @@ void Odometry::addImu(const ImuSample& /*sample*/) {}
 
 std::optional<ImuReport> Odometry::imuReport() const { return {}; }
 
+void Odometry::addOdometry(const OdometrySample& /*sample*/) {}
+
+std::optional<OdometryReport> Odometry::odometryReport() const { return {}; }
+
 namespace odometry {
 Quality qualityOf(const RotationEstimate& rotation, const TranslationEstimate& translation) {
     Quality quality;

@@ -76,7 +76,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     time_s_ = arrivals_.sinceStart_s();
     const Interval& interval = arrival.interval;
     unregistered_s_ += interval.elapsed_s;
-    advanceGyro(cloud, scan);
+    advancePriors(cloud, scan);
     step.notFinite = cloud.notFinite;
     step.deskewed = !cloud.times_s.empty();
     step.interrupted = !isEmpty && interval.kind == IntervalKind::kUnknown;
@@ -94,6 +94,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     carryToStamp(cloud.stamp_s, !motionWasKnown && !step.predicted && !step.interrupted, step);
     settleWindow(step);
     correctPast(step);
+    learnFromWheels(step);
 
     step.standing = isStanding(step, interval.duration_s);
     step.lost = isLostAfter(step);
@@ -122,7 +123,7 @@ void PlaneOdometry::interrupt(double elapsed_s) {
 bool PlaneOdometry::isLostAfter(const Step& step) const {
     constexpr unsigned kPatience = 3;
     if (const auto* degenerate = std::get_if<Degenerate>(&state_))
-        return !prediction_.hasMotion() && degenerate->scans >= kPatience;
+        return !isCarried_ && !prediction_.hasMotion() && degenerate->scans >= kPatience;
     return step.predicted && missesOf(state_) > 0;
 }
 
@@ -135,6 +136,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptToTrack(const PointCloud& cloud,
         return attemptAfterPause(cloud, interval, since_s, step);
     Attempt attempt =
         attemptWithGyro(cloud, interval.duration_s, since_s, !reference_.isBeforePause, step);
+    attempt = attemptByWheels(cloud, interval.duration_s, std::move(attempt), step);
     if (isImplausible(attempt.placement.estimate)) attempt.placement.estimate.valid = false;
     return attempt;
 }
@@ -155,7 +157,7 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
     }
     const auto estimate = registerByPlanes(cloud, placed, predicted, since_s, view, step);
 
-    pose_ = estimate.valid ? estimate.pose() : predicted;
+    pose_ = estimate.valid ? estimate.pose() : predictedByWheels(predicted);
     {
         const StageTimer timer(step, "map_update");
         if (estimate.valid)
@@ -270,6 +272,7 @@ Extrapolation PlaneOdometry::predictMotion(double duration_s) {
     constexpr double kLong_s = 0.5;
     Eigen::Isometry3d increment = prediction_.predict(duration_s);
     if (duration_s > kLong_s) increment = withoutTilt(increment, upright_);
+    if (std::holds_alternative<Degenerate>(state_)) increment = withWheels(increment);
     Extrapolation extrapolation(increment, duration_s);
     const bool isKnown = !isLost(state_) && !std::holds_alternative<Degenerate>(state_);
     if (extrapolation_ && isKnown) extrapolation = *extrapolation_;
@@ -326,8 +329,11 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     if (!placed.valid) return predictedEstimate(predicted);
     view.thinned = voxelCentroids(view.fine, options_.spacing.scan_spacing).cast<double>();
     auto found = map_.registerPlanes(view, placed, predicted, motion());
-    if (step.deskewed && !step.interrupted && window_.isEmpty())
+    carryByWheels(found);
+    if (step.deskewed && !step.interrupted && window_.isEmpty()) {
         deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
+        carryByWheels(found);
+    }
     return found;
 }
 
@@ -368,7 +374,7 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
 bool PlaneOdometry::hasDrifted(const PlaneEstimate& estimate, double inlierRatio) const {
     constexpr double kDrifted = 0.6, kHorizontal = 0.7;  // of the unit axis, along the vertical
     const auto* degenerate = std::get_if<Degenerate>(&state_);
-    if (!degenerate || prediction_.hasMotion()) return false;
+    if (!degenerate || isCarried_ || prediction_.hasMotion()) return false;
     const Eigen::VectorXd along = estimate.translation.unobservedAxes.transpose() * upAt(pose_);
     const bool isHorizontal = (along.array().abs() < kHorizontal).any();
     return isHorizontal && inlierRatio < kDrifted * degenerate->inlierRatio;
@@ -461,7 +467,7 @@ void PlaneOdometry::begin(const PointCloud& cloud, Step& step) {
  *  the scan before. */
 void PlaneOdometry::skip(const PointCloud& cloud, const Interval& interval, Step& step) {
     const Extrapolation extrapolation = predictMotion(interval.duration_s);
-    pose_ = pose_ * extrapolation.at(interval.duration_s);
+    pose_ = predictedByWheels(pose_ * extrapolation.at(interval.duration_s));
     motion_ = extrapolation.motion();
     ScanView view = undistorted(cloud, motion_);
     step.details = detailsOf({}, {});

@@ -13,6 +13,7 @@
 #include "odometry/register_together.h"
 #include "odometry/register_trajectory.h"
 #include "odometry/tracking_state.h"
+#include "odometry/wheel_prior.h"
 
 namespace delio::odometry {
 /** Points that wait to enter the map. */
@@ -42,6 +43,8 @@ class PlaneOdometry : public Odometry {
     Step process(const Scan& scan) override;
     void addImu(const ImuSample& sample) override { gyro_.add(sample); }
     std::optional<ImuReport> imuReport() const override { return gyro_.report(); }
+    void addOdometry(const OdometrySample& sample) override { wheels_.add(sample); }
+    std::optional<OdometryReport> odometryReport() const override { return wheels_.report(); }
 
  private:
     void begin(const PointCloud& cloud, Step& step);
@@ -93,6 +96,11 @@ class PlaneOdometry : public Odometry {
     void turnBack(const PlaneOdometry& ahead, std::size_t first);
     std::optional<ScanTrajectory> stepBack(const Latest& scan);
 
+    void advancePriors(const PointCloud& cloud, const Scan& scan) {
+        advanceGyro(cloud, scan);
+        advanceWheels(cloud, scan);
+    }
+
     // The rotation by a gyroscope (pipeline_gyro.cpp).
     void advanceGyro(const PointCloud& cloud, const Scan& scan);
     std::optional<Attempt> attemptByGyro(const PointCloud& cloud, double duration_s, double since_s,
@@ -102,6 +110,14 @@ class PlaneOdometry : public Odometry {
     std::optional<ScanTrajectory> trajectoryByGyro(const KnownEnds& known,
                                                    const PointCloud& cloud) const;
     void learnFromGyro(const Eigen::Isometry3d& predicted, double since_s);
+
+    // The translation by wheels (pipeline_wheels.cpp).
+    void advanceWheels(const PointCloud& cloud, const Scan& scan);
+    Eigen::Isometry3d withWheels(const Eigen::Isometry3d& increment) const;
+    Attempt attemptByWheels(const PointCloud& cloud, double duration_s, Attempt alone, Step& step);
+    Eigen::Isometry3d predictedByWheels(const Eigen::Isometry3d& predicted);
+    void carryByWheels(PlaneEstimate& estimate);
+    void learnFromWheels(Step& step);
 
     // The stages of track(), in their order.
     Extrapolation predictMotion(double duration_s);
@@ -270,5 +286,11 @@ class PlaneOdometry : public Odometry {
     AdaptiveKernel gyroKernel_;
     Unevenness gyroUnevenness_;
     Eigen::Isometry3d atConstantSpeed_ = Eigen::Isometry3d::Identity();  //!< predicted without it
+
+    // The translation by wheels.
+    WheelPrior wheels_;
+    std::optional<WheelStep> wheelStep_;  //!< since the latest scan
+    bool isCarried_ = false;              //!< this scan, along an axis that it does not show
+    bool wasObserved_ = false;            //!< the latest scan, along every axis
 };
 }  // namespace delio::odometry

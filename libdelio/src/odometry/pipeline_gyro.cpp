@@ -1,18 +1,8 @@
-#include <algorithm>
 #include <utility>
 
 #include "odometry/pipeline.h"
 
 namespace delio::odometry {
-namespace {
-/** Times of the first and the last point, from the scan's. */
-std::pair<double, double> endsOf(const PointCloud& cloud) {
-    if (cloud.times_s.empty()) return {0, 0};
-    const auto [first, last] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
-    return {std::min(0.0, double{*first}), std::max(0.0, double{*last})};
-}
-}  // namespace
-
 void PlaneOdometry::advanceGyro(const PointCloud& cloud, const Scan& scan) {
     usesGyro_ = false;
     if (gyro_.isEmpty()) return;

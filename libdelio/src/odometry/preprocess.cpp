@@ -27,6 +27,12 @@ float middleOf(std::vector<float> times_s) {
 
 }  // namespace
 
+std::pair<double, double> endsOf(const PointCloud& cloud) {
+    if (cloud.times_s.empty()) return {0, 0};
+    const auto [first, last] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
+    return {std::min(0.0, double{*first}), std::max(0.0, double{*last})};
+}
+
 void countFromMiddle(PointCloud& cloud) {
     if (cloud.times_s.empty()) return;
     constexpr float kThere_s = 2e-3F;  // such a stamp is in the middle

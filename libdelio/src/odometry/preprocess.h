@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "delio/core/odometry_options.h"
@@ -28,6 +29,9 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options);
 /** Makes the middle of the points' times the scan's time, which was the stamp: drivers stamp the
  *  begin of a turn, its end, or the arrival of the message. Without times it stays the stamp. */
 void countFromMiddle(PointCloud& cloud);
+
+/** Times of the first and the last point, from the scan's; both 0 without times. */
+std::pair<double, double> endsOf(const PointCloud& cloud);
 
 /** Why preprocess() leaves no point of a scan, in words; empty where it leaves some. */
 std::string whyNoneIsLeft(const Scan& scan, const PreprocessOptions& options);

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "picture/view.h"
 
 namespace delio::picture {

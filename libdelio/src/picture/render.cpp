@@ -24,7 +24,7 @@
 #include "core/chunked.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/files/output_file.h"
+#include "delio/files/output.h"
 #include "picture/bands.h"
 #include "picture/legend.h"
 #include "picture/shading.h"

@@ -1,4 +1,4 @@
-#include "delio/places/import_cloud.h"
+#include "delio/places/stored_map.h"
 
 #include <algorithm>
 #include <cmath>

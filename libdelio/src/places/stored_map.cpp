@@ -13,7 +13,7 @@
 
 #include "core/voxel_grid.h"
 #include "delio/core/error.h"
-#include "delio/files/output_file.h"
+#include "delio/files/output.h"
 #include "files/input_file.h"
 #include "files/names.h"
 #include "places/bytes.h"

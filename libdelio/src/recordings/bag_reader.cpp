@@ -11,6 +11,7 @@
 #include "gnss.h"
 #include "imu_samples.h"
 #include "message_source.h"
+#include "odometry_samples.h"
 #include "ouster.h"
 #include "packet_messages.h"
 #include "scan_maker.h"
@@ -133,12 +134,14 @@ std::string frameOf(const Message& message) {
     }
 }
 
-/** The topic of the IMU that belongs to the LiDAR of `topic`: with the longest common prefix. Empty
- *  without an IMU. */
-std::string imuTopicFor(const std::vector<Topic>& topics, const std::string& topic) {
+/** The topic of the IMU or odometry that belongs to the LiDAR of `topic`: with the longest common
+ *  prefix. Empty without one. */
+std::string sampleTopicFor(const std::vector<Topic>& topics, const std::string& topic,
+                           bool (*isWanted)(const Topic&)) {
     const Topic* found = nullptr;
     for (const Topic& other : topics)
-        if (isImu(other) && (!found || inCommon(other.name, topic) > inCommon(found->name, topic)))
+        if (isWanted(other) &&
+            (!found || inCommon(other.name, topic) > inCommon(found->name, topic)))
             found = &other;
     return found ? found->name : "";
 }
@@ -152,11 +155,12 @@ class BagReader : public ScanReader {
         topic_ = chooseTopic(bag_->topics(), label);
         type_ = scanTypeOf(topic_);
         picksFrame_ = !frame.empty();
-        imuTopic_ = imuTopicFor(bag_->topics(), topic_.name);
-        if (imuTopic_.empty())
-            bag_->only({topic_.name});
-        else
-            bag_->only({topic_.name, imuTopic_});
+        imuTopic_ = sampleTopicFor(bag_->topics(), topic_.name, isImu);
+        odometryTopic_ = sampleTopicFor(bag_->topics(), topic_.name, isOdometry);
+        std::vector<std::string> wanted{topic_.name};
+        for (const auto& name : {imuTopic_, odometryTopic_})
+            if (!name.empty()) wanted.push_back(name);
+        bag_->only(wanted);
         if (type_ == ScanType::kCloud) {
             maker_ = makeCloudMaker(topic_.name, frame);
             lookAhead(open);
@@ -201,6 +205,12 @@ class BagReader : public ScanReader {
             for (ImuSample& sample : imu_) sample.sensorPose = transforms().pose(imuFrame_, frame_);
         return std::exchange(imu_, {});
     }
+    std::vector<OdometrySample> takeOdometry() override {
+        if (!odometry_.empty())
+            for (OdometrySample& sample : odometry_)
+                sample.sensorPose = transforms().pose(odometryFrame_, frame_);
+        return std::exchange(odometry_, {});
+    }
     /** From a second pass over the bag, once. */
     earth::Fixes takeFixes() override {
         if (std::exchange(fixesAreTaken_, true)) return {};
@@ -226,6 +236,7 @@ class BagReader : public ScanReader {
         recording.sensor = maker_->sensor();
         recording.findings = maker_->findings();
         recording.imu = imuTopic_;
+        recording.odometry = odometryTopic_;
         const bool isCloud = type_ == ScanType::kCloud;
         if (isCloud && maker_->turns())
             recording.scans = topic_.messages;
@@ -267,7 +278,12 @@ class BagReader : public ScanReader {
                 if (frame_.empty() && hasHeader()) frame_ = frameOf(*message);
                 return message;
             }
-            if (const auto sample = sampleOf(*message, imuFrame_)) addSample(*sample, imu_);
+            if (message->topic == odometryTopic_) {
+                const auto sample = odometryOf(*message, odometryFrame_);
+                if (sample) addSample(*sample, odometry_);
+            } else if (const auto sample = sampleOf(*message, imuFrame_)) {
+                addSample(*sample, imu_);
+            }
         }
     }
 
@@ -343,7 +359,10 @@ class BagReader : public ScanReader {
     ScanType type_ = ScanType::kNone;
     std::string imuTopic_;  //!< empty: the bag has no IMU
     std::vector<ImuSample> imu_;
-    std::string frame_, imuFrame_;                //!< of the LiDAR and the IMU; empty: not known
+    std::string odometryTopic_;  //!< empty: the bag has no odometry
+    std::vector<OdometrySample> odometry_;
+    /** Of the LiDAR, the IMU and the odometry; empty: not known. */
+    std::string frame_, imuFrame_, odometryFrame_;
     std::optional<StaticTransforms> transforms_;  //!< once they are asked for
     bool fixesAreTaken_ = false;
     bool picksFrame_ = false;  //!< only messages of one frame_id are taken

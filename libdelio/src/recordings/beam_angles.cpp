@@ -10,7 +10,7 @@
 
 #include "core/portable_math.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::io {
 BeamDirection::BeamDirection(const BeamAngles& angles)

@@ -4,7 +4,7 @@
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/formats/drive_meta.h"
 #include "formats/number_line.h"
 

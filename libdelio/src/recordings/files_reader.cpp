@@ -6,7 +6,7 @@
 #include <string>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/mrpt/rawlog_writer.h"
 #include "files/input_file.h"
 #include "formats/number_line.h"

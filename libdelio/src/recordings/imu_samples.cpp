@@ -40,10 +40,4 @@ std::optional<ImuSample> sampleOf(const Message& message, std::string& frame) {
     }
 }
 
-void addSample(const ImuSample& sample, std::vector<ImuSample>& samples) {
-    constexpr std::size_t kMost = 200'000;
-    if (samples.size() >= kMost)
-        samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(kMost / 2));
-    samples.push_back(sample);
-}
 }  // namespace delio::io

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,5 +17,11 @@ bool isImu(const Topic& topic);
 std::optional<ImuSample> sampleOf(const Message& message, std::string& frame);
 
 /** Appends a sample. Where nobody takes them, the oldest of 200 000 are dropped. */
-void addSample(const ImuSample& sample, std::vector<ImuSample>& samples);
+template <typename Sample>
+void addSample(const Sample& sample, std::vector<Sample>& samples) {
+    constexpr std::size_t kMost = 200'000;
+    if (samples.size() >= kMost)
+        samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(kMost / 2));
+    samples.push_back(sample);
+}
 }  // namespace delio::io

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio::io {
 namespace {

@@ -34,6 +34,9 @@ class MergedReader : public ScanReader {
     std::optional<Scan> next() override;
     bool skip() override { return next().has_value(); }
     std::vector<ImuSample> takeImu() override { return sensors_.front().reader->takeImu(); }
+    std::vector<OdometrySample> takeOdometry() override {
+        return sensors_.front().reader->takeOdometry();
+    }
     const std::string& label() const override { return label_; }
     const std::set<std::string>& otherLabels() const override { return others_; }
     std::optional<double> fraction() const override;

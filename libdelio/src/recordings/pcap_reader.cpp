@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "delio/core/error.h"
-#include "delio/files/output_file.h"
+#include "delio/files/output.h"
 #include "ouster.h"
 #include "ouster_http.h"
 #include "packet_decoder.h"

@@ -7,7 +7,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include "delio/core/error.h"
-#include "delio/graph/pose_pdf.h"
+#include "delio/graph/pose_graph.h"
 #include "files/gz.h"
 #include "mrpt/object_archive.h"
 
@@ -92,7 +92,7 @@ class Copier {
         movement.timestamp = time;
         movement.poseChange = composed(motions);
         movement.rawOdometryIncrementReading = movement.poseChange.mean;
-        movement.estimationMethod = mrpt::obs::CActionRobotMovement3D::emOdometry;
+        movement.estimationMethod = mrpt::obs::CActionRobotMovement3D::emVisualOdometry;
         collection.insert(movement);
         archive_ << collection;
         action_.reset();

@@ -15,7 +15,7 @@
 
 #include "decode_observation.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 #include "delio/odometry/scan.h"
 #include "files/gz.h"
 #include "files/input_file.h"
@@ -25,6 +25,7 @@
 #include "mrpt/external_files.h"
 #include "mrpt/imu_observation.h"
 #include "mrpt/object_archive.h"
+#include "odometry_samples.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -73,7 +74,8 @@ RawlogReader::RawlogReader(const std::string& path, std::string label, std::stri
       imagesFolder_(std::move(imagesFolder)),
       chosen_(!label_.empty()),
       meta_(readDriveMeta(path_)),
-      in_(std::make_unique<GzInput>(path_)) {
+      in_(std::make_unique<GzInput>(path_)),
+      odometry_(std::make_unique<RawlogOdometry>()) {
     if (in_->getTotalBytesCount() == 0) throw Error("'" + path_ + "' is empty");
 }
 
@@ -88,12 +90,15 @@ Recording RawlogReader::recording() const {
     Recording recording;
     recording.kind = "rawlog";
     if (imuLabel_) recording.imu = imuLabel_->empty() ? "without a label" : "'" + *imuLabel_ + "'";
+    recording.odometry = odometry_->name().value_or("");
     if (meta_) {
         if (meta_->sensorModel != "unknown") recording.sensor = meta_->sensorModel;
         recording.motionCompensated = meta_->motionCompensated;
     }
     return recording;
 }
+
+std::vector<OdometrySample> RawlogReader::takeOdometry() { return odometry_->take(); }
 
 earth::Fixes RawlogReader::takeFixes() { return std::exchange(fixes_, {}); }
 
@@ -181,13 +186,16 @@ bool RawlogReader::readEntry() {
     accept(std::dynamic_pointer_cast<CObservation>(object));
     if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object))
         for (const auto& observation : *frame) accept(observation);
+    if (const auto* actions = dynamic_cast<mrpt::obs::CActionCollection*>(object.get()))
+        odometry_->add(*actions);
     return true;
 }
 
-/** Scans, the samples of the first IMU, and GNSS fixes; what else there is may be null. */
+/** Scans, samples of the first IMU and odometry, and GNSS fixes; what else there is may be null. */
 void RawlogReader::accept(const CObservation::Ptr& observation) {
     if (!observation) return;
     const double epoch_s = meta_ ? meta_->epoch_s : 0;
+    odometry_->add(*observation, secondsSince(epoch_s, observation->timestamp));
     if (isScan(*observation)) pending_.push_back(observation);
     if (const auto* gnss = dynamic_cast<const mrpt::obs::CObservationGPS*>(observation.get()))
         if (const auto fix = fixOf(*gnss, epoch_s)) fixes_.push_back(*fix);

@@ -8,10 +8,18 @@ namespace {
 /** Samples of a drive whose scans stay away. */
 constexpr std::size_t kMostSamples = 100'000;
 
-void appendBounded(std::vector<ImuSample>& samples, const std::vector<ImuSample>& more) {
+template <typename Sample>
+void appendBounded(std::vector<Sample>& samples, const std::vector<Sample>& more) {
     samples.insert(samples.end(), more.begin(), more.end());
     if (samples.size() > kMostSamples)
         samples.erase(samples.begin(), samples.end() - kMostSamples / 2);
+}
+
+/** Of a scan that is dropped, before those of the next one. */
+template <typename Sample>
+void passOn(std::vector<Sample> samples, std::vector<Sample>& next) {
+    appendBounded(samples, next);
+    next = std::move(samples);
 }
 }  // namespace
 
@@ -23,12 +31,13 @@ void ScanFeed::add(Scan scan, std::optional<double> received_s) {
     {
         const std::lock_guard lock(mutex_);
         if (closed_) return;
-        waiting_.push_back({std::move(scan), std::exchange(imu_, {}), received_s});
+        waiting_.push_back(
+            {std::move(scan), std::exchange(imu_, {}), std::exchange(odometry_, {}), received_s});
         if (waiting_.size() > mostWaiting_) {
-            auto samples = std::move(waiting_.front().imu);
+            Item dropped = std::move(waiting_.front());
             waiting_.pop_front();
-            appendBounded(samples, waiting_.front().imu);
-            waiting_.front().imu = std::move(samples);
+            passOn(std::move(dropped.imu), waiting_.front().imu);
+            passOn(std::move(dropped.odometry), waiting_.front().odometry);
             isFirst = dropped_++ == 0;
         }
         changed_.notify_one();
@@ -39,6 +48,11 @@ void ScanFeed::add(Scan scan, std::optional<double> received_s) {
 void ScanFeed::add(const ImuSample& sample) {
     const std::lock_guard lock(mutex_);
     if (!closed_) appendBounded(imu_, {sample});
+}
+
+void ScanFeed::add(const OdometrySample& sample) {
+    const std::lock_guard lock(mutex_);
+    if (!closed_) appendBounded(odometry_, {sample});
 }
 
 void ScanFeed::close() { close(nullptr); }

@@ -11,8 +11,7 @@
 #include <utility>
 
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/core/printable.h"
+#include "delio/core/text.h"
 #include "delio/recordings/rawlog_reader.h"
 #include "files/names.h"
 #include "open_merged.h"
@@ -189,6 +188,7 @@ std::string describe(const Recording& recording) {
                                               : ", not de-skewed by the recorder") +
                 how;
     if (!recording.imu.empty()) text += ", IMU " + recording.imu;
+    if (!recording.odometry.empty()) text += ", odometry " + recording.odometry;
     if (recording.scans) text += ", " + std::to_string(*recording.scans) + " scans";
     return text + " (" + recording.kind + ")";
 }

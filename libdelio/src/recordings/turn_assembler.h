@@ -26,6 +26,7 @@ class TurnAssembler : public ScanReader {
     std::optional<Scan> next() override;
     bool skip() override;
     std::vector<ImuSample> takeImu() override { return source_->takeImu(); }
+    std::vector<OdometrySample> takeOdometry() override { return source_->takeOdometry(); }
     const std::string& label() const override { return source_->label(); }
     const std::set<std::string>& otherLabels() const override { return source_->otherLabels(); }
     std::optional<SensorMount> mount() override { return source_->mount(); }

@@ -73,6 +73,8 @@ Doubts doubtsOf(const std::vector<RunRow>& rows) {
     doubts.predicted = stretchesOf(rows, [](const RunRow& row) { return row.predicted; });
     doubts.lost = stretchesOf(rows, [](const RunRow& row) { return row.lost; });
     doubts.weak = stretchesOf(rows, isWeak);
+    doubts.carried =
+        stretchesOf(rows, [](const RunRow& row) { return isWeak(row) && row.carried; });
     for (std::size_t i = 1; i < rows.size(); ++i) {
         const RunRow& row = rows[i];
         const Quality& quality = row.quality;
@@ -90,9 +92,9 @@ std::string whyUnreliable(const Doubts& doubts) {
     constexpr double kWeak = 0.5;
     if (isMore(doubts.lost.scans, kMostLost, doubts.pairs))
         return mrpt::format("lost in %zu of %zu scans", doubts.lost.scans, doubts.pairs);
-    if (isMore(doubts.weak.scans, kWeak, doubts.pairs))
-        return mrpt::format("%zu of %zu scans are weakly observed", doubts.weak.scans,
-                            doubts.pairs);
+    const std::size_t weak = doubts.weak.scans - doubts.carried.scans;
+    if (isMore(weak, kWeak, doubts.pairs))
+        return mrpt::format("%zu of %zu scans are weakly observed", weak, doubts.pairs);
     return {};
 }
 
@@ -149,7 +151,12 @@ std::vector<std::string> warningsOf(const Doubts& doubts) {
             ofAll(doubts.predicted, doubts.pairs) +
             " could not be registered: their motion is predicted, and poses before and after a "
             "long run of them may not fit together; see the column 'reason' of scans.csv");
-    if (static_cast<double>(doubts.weak.scans) > many)
+    if (static_cast<double>(doubts.carried.scans) > many)
+        warnings.push_back(ofAll(doubts.carried, doubts.pairs) + " are weakly observed (" +
+                           weakAxesOf(doubts) +
+                           "; the vehicle's axes): wheel odometry gives the motion along these "
+                           "axes, with its own errors");
+    if (static_cast<double>(doubts.weak.scans - doubts.carried.scans) > many)
         warnings.push_back(
             ofAll(doubts.weak, doubts.pairs) + " are weakly observed (" + weakAxesOf(doubts) +
             "; the vehicle's axes): the scene does not constrain the motion along these axes, so "

@@ -22,7 +22,8 @@ Playback::Reading Playback::read(std::size_t passedOver) {
         if (!reader_.skip()) break;
     }
     auto scan = reader_.next();
-    return {std::move(scan), reader_.takeImu(), reader_.fraction(), reader_.received_s()};
+    return {std::move(scan), reader_.takeImu(), reader_.takeOdometry(), reader_.fraction(),
+            reader_.received_s()};
 }
 
 /** The next scan is read while this one is registered; `read_ms_` is the waiting time. */
@@ -35,6 +36,8 @@ void Playback::processAll(Run& run, const OnScan& onScan) {
         if (!isLast) next = std::async(policy, [&] { return read(settings_.every - 1); });
         if (settings_.imu)
             for (const auto& sample : now_.imu) run.addImu(sample);
+        if (settings_.odometry)
+            for (const auto& sample : now_.odometry) run.addOdometry(sample);
         const RunRow row = run.process(*now_.scan, read_ms_);
         const auto latency = latency_ms();
         if (onScan) onScan(row, {now_.fraction, latency});

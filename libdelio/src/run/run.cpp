@@ -334,6 +334,9 @@ void Run::finish(bool complete) {
     record_.imu = slam_.imuReport();
     if (record_.imu)
         for (const auto& finding : record_.imu->findings) warn(finding);
+    record_.wheels = slam_.odometryReport();
+    if (record_.wheels)
+        for (const auto& finding : record_.wheels->findings) warn(finding);
     slam_.close();
     optimise();
     if (const auto why = whyUnreliable(unlinkedOf(record_), doubts.pairs); !why.empty())

@@ -72,6 +72,7 @@ RunRow rowOf(const Scan& scan, const ScanReport& report, double read_ms, const R
     row.predicted = step.predicted;
     row.lost = step.lost;
     row.track = step.track;
+    row.carried = step.carried;
     row.searched = step.searched;
     row.interrupted = step.interrupted;
     row.standing = step.standing;

@@ -6,7 +6,7 @@
 
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 #include "delio/formats/drive_meta.h"
 #include "mrpt/clock.h"
 #include "recordings/decode_observation.h"

@@ -10,8 +10,8 @@
 
 #include "core/percentile.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 #include "delio/run/doubts.h"
 #include "delio/version.h"
 
@@ -111,6 +111,19 @@ Summary::Figures figuresOf(const ImuReport& imu) {
     if (imu.rotationSigma_rad) put("rotation_sigma_deg", kDegrees * *imu.rotationSigma_rad);
     put("offset_ms", 1e3 * imu.offset_s);
     if (imu.offsetSigma_s) put("offset_sigma_ms", 1e3 * *imu.offsetSigma_s);
+    return figures;
+}
+
+Summary::Figures figuresOf(const OdometryReport& wheels) {
+    Summary::Figures figures{{"samples", static_cast<double>(wheels.samples)},
+                             {"dropped", static_cast<double>(wheels.dropped)},
+                             {"jumps", static_cast<double>(wheels.jumps)},
+                             {"scans_carried", static_cast<double>(wheels.scansCarried)},
+                             {"scans_without_samples", static_cast<double>(wheels.scansWithout)},
+                             {"stretches", static_cast<double>(wheels.compared)},
+                             {"stretches_off", static_cast<double>(wheels.contradicting)},
+                             {"scale", wheels.scale}};
+    if (wheels.sigma) figures.emplace_back("sigma_m_per_m", *wheels.sigma);
     return figures;
 }
 
@@ -224,6 +237,7 @@ void forEachField(Record& s, const Field& field) {
         field("not_found_in_map", s.not_found_in_map);
     }
     if (field.hasGroup("imu", !s.imu.empty())) field("imu", s.imu);
+    if (field.hasGroup("odometry", !s.odometry.empty())) field("odometry", s.odometry);
     if (field.hasGroup("georeference", !s.georeference.empty()))
         field("georeference", s.georeference);
     field("path_m", s.path_m);
@@ -310,6 +324,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
            : fix.where == Whereabouts::kOutside ? summary.outside_map
                                                 : summary.not_found_in_map);
     if (record.imu) summary.imu = figuresOf(*record.imu);
+    if (record.wheels) summary.odometry = figuresOf(*record.wheels);
     summary.deskewed = countOf(record, &RunRow::deskewed);
     summary.georeference = georeferenceOf(record);
     summary.path_m = record.path_m();

@@ -10,8 +10,8 @@
 
 #include "core/portable_math.h"
 #include "delio/core/error.h"
-#include "delio/core/numbers.h"
-#include "delio/files/output_file.h"
+#include "delio/core/text.h"
+#include "delio/files/output.h"
 #include "delio/run/doubts.h"
 #include "formats/table_cells.h"
 

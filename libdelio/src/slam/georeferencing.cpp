@@ -6,7 +6,7 @@
 
 #include "core/percentile.h"
 #include "delio/core/geometry.h"
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 namespace delio {
 using earth::FixOnTrack;

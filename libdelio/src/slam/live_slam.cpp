@@ -20,6 +20,7 @@ void LiveSlam::run() {
         std::string refusal;
         try {
             for (const ImuSample& sample : item->imu) slam_->addImu(sample);
+            for (const OdometrySample& sample : item->odometry) slam_->addOdometry(sample);
             slam_->process(item->scan);
         } catch (const std::exception& e) {
             refusal = plainMessage(e);

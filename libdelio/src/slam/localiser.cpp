@@ -1,7 +1,7 @@
 #include "delio/slam/localiser.h"
 
 #include "delio/core/error.h"
-#include "delio/graph/pose_pdf.h"
+#include "delio/graph/pose_graph.h"
 #include "recordings/decode_observation.h"
 #include "slam/place_listeners.h"
 

@@ -15,9 +15,10 @@
 #include "core/voxel_grid.h"
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
-#include "delio/graph/pose_pdf.h"
+#include "delio/graph/pose_graph.h"
 #include "delio/slam/slam.h"
 #include "mrpt/imu_observation.h"
+#include "mrpt/odometry_observation.h"
 #include "recordings/decode_observation.h"
 
 namespace delio {
@@ -195,6 +196,10 @@ bool OdometryMapBuilder::processObservation(const mrpt::obs::CObservation::Ptr& 
     const double stamp_s = mrpt::Clock::toDouble(observation->timestamp);
     if (const auto imu = std::dynamic_pointer_cast<mrpt::obs::CObservationIMU>(observation)) {
         slam_->addImu(io::sampleOf(*imu, stamp_s));
+        return true;
+    }
+    if (const auto sample = io::odometryOf(*observation, stamp_s)) {
+        slam_->addOdometry(*sample);
         return true;
     }
     if (!io::isScan(*observation)) return false;

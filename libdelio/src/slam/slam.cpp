@@ -82,6 +82,16 @@ std::optional<ImuReport> Slam::imuReport() const {
     return odometry_->imuReport();
 }
 
+void Slam::addOdometry(const OdometrySample& sample) {
+    requireOpen();
+    odometry_->addOdometry(sample);
+}
+
+std::optional<OdometryReport> Slam::odometryReport() const {
+    requireOpen();
+    return odometry_->odometryReport();
+}
+
 ScanReport Slam::process(const Scan& scan) {
     requireOpen();
     requireConsistent(scan);

@@ -3,9 +3,7 @@
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <zlib.h>
 
-#include "delio/map/las.h"
-#include "delio/map/pcd.h"
-#include "delio/map/ply.h"
+#include "delio/map/cloud_files.h"
 #include "delio/map/simplemap.h"
 #include "delio/picture/scene.h"
 #include "delio/places/stored_map.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "delio/core/error.h"
-#include "delio/core/printable.h"
+#include "delio/core/text.h"
 
 namespace {
 using namespace delio;

@@ -1,4 +1,4 @@
-#include "delio/core/numbers.h"
+#include "delio/core/text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "delio/files/output_file.h"
+#include "delio/files/output.h"
 
 #include <gtest/gtest.h>
 

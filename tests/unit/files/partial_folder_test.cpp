@@ -1,4 +1,4 @@
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-#include "delio/graph/pose_pdf.h"
+#include "delio/graph/pose_graph.h"
 
 #include <gtest/gtest.h>
 

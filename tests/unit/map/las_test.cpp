@@ -1,4 +1,4 @@
-#include "delio/map/las.h"
+#include "delio/map/cloud_files.h"
 
 #include <gtest/gtest.h>
 

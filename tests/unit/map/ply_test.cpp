@@ -1,4 +1,4 @@
-#include "delio/map/ply.h"
+#include "delio/map/cloud_files.h"
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>

@@ -5,6 +5,7 @@
 #include <mrpt/img/CImage.h>
 #include <mrpt/maps/CMultiMetricMap.h>
 #include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationPointCloud.h>
@@ -105,10 +106,11 @@ TEST(OdometryMapBuilder, BeginsWhereItIsTold) {
     EXPECT_THROW(builder.initialize(map), Error);
 }
 
-TEST(OdometryMapBuilder, TakesSamplesOfAnImuAndPassesOverOthers) {
+TEST(OdometryMapBuilder, TakesSamplesOfImuAndWheelsAndPassesOverOthers) {
     OdometryMapBuilder builder;
     EXPECT_TRUE(builder.processObservation(mrpt::obs::CObservationIMU::Create()));
-    EXPECT_FALSE(builder.processObservation(mrpt::obs::CObservationOdometry::Create()));
+    EXPECT_TRUE(builder.processObservation(mrpt::obs::CObservationOdometry::Create()));
+    EXPECT_FALSE(builder.processObservation(mrpt::obs::CObservation2DRangeScan::Create()));
     EXPECT_THROW(builder.processObservation(nullptr), Error);
     EXPECT_THROW(builder.latestStep(), Error);
     EXPECT_THROW(builder.saveCurrentEstimationToImage("map.png"), Error);

@@ -1,6 +1,7 @@
 #pragma once
-#include <Eigen/Geometry>
+#include <mrpt/poses/CPose3DPDFGaussian.h>
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <vector>
 
@@ -100,4 +101,9 @@ class PoseGraph {
     std::vector<Matrix6> information_;
     std::vector<std::vector<std::size_t>> edgesUpTo_;  //!< of each node: edges to earlier ones
 };
+
+/** Converts an increment to MRPT's PDF: the covariance is that of the pose's own numbers x y z yaw
+ *  pitch roll, x y z along the axes of the earlier frame; metres and radians. At a pitch of +-90
+ *  deg, where yaw and roll are one, it does not exist. */
+mrpt::poses::CPose3DPDFGaussian posePdfOf(const Increment& increment);
 }  // namespace delio::graph

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "delio/earth/fix.h"
-#include "delio/files/output_folder.h"
+#include "delio/files/output.h"
 #include "delio/formats/drive_meta.h"
 #include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
+#include "delio/odometry/wheels.h"
 
 namespace delio::io {
 /** The Unix time that stands for second 0 of a drive whose own times start at 0: MRPT takes time 0
@@ -52,6 +53,9 @@ class RawlogWriter {
     /** Appends a sample of an IMU as a CObservationIMU with the label `imu`; `stamp_s` counts from
      *  `epoch_s`. */
     void add(const ImuSample& sample, double epoch_s);
+    /** Appends a pose by wheels, with the label `odometry`: a CObservationOdometry where it is one
+     *  in the plane and of the vehicle, otherwise a CObservationRobotPose. */
+    void add(const OdometrySample& sample, double epoch_s);
     /** Appends a GNSS fix as a CObservationGPS with GGA; its stamp counts from `epoch_s`, an
      * antenna that is not known is at 0. `quality`: as GGA numbers it. */
     void add(const earth::Fix& fix, int quality, double epoch_s);

@@ -7,6 +7,7 @@
 #include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
 #include "delio/odometry/step.h"
+#include "delio/odometry/wheels.h"
 
 namespace delio {
 /** LiDAR odometry, one scan after the other, rotation and translation decoupled. See
@@ -27,6 +28,14 @@ class Odometry {
 
     /** What was found out about the IMU so far; nothing: no sample came, or none is used. */
     virtual std::optional<ImuReport> imuReport() const;
+
+    /** Takes a pose by the drive's wheels, or by another odometry of the vehicle: a loose prior for
+     *  the translation that the scans do not show, whose weight follows from its agreement with
+     *  them. As addImu(). */
+    virtual void addOdometry(const OdometrySample& sample);
+
+    /** What was found out about the wheels so far; nothing: no sample came, or none is used. */
+    virtual std::optional<OdometryReport> odometryReport() const;
 };
 
 /** The odometry that the options choose. Throws Error where two of its options contradict each

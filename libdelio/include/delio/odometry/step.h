@@ -79,6 +79,8 @@ struct Step {
      *  number than the scan before it was found in that earlier map: the scans between belong to
      *  the earlier track, too. */
     std::size_t track = 0;
+    /** Wheels say where the sensor went along the axes that were not observed. */
+    bool carried = false;
     bool searched = false;     //!< the motion was searched over a wide range
     bool interrupted = false;  //!< after a time gap or clock jump: the interval is unknown
     /** Registered along and about every axis, and slower than 0.1 m/s and 2 deg/s. */

@@ -15,10 +15,12 @@
 
 namespace delio::io {
 class GzInput;
+class RawlogOdometry;
 
 /** Reads the LiDAR scans of a rawlog, whatever class they were recorded as (see isScan()), bare or
  *  inside CSensoryFrames, embedded or in external files, and the samples of its first IMU
- *  (CObservationIMU). Rings and times of points are taken from
+ *  (CObservationIMU) and of its first odometry (CObservationOdometry, CObservationRobotPose, or
+ *  motions by odometry in CActionCollections). Rings and times of points are taken from
  *  `.ring` and `.time` files beside the external ones (synth2rawlog writes them), from packets and
  *  from range images; the drive's metadata come from the meta.yaml next to the rawlog, if it
  *  exists, and times count from its `epoch_unix_s`. Readers share nothing: several may run at once
@@ -46,6 +48,7 @@ class RawlogReader : public ScanReader {
     std::optional<double> fraction() const override;
     const std::optional<DriveMeta>& meta() const override { return meta_; }
     std::vector<ImuSample> takeImu() override { return std::exchange(imu_, {}); }
+    std::vector<OdometrySample> takeOdometry() override;
     Recording recording() const override;
     earth::Fixes takeFixes() override;
     SideFile calibration() const override;
@@ -78,6 +81,7 @@ class RawlogReader : public ScanReader {
     std::deque<mrpt::obs::CObservation::Ptr> pending_;
     std::vector<ImuSample> imu_;
     std::optional<std::string> imuLabel_;  //!< of the first one
+    std::unique_ptr<RawlogOdometry> odometry_;
     std::set<std::string> otherLabels_;
     earth::Fixes fixes_;  //!< read, and not taken yet
 };

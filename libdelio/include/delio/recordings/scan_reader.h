@@ -12,6 +12,7 @@
 #include "delio/formats/drive_meta.h"
 #include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
+#include "delio/odometry/wheels.h"
 
 namespace delio::io {
 /** Properties of a recording. */
@@ -28,6 +29,7 @@ struct Recording {
      *  show it. */
     std::optional<std::size_t> compensatedAfterAll;
     std::string imu;                    //!< label or topic of the IMU; empty: none was met
+    std::string odometry;               //!< the same of the wheels' odometry
     std::optional<std::size_t> scans;   //!< where they are counted without reading them
     std::vector<std::string> warnings;  //!< missing optional parts
     /** Scans and points that the reader ignored or corrected, one line per kind with the number;
@@ -75,6 +77,9 @@ class ScanReader {
      *  recording, stamped as the scans. Those of skipped scans are among them. Where they are not
      *  taken, the oldest are dropped. */
     virtual std::vector<ImuSample> takeImu() { return {}; }
+
+    /** The same of the recording's wheels or other odometry of the vehicle. */
+    virtual std::vector<OdometrySample> takeOdometry() { return {}; }
 
     /** Name of the sensor that is read (of a ROS bag: the topic); empty until its first scan was
      *  read. */

@@ -19,6 +19,7 @@ struct Doubts {
     Stretches predicted;    //!< not registered: the motion model's
     Stretches lost;         //!< Step::lost
     Stretches weak;         //!< registered, but an axis was not observed
+    Stretches carried;      //!< of these, those whose motion along it is the wheels'
     /** Of these the scans with an open axis of the translation that is nearest to the vehicle's x,
      * y and z. */
     std::array<std::size_t, 3> weakAlong{};
@@ -32,7 +33,7 @@ struct Doubts {
 Doubts doubtsOf(const std::vector<RunRow>& rows);
 
 /** Why the trajectory is not to be relied on: more than a tenth of the scans were lost, or more
- * than half were observed weakly. Empty where it is. */
+ * than half were observed weakly and wheels did not carry them. Empty where it is. */
 std::string whyUnreliable(const Doubts& doubts);
 
 /** Scans of tracks that nothing links to the longest track: no registration, no loop, no stored

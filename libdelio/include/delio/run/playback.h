@@ -18,6 +18,7 @@ struct PlaybackSettings {
     std::size_t count = 0;  //!< number of scans; 0: all
     std::size_t every = 1;  //!< every n-th scan, at least 1
     bool imu = true;        //!< use its IMU
+    bool odometry = true;   //!< use its wheel odometry
     bool gnss = true;       //!< use GNSS fixes
     std::string fixes;      //!< file with fixes that replace the recording's; empty: none
     /** Position of the GNSS antenna in the vehicle, in place of the recording's; metres. */
@@ -50,8 +51,9 @@ class Playback {
 
  private:
     struct Reading {
-        std::optional<Scan> scan;    //!< nothing at the end
-        std::vector<ImuSample> imu;  //!< that were read with it
+        std::optional<Scan> scan;              //!< nothing at the end
+        std::vector<ImuSample> imu;            //!< that were read with it
+        std::vector<OdometrySample> odometry;  //!< likewise
         std::optional<double> fraction, received_s;
     };
     bool isInterrupted() const { return settings_.isInterrupted && settings_.isInterrupted(); }

@@ -74,6 +74,10 @@ class Run {
     void addImu(const ImuSample& sample) { slam_.addImu(sample); }
     /** See Odometry::imuReport(). */
     std::optional<ImuReport> imuReport() const { return slam_.imuReport(); }
+    /** Takes a pose by the drive's wheels: see Odometry::addOdometry(). */
+    void addOdometry(const OdometrySample& sample) { slam_.addOdometry(sample); }
+    /** See Odometry::odometryReport(). */
+    std::optional<OdometryReport> odometryReport() const { return slam_.odometryReport(); }
 
     /** Processes the next scan, which took `read_ms` to read. */
     RunRow process(const Scan& scan, double read_ms = 0);

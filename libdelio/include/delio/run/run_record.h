@@ -13,6 +13,7 @@
 #include "delio/graph/pose_graph.h"
 #include "delio/map/map_builder.h"
 #include "delio/odometry/imu.h"
+#include "delio/odometry/wheels.h"
 #include "delio/places/localisation.h"
 #include "delio/places/loops.h"
 #include "delio/places/stored_map.h"
@@ -53,6 +54,7 @@ struct RunRow {
     bool predicted = false;    //!< Step::predicted
     bool lost = false;         //!< Step::lost
     std::size_t track = 0;     //!< Step::track
+    bool carried = false;      //!< Step::carried
     bool searched = false;     //!< Step::searched
     bool interrupted = false;  //!< Step::interrupted
     bool standing = false;     //!< Step::standing
@@ -108,7 +110,8 @@ struct RunRecord {
     std::vector<places::LoopCandidate> loops;   //!< and what became of them
     double loop_search_ms = 0;                  //!< beside the drive, and after it
 
-    std::optional<ImuReport> imu;  //!< what was found out about the IMU, where there is one
+    std::optional<ImuReport> imu;          //!< what was found out about the IMU, where there is one
+    std::optional<OdometryReport> wheels;  //!< likewise of wheels or another odometry
     std::optional<earth::Georeference> georeference;  //!< of the final poses, where it is known
     earth::GnssFigures gnss;                          //!< of the drive's fixes
     /** Of the imported cloud that the drive was localised in. */

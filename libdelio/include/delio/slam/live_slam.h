@@ -8,6 +8,7 @@
 
 #include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
+#include "delio/odometry/wheels.h"
 #include "delio/recordings/scan_feed.h"
 #include "delio/slam/slam.h"
 
@@ -36,6 +37,8 @@ class LiveSlam {
     void add(Scan scan) { feed_.add(std::move(scan)); }
     /** Takes a sample of the IMU, stamped as the scans. By any thread. */
     void add(const ImuSample& sample) { feed_.add(sample); }
+    /** Adds a pose by the drive's wheels: see Odometry::addOdometry(). */
+    void add(const OdometrySample& sample) { feed_.add(sample); }
 
     /** Waits until the scans that wait are processed. No scan is taken from here on. */
     void finish();

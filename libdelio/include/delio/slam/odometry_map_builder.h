@@ -38,10 +38,10 @@ struct OdometryMapBuilderOptions : public StageOptions {
  *
  *  Poses are the vehicle's; the first scan gives the origin. LiDAR observations (those that
  *  delio-slam reads from a rawlog) are registered at their `sensorPose`, observations of the class
- *  CObservationIMU are given to the odometry, and others are passed over. Actions are not used.
- *  Externally stored points are loaded. A scan enters the map as a keyframe: its static,
- *  de-skewed points, as CObservationPointCloud in the vehicle's frame. Scans that were not
- *  registered do not enter it. There is no loop closure: see run::Run.
+ *  CObservationIMU, CObservationOdometry and CObservationRobotPose are given to the odometry, and
+ * others are passed over. Actions are not used. Externally stored points are loaded. A scan enters
+ * the map as a keyframe: its static, de-skewed points, as CObservationPointCloud in the vehicle's
+ * frame. Scans that were not registered do not enter it. There is no loop closure: see run::Run.
  *
  *  One thread at a time may call it. Throws Error where an observation cannot be decoded. */
 class OdometryMapBuilder : public mrpt::slam::CMetricMapBuilder {

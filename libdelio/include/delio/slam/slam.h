@@ -83,6 +83,10 @@ class Slam {
 
     /** What the odometry found out about the IMU so far: see Odometry::imuReport(). */
     std::optional<ImuReport> imuReport() const;
+    /** Takes a pose by the drive's wheels: see Odometry::addOdometry(). */
+    void addOdometry(const OdometrySample& sample);
+    /** See Odometry::odometryReport(). */
+    std::optional<OdometryReport> odometryReport() const;
 
     /** Ends the drive and frees the odometry. process() is an Error from then on. */
     void close() { odometry_.reset(); }

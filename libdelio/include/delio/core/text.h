@@ -1,5 +1,6 @@
 #pragma once
 #include <charconv>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,4 +37,14 @@ std::string rounded(double value, int digits);
 /** Leading finite numbers of `text`, separated by white space, independent of the locale; stops at
  *  the first other word. */
 std::vector<double> numbersIn(std::string_view text);
+
+/** `text` with '?' for control characters and invalid UTF-8: safe for terminals, scripts and
+ *  documents. */
+std::string printable(const std::string& text);
+
+/** printable(`text`) with HTML's special characters (& < > ") escaped. */
+std::string htmlText(const std::string& text);
+
+/** `text`, shortened to `most` bytes: the first two thirds, "...", and the last third. */
+std::string shortened(const std::string& text, std::size_t most);
 }  // namespace delio

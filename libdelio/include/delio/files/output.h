@@ -1,5 +1,7 @@
 #pragma once
 #include <filesystem>
+#include <functional>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
@@ -75,4 +77,15 @@ class TargetFolder {
     bool made_ = false;
     std::optional<OutputLock> lock_;
 };
+
+/** Lets `write` fill a file of the same name in a PartialFolder beside `path`, then renames it to
+ *  `path`: the file at `path` is always complete. If `write` throws, returns false or the disk is
+ *  full, no file remains, and Error names the path. */
+void replaceFile(const std::string& path, const std::function<bool(const std::string&)>& write);
+
+/** The same for text: `write` gets a stream in the "C" locale. */
+void replaceTextFile(const std::string& path, const std::function<void(std::ostream&)>& write);
+
+/** Flushes a file, or a folder's entries, to disk (fsync). Throws Error if that fails. */
+void putOnDisk(const std::string& path);
 }  // namespace delio::io

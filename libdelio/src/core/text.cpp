@@ -1,7 +1,21 @@
-#include "delio/core/printable.h"
+#include "delio/core/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace delio {
 namespace {
+std::string written(double value, std::chars_format format, int precision) {
+    std::string text(
+        static_cast<std::size_t>(precision) + std::numeric_limits<double>::max_exponent10 + 16,
+        '\0');
+    char* const end = text.data() + text.size();
+    text.resize(static_cast<std::size_t>(
+        std::to_chars(text.data(), end, value, format, precision).ptr - text.data()));
+    return text;
+}
+
 /** Bytes of the character of UTF-8 that begins with `lead`; 0 for none. */
 std::size_t lengthOf(unsigned char lead) {
     if (lead < 0x80) return 1;
@@ -23,6 +37,26 @@ bool isCharacter(const std::string& text, std::size_t i, std::size_t length) {
            !(lead == 0xF0 && next < 0x90) && !(lead == 0xF4 && next >= 0x90);
 }
 }  // namespace
+
+std::string fixed(double value, int decimals) {
+    return written(value, std::chars_format::fixed, decimals);
+}
+
+std::string rounded(double value, int digits) {
+    return written(value, std::chars_format::general, digits);
+}
+
+std::vector<double> numbersIn(std::string_view text) {
+    constexpr std::string_view kSpace = " \t\r\n\v\f";
+    std::vector<double> numbers;
+    for (;;) {
+        text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
+        const auto number = numberIn<double>(text.substr(0, text.find_first_of(kSpace)));
+        if (!number || !std::isfinite(*number)) return numbers;
+        numbers.push_back(*number);
+        text.remove_prefix(std::min(text.find_first_of(kSpace), text.size()));
+    }
+}
 
 std::string printable(const std::string& text) {
     std::string result;
