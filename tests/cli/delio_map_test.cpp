@@ -182,8 +182,9 @@ TEST_F(MapTool, APageKnowsNorth) {
         const auto page = test::readText(at("page.html"));
         double x = 0, y = 0;
         const auto found = page.find("\n\"north\":[");
-        if (found != page.npos)
+        if (found != page.npos) {
             EXPECT_EQ(std::sscanf(page.c_str() + found, "\n\"north\":[%lf,%lf]", &x, &y), 2);
+        }
         return Eigen::Vector2d(x, y);
     };
     EXPECT_EQ(northOf({}), Eigen::Vector2d::Zero());
