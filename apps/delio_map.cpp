@@ -107,7 +107,17 @@ struct Arguments {
                "",
                "FOLDER",
                cmd};
-    Text import, edits;
+    Text import;
+    Text edits{
+        "",
+        "edits",
+        "Edit the pose graph of a stored map: lines 'add A B' (an edge between two submaps, if "
+        "registration confirms it) and 'forbid A B'; OUT is a .delio. With -o OUT.csv and "
+        "without this option, the edges between submaps are listed",
+        false,
+        "",
+        "EDITS.txt",
+        cmd};
     Text at{"",
             "at",
             "Stored map as it was then: 2026-11-28T06:00:00Z, without the time of day, or Unix "
@@ -152,11 +162,6 @@ Arguments::Arguments()
              "Point cloud of another program (metres, z up, any origin) to localise drives in; OUT "
              "is a .delio",
              false, "", "CLOUD.ply|.pcd|.las", cmd),
-      edits("", "edits",
-            "Edit the pose graph of a stored map: lines 'add A B' (an edge between two submaps, if "
-            "registration confirms it) and 'forbid A B'; OUT is a .delio. With -o OUT.csv and "
-            "without this option, the edges between submaps are listed",
-            false, "", "EDITS.txt", cmd),
       output("o", "output",
              "File to write; a .yaml for ROS's map_server comes with a .pgm image; a .delio with "
              "--import and --edits; a .csv lists the edges of a stored map",

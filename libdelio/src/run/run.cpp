@@ -291,7 +291,8 @@ Visit Run::visit() const {
 
 void Run::update() {
     std::vector<bool> measured;
-    VisitScans scans{visit()};
+    VisitScans scans;
+    scans.visit = visit();
     for (std::size_t i = 0; i < record_.fixes.size(); ++i) {
         measured.push_back(isAnchor(record_.fixes[i]));
         if (measured.back()) scans.poses.push_back(record_.final.poses[i]);

@@ -61,7 +61,7 @@ struct PointLayer {
     bool isGone() const { return against >= kContradictions; }
     /** A part of the map, as it is now. */
     bool isValid() const { return confirmed && !isGone(); }
-    /** A part of the map at that visit, by what is known now. */
+    /** A part of the map at that visit, as later visits have it. */
     bool isValidAt(std::size_t visit) const {
         return confirmed && first <= visit && (!isGone() || visit < doubted);
     }
