@@ -446,8 +446,10 @@ int makeDrive(Arguments& args) {
     cli::refuseOverlap({args.trajectory.getValue()}, io::RawlogWriter::outputsOf(request.output));
     const auto count = static_cast<std::size_t>(args.scans.getValue());
     const Start start = startOf(args.start.getValue());
-    SceneRequest wanted{args.scene.getValue(), static_cast<std::uint64_t>(args.seed.getValue()),
-                        count + scansBefore(start)};
+    SceneRequest wanted;
+    wanted.name = args.scene.getValue();
+    wanted.seed = static_cast<std::uint64_t>(args.seed.getValue());
+    wanted.scans = count + scansBefore(start);
     if (args.parkedSeed.isSet())
         wanted.parkedSeed = static_cast<std::uint64_t>(args.parkedSeed.getValue());
     wanted.trajectory = args.trajectory.getValue();

@@ -14,10 +14,10 @@ struct SceneRequest {
     std::string name;
     std::uint64_t seed = 0;
     std::size_t scans = 0;  //!< the world reaches beyond them
-    /** Of the cars parked there; 0: none; nothing: as the world's seed has them. */
-    std::optional<std::uint64_t> parkedSeed;
     std::string trajectory;  //!< a file of KITTI poses of cam0 to drive along; empty: none
     Eigen::Isometry3d lidarToCam0 = Eigen::Isometry3d::Identity();
+    /** Of the cars parked there; 0: none; nothing: as the world's seed has them. */
+    std::optional<std::uint64_t> parkedSeed = {};
 };
 
 /** Values of --scene. */
