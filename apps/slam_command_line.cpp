@@ -113,6 +113,7 @@ run::RunSettings settingsFor(SlamCommandLine& line, int argc, char** argv) {
     settings.loops = !line.noLoops.getValue();
     settings.storedMap = line.map.getValue();
     settings.extend = line.extend.getValue();
+    settings.update = line.update.getValue();
     if (line.initialPose.isSet()) settings.initialPose = initialPoseIn(line.initialPose.getValue());
     settings.onWarning = cli::warn;
     return settings;
@@ -157,6 +158,12 @@ std::string contradictionIn(SlamCommandLine& line) {
         return "--no-gnss excludes --gnss and --antenna";
     if (line.extend.isSet() && !line.map.isSet())
         return "--extend needs --map: it adds to the stored map";
+    if (line.update.isSet() && !line.map.isSet())
+        return "--update needs --map: it updates the stored map";
+    if (line.update.isSet() && (line.extend.isSet() || inputs.size() > 1))
+        return "--update takes one drive, without --extend";
+    if (line.update.isSet() && line.noMap.isSet())
+        return "--update and --no-map exclude each other";
     if (line.saveRawlog.isSet() && (inputs.size() > 1 || isLive(line) || inputs.front() == "-"))
         return "--save-rawlog needs one rawlog file as input";
     if (line.saveRawlog.isSet() && fs::path(line.saveRawlog.getValue()).extension() != ".rawlog")
