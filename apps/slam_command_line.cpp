@@ -53,6 +53,7 @@ cli::HelpText slamHelp() {
          "with GNSS fixes: poses in east-north-up, TUM format; line for a map viewer"},
         {Folder::kCloudTum,
          "with --map of an imported cloud with an offset: poses in its coordinates"},
+        {Folder::kExtrinsics, "with --calibrate-extrinsics: the sensors' poses, for --extrinsics"},
         {both(Folder::kGraph, Folder::kMrptGraph), "pose graph"},
         {both(Folder::kPly, Folder::kScene), "map points; scene for SceneViewer3D"},
         {Folder::kMapPage, "the map as an interactive page for a browser"},
@@ -152,6 +153,9 @@ std::string contradictionIn(SlamCommandLine& line) {
         return "--no-gnss excludes --gnss and --antenna";
     if (line.extend.isSet() && !line.map.isSet())
         return "--extend needs --map: it adds to the stored map";
+    if (line.calibrateExtrinsics.isSet() &&
+        (inputs.size() > 1 || isLive(line) || inputs.front() == "-" || isGraph(inputs.front())))
+        return "--calibrate-extrinsics needs one recording as input";
     if (line.saveRawlog.isSet() && (inputs.size() > 1 || isLive(line) || inputs.front() == "-"))
         return "--save-rawlog needs one rawlog file as input";
     if (line.saveRawlog.isSet() && fs::path(line.saveRawlog.getValue()).extension() != ".rawlog")

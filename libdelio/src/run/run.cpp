@@ -77,6 +77,20 @@ void Run::warn(const std::string& text) {
     if (settings_.onWarning) settings_.onWarning(text);
 }
 
+void Run::add(std::vector<CalibratedSensor> extrinsics) {
+    for (const auto& sensor : extrinsics) {
+        std::string kept;
+        for (const auto& axis : sensor.unobserved) kept += (kept.empty() ? "" : ", ") + axis;
+        if (!sensor.reason.empty())
+            warn("the pose of the sensor '" + sensor.label +
+                 "' was not refined: " + sensor.reason);
+        else if (!kept.empty())
+            warn("the pose of the sensor '" + sensor.label + "' was not refined " + kept +
+                 ": the drive does not show it");
+    }
+    record_.extrinsics = std::move(extrinsics);
+}
+
 void Run::fail(const std::string& fault) {
     if (record_.fault.empty()) record_.fault = fault;
 }

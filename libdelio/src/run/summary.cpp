@@ -10,6 +10,7 @@
 
 #include "core/percentile.h"
 #include "delio/core/error.h"
+#include "delio/core/geometry.h"
 #include "delio/core/text.h"
 #include "delio/files/output.h"
 #include "delio/run/doubts.h"
@@ -127,6 +128,34 @@ Summary::Figures figuresOf(const OdometryReport& wheels) {
     return figures;
 }
 
+/** In MRPT's order, each after the sensor's label; standard deviations about x, y and z. */
+Summary::Figures figuresOf(const std::vector<CalibratedSensor>& sensors) {
+    constexpr double kDegrees = 180 / M_PI;
+    Summary::Figures figures;
+    for (const auto& sensor : sensors) {
+        if (sensor.matches == 0) continue;
+        const auto put = [&](const char* name, double value) {
+            figures.emplace_back(sensor.label + " " + name, value);
+        };
+        const auto pose = toMrpt(sensor.pose);
+        const Vector6& sigma = sensor.sigma;
+        put("x_m", pose.x());
+        put("y_m", pose.y());
+        put("z_m", pose.z());
+        put("yaw_deg", kDegrees * pose.yaw());
+        put("pitch_deg", kDegrees * pose.pitch());
+        put("roll_deg", kDegrees * pose.roll());
+        put("sigma_x_m", sigma[0]);
+        put("sigma_y_m", sigma[1]);
+        put("sigma_z_m", sigma[2]);
+        put("sigma_about_x_deg", kDegrees * sigma[3]);
+        put("sigma_about_y_deg", kDegrees * sigma[4]);
+        put("sigma_about_z_deg", kDegrees * sigma[5]);
+        put("points", static_cast<double>(sensor.matches));
+    }
+    return figures;
+}
+
 std::string wordsOf(const std::vector<std::string>& words) {
     std::string text;
     for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
@@ -238,6 +267,7 @@ void forEachField(Record& s, const Field& field) {
     }
     if (field.hasGroup("imu", !s.imu.empty())) field("imu", s.imu);
     if (field.hasGroup("odometry", !s.odometry.empty())) field("odometry", s.odometry);
+    if (field.hasGroup("extrinsics", !s.extrinsics.empty())) field("extrinsics", s.extrinsics);
     if (field.hasGroup("georeference", !s.georeference.empty()))
         field("georeference", s.georeference);
     field("path_m", s.path_m);
@@ -325,6 +355,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
                                                 : summary.not_found_in_map);
     if (record.imu) summary.imu = figuresOf(*record.imu);
     if (record.wheels) summary.odometry = figuresOf(*record.wheels);
+    summary.extrinsics = figuresOf(record.extrinsics);
     summary.deskewed = countOf(record, &RunRow::deskewed);
     summary.georeference = georeferenceOf(record);
     summary.path_m = record.path_m();

@@ -46,6 +46,8 @@ struct Summary {
     /** Samples, calibration and residual of the IMU, where there is one. */
     Figures imu;
     Figures odometry;      //!< samples, scale and agreement of wheels, where there are any
+    /** Pose and standard deviations of each LiDAR whose pose was refined, after its label. */
+    Figures extrinsics;
     Figures georeference;  //!< empty: not georeferenced
     double path_m = 0;     //!< length of the final way
     double vertical_correction_deg = 0;    //!< that was added to each point's vertical angle

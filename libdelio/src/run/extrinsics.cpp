@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <utility>
+
+#include "core/scan_trajectory.h"
+#include "core/voxel_grid.h"
+#include "delio/core/error.h"
+#include "delio/core/geometry.h"
+#include "delio/run/playback.h"
+#include "odometry/calibrate_extrinsics.h"
+#include "odometry/preprocess.h"
+#include "odometry/spin_axis.h"
+#include "odometry/tuning.h"
+
+namespace delio::run {
+namespace {
+using odometry::CalibrationView;
+
+constexpr std::size_t kAround = 15;       // scans before and after a moment are in its map
+constexpr double kNear_s = 0.15;          // scans of the other sensor so near a moment are compared
+constexpr double kLongest_s = 0.5;        // from a moment to the points of these scans
+constexpr std::size_t kFewestViews = 10;  // otherwise the drive shows too little
+
+/** A moment of the drive, before the other sensor's points are there. */
+struct Moment {
+    double stamp_s;
+    CalibrationView view;
+};
+
+/** Makes maps of the first sensor's scans, in the vehicle's frame, about moments at equal distances
+ *  along the drive: their number does not grow with it. */
+class Moments : public SlamListener {
+ public:
+    explicit Moments(const odometry::PlaneOdometryOptions& options) : options_(options) {}
+
+    const char* name() const override { return "extrinsics"; }
+    void add(const SlamScan& scan) override;
+    std::vector<Moment> take() { return std::move(moments_); }
+
+ private:
+    struct Placed {
+        std::size_t node;
+        double stamp_s;
+        Eigen::Isometry3d pose;   //!< of the vehicle
+        Eigen::Matrix3Xf points;  //!< vehicle's frame
+    };
+    void addMoment(const Eigen::Vector3d& up);
+
+    odometry::PlaneOdometryOptions options_;
+    std::deque<Placed> recent_;
+    std::vector<Moment> moments_;
+    double scale_ = 1;                   //!< of the place
+    double stride_m_ = 1, way_m_ = 1e9;  //!< between two moments, and since the latest
+};
+
+void Moments::add(const SlamScan& scan) {
+    constexpr double kSpacing_m = 0.1, kArm_m = 3;  // a rotation by 1 rad shows as much as 3 m do
+    for (const auto& [name, value] : scan.step.details)
+        if (name == "scale") scale_ = value;
+    for (const auto& [node, pose] : scan.corrected)
+        for (auto& placed : recent_)
+            if (placed.node == node) placed.pose = pose;
+    if (scan.step.predicted || scan.step.lost || scan.step.interrupted ||
+        (!recent_.empty() && scan.scan.stamp_s <= recent_.back().stamp_s))
+        recent_.clear();
+    if (scan.step.predicted) return;
+    recent_.push_back({scan.node, scan.scan.stamp_s, scan.pose,
+                       voxelCentroids(staticPoints(scan), kSpacing_m * scale_)});
+    way_m_ += scan.increment.pose.translation().norm() +
+              kArm_m * angleOf(scan.increment.pose.linear());
+    if (recent_.size() <= 2 * kAround) return;
+    if (way_m_ >= stride_m_ * scale_)
+        addMoment(odometry::upIn(scan.scan.sensorPose, scan.step.used.points));
+    recent_.pop_front();
+}
+
+/** In the middle of the recent scans. */
+void Moments::addMoment(const Eigen::Vector3d& up) {
+    constexpr std::size_t kMost = 80;
+    const Placed& centre = recent_[kAround];
+    odometry::PlaneMap map(odometry::atScale(options_, scale_).map, up);
+    std::vector<double> times_s;
+    std::vector<Eigen::Isometry3d> poses;
+    for (const Placed& placed : recent_) {
+        times_s.push_back(placed.stamp_s - centre.stamp_s);
+        poses.push_back(centre.pose.inverse() * placed.pose);
+        map.add(poses.back() * placed.points.cast<double>());
+    }
+    const ScanTrajectory trajectory(times_s, poses);
+    moments_.push_back(
+        {centre.stamp_s, {std::move(map), PoseTable(trajectory, -kLongest_s, kLongest_s)}});
+    way_m_ = 0;
+    if (moments_.size() < kMost) return;
+    std::vector<Moment> half;
+    for (std::size_t i = 0; i < moments_.size(); i += 2) half.push_back(std::move(moments_[i]));
+    moments_ = std::move(half);
+    stride_m_ *= 2;
+}
+
+/** Appends a scan of the other sensor, thinned to the first point of each voxel. */
+void addPoints(const Scan& scan, const PreprocessOptions& options, Moment& moment) {
+    constexpr double kSpacing_m = 0.4;
+    const auto cloud = odometry::preprocess(scan, options);
+    const auto numbers = numberVoxels(cloud.points, kSpacing_m);
+    auto& points = moment.view.points;
+    Eigen::Index count = points.cols();
+    points.conservativeResize(3, count + numbers.voxels);
+    std::uint32_t voxels = 0;
+    for (std::size_t i = 0; i < numbers.ofPoint.size(); ++i) {
+        if (numbers.ofPoint[i] != voxels) continue;
+        ++voxels;
+        points.col(count++) = cloud.points.col(static_cast<Eigen::Index>(i));
+        const float time_s = cloud.times_s.empty() ? 0 : cloud.times_s[i];
+        moment.view.times_s.push_back(static_cast<float>(scan.stamp_s - moment.stamp_s) + time_s);
+    }
+}
+
+io::ScanSource only(io::ScanSource source, const std::string& label) {
+    source.label = label;
+    return source;
+}
+
+/** From the odometry of the sensor that `source` names alone. */
+std::vector<Moment> momentsOf(const io::ScanSource& source, const Options& options,
+                              const PlaybackSettings& settings,
+                              const std::function<void(std::optional<double>)>& onScan) {
+    const auto reader = io::openScans(source);
+    Playback playback(*reader, settings);
+    RunSettings run;
+    run.graph = run.map = run.loops = false;
+    Run drive(options, run);
+    const auto moments = std::make_shared<Moments>(options.planes);
+    drive.attach(moments);
+    playback.play(drive, [&](const RunRow&, const Playback::Progress& now) {
+        if (onScan) onScan(now.fraction);
+    });
+    if (!drive.record().fault.empty()) throw Error(drive.record().fault);
+    return moments->take();
+}
+
+/** The moments with the points of the sensor that `source` names. */
+std::vector<CalibrationView> viewsOf(const io::ScanSource& source, const PreprocessOptions& options,
+                                     std::vector<Moment> moments) {
+    const auto reader = io::openScans(source);
+    while (const auto scan = reader->next())
+        for (auto& moment : moments)
+            if (std::abs(scan->stamp_s - moment.stamp_s) <= kNear_s)
+                addPoints(*scan, options, moment);
+    std::vector<CalibrationView> views;
+    for (auto& moment : moments)
+        if (moment.view.points.cols() > 0) views.push_back(std::move(moment.view));
+    return views;
+}
+
+/** "along x": by the vehicle's axis nearest to each unit vector. */
+void addNames(const char* how, const Eigen::Matrix3Xd& axes, std::vector<std::string>& names) {
+    for (Eigen::Index i = 0; i < axes.cols(); ++i) {
+        Eigen::Index nearest = 0;
+        axes.col(i).cwiseAbs().maxCoeff(&nearest);
+        names.push_back(std::string(how) + " " + "xyz"[nearest]);
+    }
+}
+
+/** Refines `sensor`, or says why not. */
+void refine(const std::vector<CalibrationView>& views, odometry::PlaneRegistrationOptions options,
+            CalibratedSensor& sensor) {
+    constexpr double kPrior_m = 0.2, kPrior_deg = 3;
+    options.prior_sigma = kPrior_m;
+    options.prior_sigma_deg = kPrior_deg;
+    if (views.size() < kFewestViews) {
+        sensor.reason = "both sensors tracked the same part of the drive at " +
+                        std::to_string(views.size()) + " places only";
+        return;
+    }
+    const auto found = odometry::calibrateExtrinsics(views, sensor.given, options);
+    if (!found.estimate.valid || !found.estimate.rotation.converged) {
+        sensor.reason = "its points do not meet the surfaces that the first sensor saw";
+        return;
+    }
+    sensor.pose = normalised(found.estimate.pose());
+    sensor.matches = found.estimate.rotation.matches;
+    sensor.sigma = found.covariance.diagonal().cwiseSqrt();
+    addNames("along", found.estimate.translation.unobservedAxes, sensor.unobserved);
+    addNames("about", sensor.pose.linear() * found.estimate.rotation.unobservedAxes,
+             sensor.unobserved);
+}
+}  // namespace
+
+std::vector<CalibratedSensor> calibrateExtrinsics(
+    const io::ScanSource& source, const Options& options, PlaybackSettings settings,
+    const std::function<void(std::optional<double> fraction)>& onScan) {
+    std::vector<CalibratedSensor> sensors;
+    for (const auto& [label, pose] : io::openScans(source)->mergedSensors()) {
+        sensors.push_back({label, pose, pose});
+    }
+    if (sensors.size() < 2)
+        throw Error("the poses of sensors can be refined where several are merged: '" +
+                    source.path + "' gives one");
+    settings.gnss = false;
+    const auto moments = momentsOf(only(source, sensors.front().label), options, settings, onScan);
+    for (std::size_t i = 1; i < sensors.size(); ++i)
+        refine(viewsOf(only(source, sensors[i].label), options.scan(), moments),
+               options.planes.registration, sensors[i]);
+    return sensors;
+}
+}  // namespace delio::run
