@@ -225,7 +225,7 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
         optionsFor(line, {});
         if (line.initialPose.isSet()) initialPoseIn(line.initialPose.getValue());
         if (line.antenna.isSet()) antennaIn(line.antenna.getValue());
-        if (line.vehicleBox.isSet()) vehicleBoxIn(line.vehicleBox.getValue());
+        if (line.vehicleBox.isSet()) cli::vehicleBoxIn(line.vehicleBox.getValue());
         const std::string contradiction = contradictionIn(line);
         if (!contradiction.empty()) throw Error(contradiction);
         if (line.printConfig.getValue()) {

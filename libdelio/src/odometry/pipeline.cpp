@@ -69,6 +69,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     {
         const StageTimer timer(step, "preprocess");
         cloud = preprocess(scan, options_.scan);
+        own_.removeFrom(cloud);
         countFromMiddle(cloud);
         if (isEmpty) upright_ = uprightOf(scan.sensorPose, cloud.points);
     }
@@ -104,6 +105,8 @@ Step PlaneOdometry::process(const Scan& scan) {
         takeScale(seenScale_);
         beginMap(cloud, !std::holds_alternative<Degenerate>(state_));
     }
+    if (options_.dynamics.enabled && std::holds_alternative<Tracking>(state_))
+        own_.add(cloud.points, upright_, pose_);
     step.details.emplace_back("scale", scale_);
     gyro_.count(usesGyro_);
     step.used.indices = std::move(cloud.indices);

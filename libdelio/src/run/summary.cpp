@@ -128,6 +128,13 @@ Summary::Figures figuresOf(const OdometryReport& wheels) {
     return figures;
 }
 
+/** Of the corners, metres. */
+Summary::Figures figuresOf(const Eigen::AlignedBox3d& box) {
+    if (box.isEmpty()) return {};
+    return {{"min_x_m", box.min().x()}, {"min_y_m", box.min().y()}, {"min_z_m", box.min().z()},
+            {"max_x_m", box.max().x()}, {"max_y_m", box.max().y()}, {"max_z_m", box.max().z()}};
+}
+
 /** In MRPT's order, each after the sensor's label; standard deviations about x, y and z. */
 Summary::Figures figuresOf(const std::vector<CalibratedSensor>& sensors) {
     constexpr double kDegrees = 180 / M_PI;
@@ -267,6 +274,8 @@ void forEachField(Record& s, const Field& field) {
     }
     if (field.hasGroup("imu", !s.imu.empty())) field("imu", s.imu);
     if (field.hasGroup("odometry", !s.odometry.empty())) field("odometry", s.odometry);
+    if (field.hasGroup("own_vehicle", !s.own_vehicle.empty()))
+        field("own_vehicle", s.own_vehicle);
     if (field.hasGroup("extrinsics", !s.extrinsics.empty())) field("extrinsics", s.extrinsics);
     if (field.hasGroup("georeference", !s.georeference.empty()))
         field("georeference", s.georeference);
@@ -355,6 +364,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
                                                 : summary.not_found_in_map);
     if (record.imu) summary.imu = figuresOf(*record.imu);
     if (record.wheels) summary.odometry = figuresOf(*record.wheels);
+    summary.own_vehicle = figuresOf(record.ownVehicle);
     summary.extrinsics = figuresOf(record.extrinsics);
     summary.deskewed = countOf(record, &RunRow::deskewed);
     summary.georeference = georeferenceOf(record);

@@ -120,6 +120,7 @@ class Run {
     }
 
  private:
+    void findOwnVehicle();
     bool searchesLoops() const;
     places::LoopOptions loopOptions() const;
     void switchOff(const FailedListener& failed, std::size_t scan);

@@ -131,6 +131,9 @@ struct RunRecord {
     /** Of the imported cloud that the drive was localised in. */
     std::optional<CloudOrigin> cloudOrigin;
 
+    /** Box about parts of the own vehicle that were found in the scans, in the vehicle's frame,
+     *  metres; empty: none. */
+    Eigen::AlignedBox3d ownVehicle;
     /** LiDARs whose poses were refined, the first one first; empty: none were. */
     std::vector<CalibratedSensor> extrinsics;
     io::Calibration calibration;  //!< of the drive, where there is one

@@ -46,6 +46,7 @@ struct Summary {
     /** Samples, calibration and residual of the IMU, where there is one. */
     Figures imu;
     Figures odometry;      //!< samples, scale and agreement of wheels, where there are any
+    Figures own_vehicle;   //!< corners of its parts' box, where any were found
     /** Pose and standard deviations of each LiDAR whose pose was refined, after its label. */
     Figures extrinsics;
     Figures georeference;  //!< empty: not georeferenced
