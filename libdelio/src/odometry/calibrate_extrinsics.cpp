@@ -53,8 +53,8 @@ Matrix6 scatterOf(const std::vector<Correspondences>& matches, const Eigen::Isom
         for (const auto& match : matches[i]) {
             Vector6 jacobian;  // about the first sensor's axes
             jacobian << match.normal, (R * match.point).cross(match.normal);
-            sums[i * groups / matches.size()].add(
-                jacobian, match.residual(R, pose.translation()), match.weight);
+            sums[i * groups / matches.size()].add(jacobian, match.residual(R, pose.translation()),
+                                                  match.weight);
         }
     NormalEquations<6> all;
     Matrix6 scatter = Matrix6::Zero();
@@ -63,8 +63,7 @@ Matrix6 scatterOf(const std::vector<Correspondences>& matches, const Eigen::Isom
     for (const auto& sum : sums)
         scatter += (sum.gradient - mean) * (sum.gradient - mean).transpose();
     scatter *= static_cast<double>(groups) / std::max(1.0, static_cast<double>(groups) - 6);
-    const Matrix6 inverse =
-        all.information.completeOrthogonalDecomposition().pseudoInverse();
+    const Matrix6 inverse = all.information.completeOrthogonalDecomposition().pseudoInverse();
     return inverse * scatter * inverse.transpose();
 }
 }  // namespace
@@ -80,8 +79,7 @@ CalibratedPose calibrateExtrinsics(const std::vector<CalibrationView>& views,
         return all;
     };
     CalibratedPose result;
-    result.estimate =
-        registerByMatches(find, priorOf(given, options), kFirstKernel_m, options);
+    result.estimate = registerByMatches(find, priorOf(given, options), kFirstKernel_m, options);
     if (!result.estimate.valid) return result;
     const Eigen::Isometry3d pose = result.estimate.pose();
     result.covariance = scatterOf(matchesOf(views, pose, options.last_kernel), pose);

@@ -51,7 +51,8 @@ void OwnVehicle::add(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upri
     }
     if (near.empty()) return;
     auto sorted = heights;
-    const auto low = sorted.begin() + static_cast<std::ptrdiff_t>(kGroundShare * sorted.size());
+    const auto low = sorted.begin() +
+                     static_cast<std::ptrdiff_t>(kGroundShare * static_cast<double>(sorted.size()));
     std::nth_element(sorted.begin(), low, sorted.end());
     std::set<Voxel> voxels;
     for (std::size_t i = 0; i < near.size(); ++i)

@@ -17,15 +17,15 @@ namespace delio::run {
 namespace {
 using odometry::CalibrationView;
 
-constexpr std::size_t kAround = 15;       // scans before and after a moment are in its map
-constexpr double kNear_s = 0.15;          // scans of the other sensor so near a moment are compared
-constexpr double kLongest_s = 0.5;        // from a moment to the points of these scans
-constexpr std::size_t kFewestViews = 10;  // otherwise the drive shows too little
+constexpr std::size_t kAround = 15;  // scans before and after a moment are in its map
+constexpr double kNear_s = 0.15;     // scans of the other sensor so near a moment are compared
+constexpr double kLongest_s = 0.5;   // from a moment to the points of these scans
+constexpr std::ptrdiff_t kFewestViews = 10;  // otherwise the drive shows too little
 
-/** A moment of the drive, before the other sensor's points are there. */
-struct Moment {
-    double stamp_s;
-    CalibrationView view;
+/** Moments of the drive. */
+struct Views {
+    std::vector<double> stamps_s;
+    std::vector<CalibrationView> views;  //!< at these stamps
 };
 
 /** Makes maps of the first sensor's scans, in the vehicle's frame, about moments at equal distances
@@ -36,7 +36,7 @@ class Moments : public SlamListener {
 
     const char* name() const override { return "extrinsics"; }
     void add(const SlamScan& scan) override;
-    std::vector<Moment> take() { return std::move(moments_); }
+    Views take() { return std::move(all_); }
 
  private:
     struct Placed {
@@ -49,7 +49,7 @@ class Moments : public SlamListener {
 
     odometry::PlaneOdometryOptions options_;
     std::deque<Placed> recent_;
-    std::vector<Moment> moments_;
+    Views all_;
     double scale_ = 1;                   //!< of the place
     double stride_m_ = 1, way_m_ = 1e9;  //!< between two moments, and since the latest
 };
@@ -67,8 +67,8 @@ void Moments::add(const SlamScan& scan) {
     if (scan.step.predicted) return;
     recent_.push_back({scan.node, scan.scan.stamp_s, scan.pose,
                        voxelCentroids(staticPoints(scan), kSpacing_m * scale_)});
-    way_m_ += scan.increment.pose.translation().norm() +
-              kArm_m * angleOf(scan.increment.pose.linear());
+    way_m_ +=
+        scan.increment.pose.translation().norm() + kArm_m * angleOf(scan.increment.pose.linear());
     if (recent_.size() <= 2 * kAround) return;
     if (way_m_ >= stride_m_ * scale_)
         addMoment(odometry::upIn(scan.scan.sensorPose, scan.step.used.points));
@@ -88,22 +88,26 @@ void Moments::addMoment(const Eigen::Vector3d& up) {
         map.add(poses.back() * placed.points.cast<double>());
     }
     const ScanTrajectory trajectory(times_s, poses);
-    moments_.push_back(
-        {centre.stamp_s, {std::move(map), PoseTable(trajectory, -kLongest_s, kLongest_s)}});
+    all_.stamps_s.push_back(centre.stamp_s);
+    all_.views.push_back({std::move(map), PoseTable(trajectory, -kLongest_s, kLongest_s)});
     way_m_ = 0;
-    if (moments_.size() < kMost) return;
-    std::vector<Moment> half;
-    for (std::size_t i = 0; i < moments_.size(); i += 2) half.push_back(std::move(moments_[i]));
-    moments_ = std::move(half);
+    if (all_.views.size() < kMost) return;
+    Views half;
+    for (std::size_t i = 0; i < all_.views.size(); i += 2) {
+        half.stamps_s.push_back(all_.stamps_s[i]);
+        half.views.push_back(std::move(all_.views[i]));
+    }
+    all_ = std::move(half);
     stride_m_ *= 2;
 }
 
 /** Appends a scan of the other sensor, thinned to the first point of each voxel. */
-void addPoints(const Scan& scan, const PreprocessOptions& options, Moment& moment) {
+void addPoints(const Scan& scan, const PreprocessOptions& options, double stamp_s,
+               CalibrationView& view) {
     constexpr double kSpacing_m = 0.4;
     const auto cloud = odometry::preprocess(scan, options);
     const auto numbers = numberVoxels(cloud.points, kSpacing_m);
-    auto& points = moment.view.points;
+    auto& points = view.points;
     Eigen::Index count = points.cols();
     points.conservativeResize(3, count + numbers.voxels);
     std::uint32_t voxels = 0;
@@ -112,7 +116,7 @@ void addPoints(const Scan& scan, const PreprocessOptions& options, Moment& momen
         ++voxels;
         points.col(count++) = cloud.points.col(static_cast<Eigen::Index>(i));
         const float time_s = cloud.times_s.empty() ? 0 : cloud.times_s[i];
-        moment.view.times_s.push_back(static_cast<float>(scan.stamp_s - moment.stamp_s) + time_s);
+        view.times_s.push_back(static_cast<float>(scan.stamp_s - stamp_s) + time_s);
     }
 }
 
@@ -122,9 +126,9 @@ io::ScanSource only(io::ScanSource source, const std::string& label) {
 }
 
 /** From the odometry of the sensor that `source` names alone. */
-std::vector<Moment> momentsOf(const io::ScanSource& source, const Options& options,
-                              const PlaybackSettings& settings,
-                              const std::function<void(std::optional<double>)>& onScan) {
+Views viewsOf(const io::ScanSource& source, const Options& options,
+              const PlaybackSettings& settings,
+              const std::function<void(std::optional<double>)>& onScan) {
     const auto reader = io::openScans(source);
     Playback playback(*reader, settings);
     RunSettings run;
@@ -135,22 +139,28 @@ std::vector<Moment> momentsOf(const io::ScanSource& source, const Options& optio
     playback.play(drive, [&](const RunRow&, const Playback::Progress& now) {
         if (onScan) onScan(now.fraction);
     });
-    if (!drive.record().fault.empty()) throw Error(drive.record().fault);
     return moments->take();
 }
 
-/** The moments with the points of the sensor that `source` names. */
-std::vector<CalibrationView> viewsOf(const io::ScanSource& source, const PreprocessOptions& options,
-                                     std::vector<Moment> moments) {
+/** Gives the views the points of the sensor that `source` names. A recording that is damaged is
+ *  used up to there: the run of all sensors says so. */
+void addPoints(const io::ScanSource& source, const PreprocessOptions& options,
+               const std::function<bool()>& isInterrupted, Views& all) {
+    for (auto& view : all.views) {
+        view.points.resize(3, 0);
+        view.times_s.clear();
+    }
     const auto reader = io::openScans(source);
-    while (const auto scan = reader->next())
-        for (auto& moment : moments)
-            if (std::abs(scan->stamp_s - moment.stamp_s) <= kNear_s)
-                addPoints(*scan, options, moment);
-    std::vector<CalibrationView> views;
-    for (auto& moment : moments)
-        if (moment.view.points.cols() > 0) views.push_back(std::move(moment.view));
-    return views;
+    try {
+        while (const auto scan = reader->next()) {
+            if (isInterrupted && isInterrupted()) return;
+            for (std::size_t i = 0; i < all.views.size(); ++i)
+                if (std::abs(scan->stamp_s - all.stamps_s[i]) <= kNear_s)
+                    addPoints(*scan, options, all.stamps_s[i], all.views[i]);
+        }
+    } catch (const Error&) {
+        return;
+    }
 }
 
 /** "along x": by the vehicle's axis nearest to each unit vector. */
@@ -168,9 +178,12 @@ void refine(const std::vector<CalibrationView>& views, odometry::PlaneRegistrati
     constexpr double kPrior_m = 0.2, kPrior_deg = 3;
     options.prior_sigma = kPrior_m;
     options.prior_sigma_deg = kPrior_deg;
-    if (views.size() < kFewestViews) {
-        sensor.reason = "both sensors tracked the same part of the drive at " +
-                        std::to_string(views.size()) + " places only";
+    const auto count = std::count_if(views.begin(), views.end(),
+                                     [](const auto& view) { return view.points.cols() > 0; });
+    if (count < kFewestViews) {
+        sensor.reason = "the drive has " + std::to_string(count) +
+                        " places where both see enough, " + std::to_string(kFewestViews) +
+                        " are needed";
         return;
     }
     const auto found = odometry::calibrateExtrinsics(views, sensor.given, options);
@@ -191,17 +204,17 @@ std::vector<CalibratedSensor> calibrateExtrinsics(
     const io::ScanSource& source, const Options& options, PlaybackSettings settings,
     const std::function<void(std::optional<double> fraction)>& onScan) {
     std::vector<CalibratedSensor> sensors;
-    for (const auto& [label, pose] : io::openScans(source)->mergedSensors()) {
+    for (const auto& [label, pose] : io::openScans(source)->mergedSensors())
         sensors.push_back({label, pose, pose});
-    }
     if (sensors.size() < 2)
         throw Error("the poses of sensors can be refined where several are merged: '" +
                     source.path + "' gives one");
     settings.gnss = false;
-    const auto moments = momentsOf(only(source, sensors.front().label), options, settings, onScan);
-    for (std::size_t i = 1; i < sensors.size(); ++i)
-        refine(viewsOf(only(source, sensors[i].label), options.scan(), moments),
-               options.planes.registration, sensors[i]);
+    auto views = viewsOf(only(source, sensors.front().label), options, settings, onScan);
+    for (std::size_t i = 1; i < sensors.size(); ++i) {
+        addPoints(only(source, sensors[i].label), options.scan(), settings.isInterrupted, views);
+        refine(views.views, options.planes.registration, sensors[i]);
+    }
     return sensors;
 }
 }  // namespace delio::run

@@ -73,7 +73,8 @@ TEST_F(OwnVehicleTest, TheWorldIsNotTheVehicle) {
 }
 
 TEST_F(OwnVehicleTest, NothingIsFoundWhileTheSensorStands) {
-    for (int i = 0; i < 200; ++i) own_.add(mast(noise_), Eigen::Matrix3f::Identity(), poseAt(1, 0, 0));
+    for (int i = 0; i < 200; ++i)
+        own_.add(mast(noise_), Eigen::Matrix3f::Identity(), poseAt(1, 0, 0));
     EXPECT_TRUE(own_.box().isEmpty());
 }
 }  // namespace
