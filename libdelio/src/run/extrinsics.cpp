@@ -32,7 +32,7 @@ struct Views {
  *  along the drive: their number does not grow with it. */
 class Moments : public SlamListener {
  public:
-    explicit Moments(const odometry::PlaneOdometryOptions& options) : options_(options) {}
+    explicit Moments(const PlaneOdometryOptions& options) : options_(options) {}
 
     const char* name() const override { return "extrinsics"; }
     void add(const SlamScan& scan) override;
@@ -47,7 +47,7 @@ class Moments : public SlamListener {
     };
     void addMoment(const Eigen::Vector3d& up);
 
-    odometry::PlaneOdometryOptions options_;
+    PlaneOdometryOptions options_;
     std::deque<Placed> recent_;
     Views all_;
     double scale_ = 1;                   //!< of the place
@@ -173,7 +173,7 @@ void addNames(const char* how, const Eigen::Matrix3Xd& axes, std::vector<std::st
 }
 
 /** Refines `sensor`, or says why not. */
-void refine(const std::vector<CalibrationView>& views, odometry::PlaneRegistrationOptions options,
+void refine(const std::vector<CalibrationView>& views, PlaneRegistrationOptions options,
             CalibratedSensor& sensor) {
     constexpr double kPrior_m = 0.2, kPrior_deg = 3;
     options.prior_sigma = kPrior_m;
@@ -204,8 +204,11 @@ std::vector<CalibratedSensor> calibrateExtrinsics(
     const io::ScanSource& source, const Options& options, PlaybackSettings settings,
     const std::function<void(std::optional<double> fraction)>& onScan) {
     std::vector<CalibratedSensor> sensors;
-    for (const auto& [label, pose] : io::openScans(source)->mergedSensors())
-        sensors.push_back({label, pose, pose});
+    for (const auto& [label, pose] : io::openScans(source)->mergedSensors()) {
+        sensors.emplace_back();
+        sensors.back().label = label;
+        sensors.back().pose = sensors.back().given = pose;
+    }
     if (sensors.size() < 2)
         throw Error("the poses of sensors can be refined where several are merged: '" +
                     source.path + "' gives one");
