@@ -9,9 +9,9 @@
 namespace delio::odometry {
 /** What two sensors saw about one moment of a drive. */
 struct CalibrationView {
-    PlaneMap map;          //!< of the first sensor's scans, in its frame at the moment
-    PoseTable trajectory;  //!< first sensor's frame to that at the moment; times from then
-    Eigen::Matrix3Xf points = {};     //!< of the other sensor, in its frame at each point's time
+    PlaneMap map;                  //!< of the first sensor's scans, in its frame at the moment
+    PoseTable trajectory;          //!< first sensor's frame to that at the moment; times from then
+    Eigen::Matrix3Xf points = {};  //!< of the other sensor, in its frame at each point's time
     std::vector<float> times_s = {};  //!< of these points, from the moment
 };
 

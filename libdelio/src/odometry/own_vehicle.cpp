@@ -62,8 +62,8 @@ void OwnVehicle::add(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upri
     if (++scans_ >= kScans) judge();
 }
 
-/** Voxels of what is seen nearly always, within a piece that ends before reach. Pieces are of
- *  voxels that are seen often. */
+/** Voxels of pieces that end before reach and are there in nearly all scans. A piece is connected
+ *  by voxels that have points often. */
 std::set<OwnVehicle::Voxel> OwnVehicle::steady() const {
     std::set<Voxel> often, found;
     for (const auto& [voxel, count] : counts_)
@@ -103,8 +103,8 @@ void OwnVehicle::judge() {
     scans_ = 0;
 }
 
-void OwnVehicle::removeFrom(PointCloud& cloud) const {
-    if (own_.empty()) return;
+PointCloud OwnVehicle::without(PointCloud cloud) const {
+    if (own_.empty()) return cloud;
     const auto isOwn = [&](Eigen::Index i) {
         const Eigen::Vector3d point = cloud.points.col(i).cast<double>();
         return point.norm() < kReach_m && own_.count(voxelKey(point, kVoxel_m)) > 0;
@@ -124,5 +124,6 @@ void OwnVehicle::removeFrom(PointCloud& cloud) const {
     cloud.indices.resize(rest);
     if (!cloud.rings.empty()) cloud.rings.resize(rest);
     if (!cloud.times_s.empty()) cloud.times_s.resize(rest);
+    return cloud;
 }
 }  // namespace delio::odometry

@@ -18,8 +18,8 @@ class OwnVehicle {
     void add(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
              const Eigen::Isometry3d& pose);
 
-    /** Drops the points of the parts that were found. */
-    void removeFrom(PointCloud& cloud) const;
+    /** The cloud without the points of the parts that were found. */
+    PointCloud without(PointCloud cloud) const;
 
     /** Of the parts that were found, metres, sensor's frame; empty: none. */
     const Eigen::AlignedBox3d& box() const { return box_; }
@@ -29,8 +29,8 @@ class OwnVehicle {
     std::set<Voxel> steady() const;
     void judge();
 
-    std::map<Voxel, unsigned> counts_;  //!< of scans with points there
-    unsigned scans_ = 0;                //!< that were counted
+    std::map<Voxel, unsigned> counts_;                         //!< of scans with points there
+    unsigned scans_ = 0;                                       //!< that were counted
     Eigen::Vector3d latest_ = Eigen::Vector3d::Constant(1e9);  //!< place of the latest of them
     std::set<Voxel> before_;                                   //!< steady in the scans before these
     std::set<Voxel> own_;                                      //!< with a margin about them

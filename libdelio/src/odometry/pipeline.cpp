@@ -68,8 +68,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     PointCloud cloud;
     {
         const StageTimer timer(step, "preprocess");
-        cloud = preprocess(scan, options_.scan);
-        own_.removeFrom(cloud);
+        cloud = own_.without(preprocess(scan, options_.scan));
         countFromMiddle(cloud);
         if (isEmpty) upright_ = uprightOf(scan.sensorPose, cloud.points);
     }
@@ -105,8 +104,6 @@ Step PlaneOdometry::process(const Scan& scan) {
         takeScale(seenScale_);
         beginMap(cloud, !std::holds_alternative<Degenerate>(state_));
     }
-    if (options_.dynamics.enabled && std::holds_alternative<Tracking>(state_))
-        own_.add(cloud.points, upright_, pose_);
     step.details.emplace_back("scale", scale_);
     gyro_.count(usesGyro_);
     step.used.indices = std::move(cloud.indices);

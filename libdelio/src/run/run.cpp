@@ -82,8 +82,7 @@ void Run::add(std::vector<CalibratedSensor> extrinsics) {
         std::string kept;
         for (const auto& axis : sensor.unobserved) kept += (kept.empty() ? "" : ", ") + axis;
         if (!sensor.reason.empty())
-            warn("the pose of the sensor '" + sensor.label +
-                 "' was not refined: " + sensor.reason);
+            warn("the pose of the sensor '" + sensor.label + "' was not refined: " + sensor.reason);
         else if (!kept.empty())
             warn("the pose of the sensor '" + sensor.label + "' was not refined " + kept +
                  ": the drive does not show it");

@@ -86,6 +86,14 @@ Summary::Figures meanTimes(const RunRecord& record) {
     return means;
 }
 
+void addStages(const RunRecord& record, Summary& summary) {
+    for (const auto& [name, ms] : meanTimes(record))
+        if (name == "map")
+            summary.map_ms_per_scan = ms;
+        else
+            summary.ms_per_scan_of_stages.emplace_back(name, ms);
+}
+
 template <typename Flag>
 std::size_t countOf(const RunRecord& record, const Flag& flag) {
     return static_cast<std::size_t>(std::count_if(record.rows.begin(), record.rows.end(),
@@ -274,8 +282,7 @@ void forEachField(Record& s, const Field& field) {
     }
     if (field.hasGroup("imu", !s.imu.empty())) field("imu", s.imu);
     if (field.hasGroup("odometry", !s.odometry.empty())) field("odometry", s.odometry);
-    if (field.hasGroup("own_vehicle", !s.own_vehicle.empty()))
-        field("own_vehicle", s.own_vehicle);
+    if (field.hasGroup("own_vehicle", !s.own_vehicle.empty())) field("own_vehicle", s.own_vehicle);
     if (field.hasGroup("extrinsics", !s.extrinsics.empty())) field("extrinsics", s.extrinsics);
     if (field.hasGroup("georeference", !s.georeference.empty()))
         field("georeference", s.georeference);
@@ -373,11 +380,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.ms_per_scan = record.msPerScan();
     summary.latency_ms = latencyOf(record.rows);
     if (record.live) summary.live = liveFiguresOf(*record.live);
-    for (const auto& [name, ms] : meanTimes(record))
-        if (name == "map")
-            summary.map_ms_per_scan = ms;
-        else
-            summary.ms_per_scan_of_stages.emplace_back(name, ms);
+    addStages(record, summary);
     summary.optimisation_ms = record.optimise_ms;
     summary.optimisation_iterations = record.optimisation.iterations;
     summary.optimisation_cost_before = record.optimisation.initial_cost;

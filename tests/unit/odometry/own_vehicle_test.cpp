@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "odometry/pipeline.h"
+#include <utility>
+
 #include "ring_scan.h"
 
 namespace {
@@ -56,7 +57,7 @@ TEST_F(OwnVehicleTest, AMastIsFoundAndDropped) {
         cloud.indices.push_back(i);
         cloud.times_s.push_back(0.001F * static_cast<float>(i));
     }
-    own_.removeFrom(cloud);
+    cloud = own_.without(std::move(cloud));
     ASSERT_EQ(cloud.points.cols(), 2);
     EXPECT_EQ(cloud.indices, (std::vector<std::uint32_t>{40, 41}));
     EXPECT_EQ(cloud.times_s, (std::vector<float>{0.04F, 0.041F}));
