@@ -110,6 +110,7 @@ run::RunSettings settingsFor(SlamCommandLine& line, int argc, char** argv) {
     settings.map = !line.noMap.getValue();
     settings.keepDynamic = line.keepDynamic.getValue();
     settings.gnss = !line.noGnss.getValue();
+    settings.level = line.level.getValue();
     settings.loops = !line.noLoops.getValue();
     settings.storedMap = line.map.getValue();
     settings.extend = line.extend.getValue();
@@ -149,6 +150,10 @@ std::string contradictionIn(SlamCommandLine& line) {
     if (line.serve.getValue() > 65535) return "--serve must be 65535 or less (0: any free port)";
     if (line.initialPose.isSet() && !line.map.isSet())
         return "--initial-pose needs --map: it is a pose in the stored map";
+    if (line.level.isSet() && line.noImu.isSet())
+        return "--level needs the IMU that --no-imu leaves out";
+    if (line.level.isSet() && line.map.isSet())
+        return "--level cannot turn the stored map of --map";
     if (line.noGnss.isSet() && (line.gnss.isSet() || line.antenna.isSet()))
         return "--no-gnss excludes --gnss and --antenna";
     if (line.extend.isSet() && !line.map.isSet())

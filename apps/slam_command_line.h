@@ -129,6 +129,7 @@ struct SlamCommandLine {
     Switch keepDynamic{"", "keep-dynamic", "Also write the removed dynamic points: map_dynamic.ply",
                        cmd};
     Switch noImu{"", "no-imu", "Do not use the recording's IMU", cmd};
+    Switch level{"", "level", "Turn the map so that z is up, by the accelerations of its IMU", cmd};
     Switch noOdometry{"", "no-odometry", "Do not use the recording's wheel odometry", cmd};
     Switch noMap{"", "no-map", "Do not build a map", cmd};
     Switch noGnss{"", "no-gnss", "Do not use GNSS fixes", cmd};

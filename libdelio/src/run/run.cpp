@@ -13,7 +13,9 @@
 #include "places/join_maps.h"
 #include "run/tables.h"
 #include "slam/georeferencing.h"
+#include "slam/levelling.h"
 #include "slam/place_listeners.h"
+#include "slam/specific_force.h"
 
 namespace delio::run {
 namespace {
@@ -27,7 +29,8 @@ graph::PoseGraphOptions graphOptions(const Options& options, const RunSettings& 
 Run::Run(const Options& options, const RunSettings& settings)
     : settings_(settings),
       slam_(makeOdometry(options)),
-      graph_(std::make_shared<GraphBuilder>(graphOptions(options, settings))) {
+      graph_(std::make_shared<GraphBuilder>(graphOptions(options, settings))),
+      forces_(std::make_unique<SpecificForce>()) {
     options.check();
     record_.profile = settings.profile;
     record_.command = settings.command;
@@ -121,8 +124,16 @@ void Run::readSideFiles(const io::SideFile& calib, const io::SideFile& poses,
     truthWasAskedFor_ = !truth.empty();
 }
 
+void Run::addImu(const ImuSample& sample) {
+    slam_.addImu(sample);
+    forces_->add(sample);
+}
+
 RunRow Run::process(const Scan& scan, double read_ms) {
     const auto report = slam_.process(scan);
+    const auto imu = slam_.imuReport();
+    forces_->addScan(scan.stamp_s + (imu ? imu->offset_s : 0),
+                     imu ? imu->bias_radps : Eigen::Vector3d::Zero());
     for (const auto& failed : report.failed) switchOff(failed, scan.index);
     auto& rows = record_.rows;
     if (rows.empty()) record_.epoch_s = mrpt::Clock::toDouble(scan.time) - scan.stamp_s;
@@ -218,6 +229,39 @@ void Run::optimiseGraph() {
     }
 }
 
+/** The accelerometer says what is up, where the gyroscope agrees with the scans. */
+void Run::level() {
+    ForcesOnTrack track{record_.odometry.stamps_s, {}, {}, forces_->take()};
+    for (const auto& row : record_.rows) {
+        track.usable.push_back(!row.predicted && !row.lost && !row.interrupted);
+        track.mounts.push_back(row.sensorPose.linear() * *record_.imu->rotation);
+    }
+    const bool moves = settings_.graph && graph_ && !record_.isLocalised();
+    try {
+        auto found = levelled(record_.graph, track, moves ? &record_.options.graph : nullptr);
+        record_.vertical = found.vertical;
+        record_.graph = std::move(found.graph);
+    } catch (const std::exception& e) {
+        warn("the map is not levelled: " + plainMessage(e));
+    }
+}
+
+/** Turns the map so that its z is up; the heading of x stays. */
+void Run::standUpright() {
+    if (!record_.vertical || !record_.vertical->refusal.empty())
+        return warn("the map is not levelled: " +
+                    (record_.vertical ? record_.vertical->refusal
+                                      : "there is no IMU that agrees with the scans"));
+    Eigen::Vector3d& up = record_.vertical->up;
+    const Eigen::Isometry3d upright(
+        Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()));
+    auto poses = record_.graph.poses();
+    for (auto& pose : poses) pose = upright * pose;
+    record_.graph = record_.graph.withPoses(poses);
+    for (auto& pose : record_.odometry.poses) pose = upright * pose;
+    up = Eigen::Vector3d::UnitZ();
+}
+
 void Run::add(const earth::Fixes& fixes) {
     gnssFixes_.insert(gnssFixes_.end(), fixes.begin(), fixes.end());
 }
@@ -256,6 +300,8 @@ void Run::optimise() {
         record_.georeference = follower_->map().georeference();
         record_.cloudOrigin = follower_->map().cloudOrigin();
     }
+    if (record_.imu && record_.imu->rotation) level();
+    if (settings_.level) standUpright();
     if (settings_.gnss && !gnssFixes_.empty() && !record_.georeference) georeference();
     record_.optimise_ms = watch.lap_ms();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};

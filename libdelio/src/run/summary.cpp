@@ -123,6 +123,21 @@ Summary::Figures figuresOf(const ImuReport& imu) {
     return figures;
 }
 
+/** Appends to those of the IMU. */
+void put(const Vertical& vertical, Summary::Figures& figures) {
+    if (!vertical.refusal.empty()) return;
+    figures.insert(
+        figures.end(),
+        {{"up_x", vertical.up.x()},
+         {"up_y", vertical.up.y()},
+         {"up_z", vertical.up.z()},
+         {"up_sigma_deg", 180 / M_PI * vertical.sigma_rad},
+         {"acceleration_bias_x_mps2", vertical.bias_mps2.x()},
+         {"acceleration_bias_y_mps2", vertical.bias_mps2.y()},
+         {"acceleration_bias_z_mps2", vertical.bias_mps2.z()},
+         {"tilts_held", vertical.holdsTilt ? static_cast<double>(vertical.stretches) : 0}});
+}
+
 Summary::Figures figuresOf(const OdometryReport& wheels) {
     Summary::Figures figures{{"samples", static_cast<double>(wheels.samples)},
                              {"dropped", static_cast<double>(wheels.dropped)},
@@ -370,6 +385,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
            : fix.where == Whereabouts::kOutside ? summary.outside_map
                                                 : summary.not_found_in_map);
     if (record.imu) summary.imu = figuresOf(*record.imu);
+    if (record.vertical) put(*record.vertical, summary.imu);
     if (record.wheels) summary.odometry = figuresOf(*record.wheels);
     summary.own_vehicle = figuresOf(record.ownVehicle);
     summary.extrinsics = figuresOf(record.extrinsics);

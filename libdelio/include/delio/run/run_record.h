@@ -125,6 +125,7 @@ struct RunRecord {
     double loop_search_ms = 0;                  //!< beside the drive, and after it
 
     std::optional<ImuReport> imu;          //!< what was found out about the IMU, where there is one
+    std::optional<Vertical> vertical;      //!< by its accelerometer, in the frame of `final`
     std::optional<OdometryReport> wheels;  //!< likewise of wheels or another odometry
     std::optional<earth::Georeference> georeference;  //!< of the final poses, where it is known
     earth::GnssFigures gnss;                          //!< of the drive's fixes
@@ -144,10 +145,11 @@ struct RunRecord {
     /** True poses in the frame of `final`, for pictures. */
     std::vector<Eigen::Isometry3d> truth;
 
-    /** Loop closures or GNSS fixes moved the poses: without them, the graph is the chain that the
-     *  odometry's poses were made of. */
+    /** Loop closures, GNSS fixes or the vertical moved the poses: without them, the graph is the
+     *  chain that the odometry's poses were made of. */
     bool optimised() const {
-        return graph.edges().size() + 1 > graph.poses().size() || gnss.inGraph > 0;
+        return graph.edges().size() + 1 > graph.poses().size() || gnss.inGraph > 0 ||
+               (vertical && vertical->holdsTilt);
     }
     std::size_t predicted() const;  //!< scans that were not registered
     bool isLocalised() const;       //!< it was found in the stored map
