@@ -53,6 +53,7 @@ cli::HelpText slamHelp() {
          "with GNSS fixes: poses in east-north-up, TUM format; line for a map viewer"},
         {Folder::kCloudTum,
          "with --map of an imported cloud with an offset: poses in its coordinates"},
+        {Folder::kExtrinsics, "with --calibrate-extrinsics: the sensors' poses, for --extrinsics"},
         {both(Folder::kGraph, Folder::kMrptGraph), "pose graph"},
         {both(Folder::kPly, Folder::kScene), "map points; scene for SceneViewer3D"},
         {Folder::kMapPage, "the map as an interactive page for a browser"},
@@ -127,7 +128,7 @@ io::ScanSource sourceFor(SlamCommandLine& line, const std::string& input) {
     io::ScanSource source{input, line.label.getValue(), line.images.getValue(),
                           line.sensorInfo.getValue()};
     source.extrinsicsFile = line.extrinsics.getValue();
-    if (line.vehicleBox.isSet()) source.vehicleBox = vehicleBoxIn(line.vehicleBox.getValue());
+    if (line.vehicleBox.isSet()) source.vehicleBox = cli::vehicleBoxIn(line.vehicleBox.getValue());
     if (!io::isLive(input)) return source;
     const fs::path folder = line.output.getValue();
     source.live.record =
@@ -164,6 +165,9 @@ std::string contradictionIn(SlamCommandLine& line) {
         return "--update takes one drive, without --extend";
     if (line.update.isSet() && line.noMap.isSet())
         return "--update and --no-map exclude each other";
+    if (line.calibrateExtrinsics.isSet() &&
+        (inputs.size() > 1 || isLive(line) || inputs.front() == "-" || isGraph(inputs.front())))
+        return "--calibrate-extrinsics needs one recording as input";
     if (line.saveRawlog.isSet() && (inputs.size() > 1 || isLive(line) || inputs.front() == "-"))
         return "--save-rawlog needs one rawlog file as input";
     if (line.saveRawlog.isSet() && fs::path(line.saveRawlog.getValue()).extension() != ".rawlog")

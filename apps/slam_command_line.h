@@ -75,6 +75,9 @@ struct SlamCommandLine {
         "",
         "FILE",
         cmd};
+    Switch calibrateExtrinsics{
+        "", "calibrate-extrinsics",
+        "Several sensors: first refine their poses relative to the first one from the drive", cmd};
     Text vehicleBox{"",
                     "vehicle-box",
                     "Ignore points in this box of the vehicle frame, metres: parts of the own "

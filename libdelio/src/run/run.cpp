@@ -86,6 +86,19 @@ void Run::warn(const std::string& text) {
     if (settings_.onWarning) settings_.onWarning(text);
 }
 
+void Run::add(std::vector<CalibratedSensor> extrinsics) {
+    for (const auto& sensor : extrinsics) {
+        std::string kept;
+        for (const auto& axis : sensor.unobserved) kept += (kept.empty() ? "" : ", ") + axis;
+        if (!sensor.reason.empty())
+            warn("the pose of the sensor '" + sensor.label + "' was not refined: " + sensor.reason);
+        else if (!kept.empty())
+            warn("the pose of the sensor '" + sensor.label + "' was not refined " + kept +
+                 ": the drive does not show it");
+    }
+    record_.extrinsics = std::move(extrinsics);
+}
+
 void Run::fail(const std::string& fault) {
     if (record_.fault.empty()) record_.fault = fault;
 }
@@ -413,6 +426,17 @@ void Run::score() {
     }
 }
 
+void Run::findOwnVehicle() {
+    const Eigen::AlignedBox3d box = slam_.ownVehicle();
+    if (box.isEmpty() || record_.rows.empty()) return;
+    record_.ownVehicle = box.transformed(record_.rows.back().sensorPose);
+    const auto &low = record_.ownVehicle.min(), &high = record_.ownVehicle.max();
+    warn(mrpt::format(
+        "parts of the own vehicle were found and left out; to leave them out from the first scan "
+        "on: --vehicle-box %.2f,%.2f,%.2f,%.2f,%.2f,%.2f",
+        low.x(), low.y(), low.z(), high.x(), high.y(), high.z()));
+}
+
 void Run::finish(bool complete) {
     const Doubts doubts = doubtsOf(record_.rows);
     for (const auto& warning : warningsOf(doubts)) warn(warning);
@@ -427,6 +451,7 @@ void Run::finish(bool complete) {
     record_.wheels = slam_.odometryReport();
     if (record_.wheels)
         for (const auto& finding : record_.wheels->findings) warn(finding);
+    findOwnVehicle();
     slam_.close();
     optimise();
     if (const auto why = whyUnreliable(unlinkedOf(record_), doubts.pairs); !why.empty())

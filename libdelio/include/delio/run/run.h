@@ -91,6 +91,10 @@ class Run {
     /** Records what a live sensor sent; before finish(). */
     void add(LiveRecord live) { record_.live = std::move(live); }
 
+    /** Records the poses of several LiDARs that were refined, with a warning for those that were
+     *  not; before finish(). */
+    void add(std::vector<CalibratedSensor> extrinsics);
+
     /** Pose of the vehicle at the latest scan. */
     struct Pose {
         double stamp_s = 0;  //!< of the scan
@@ -119,6 +123,7 @@ class Run {
     }
 
  private:
+    void findOwnVehicle();
     bool searchesLoops() const;
     places::LoopOptions loopOptions() const;
     void switchOff(const FailedListener& failed, std::size_t scan);
