@@ -72,7 +72,7 @@ void LiveScene::insertInto(COpenGLScene& scene) {
     current_->setColor_u8(TColor(255, 255, 255));
     path_->setColor_u8(TColor(255, 210, 0));
     path_->setLineWidth(3);
-    weak_->setColor_u8(TColor(255, 0, 200));
+    weak_->setColor_u8(TColor(255, 64, 200));
     weak_->setLineWidth(5);
     auto grid = mrpt::opengl::CGridPlaneXY::Create(-1000, 1000, -1000, 1000, -2, 20);
     grid->setColor_u8(TColor(70, 70, 75));
