@@ -307,7 +307,7 @@ void Run::optimise() {
         record_.cloudOrigin = follower_->map().cloudOrigin();
     }
     if (record_.imu && record_.imu->rotation) level();
-    if (settings_.level) standUpright();
+    if (settings_.level && !record_.isLocalised()) standUpright();
     if (settings_.gnss && !gnssFixes_.empty() && !record_.georeference) georeference();
     record_.optimise_ms = watch.lap_ms();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
