@@ -13,7 +13,7 @@ namespace delio::synth {
 struct SceneRequest {
     std::string name;
     std::uint64_t seed = 0;
-    std::size_t scans = 0;  //!< the world reaches beyond them
+    std::size_t scans = 0;   //!< the world reaches beyond them
     std::string trajectory;  //!< a file of KITTI poses of cam0 to drive along; empty: none
     Eigen::Isometry3d lidarToCam0 = Eigen::Isometry3d::Identity();
     /** Of the cars parked there; 0: none; nothing: as the world's seed has them. */

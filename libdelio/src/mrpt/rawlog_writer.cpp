@@ -224,8 +224,7 @@ void RawlogWriter::add(const earth::Fix& fix, double epoch_s) {
         std::max({variances.x(), variances.y(), variances.z() / 4}) * Eigen::Matrix3d::Identity();
     int best = 1;
     const auto off = [&](int quality) {
-        return std::abs(
-            std::log(rounded.covariance(0, 0) / earth::covarianceOf(quality, 1)(0, 0)));
+        return std::abs(std::log(rounded.covariance(0, 0) / earth::covarianceOf(quality, 1)(0, 0)));
     };
     for (const int quality : {2, 4, 5})
         if (off(quality) < off(best)) best = quality;
