@@ -14,6 +14,8 @@ namespace {
 // KITTI's axes (x right, y down, z forward) and about its lever arm from LiDAR to cam0.
 const char* const kCalib = "Tr: 0 -1 0 0 0 0 -1 -0.08 1 0 0 -0.27\n";
 const char* const kLabel = "velodyne";
+const char* const kSecondLabel = "second";
+constexpr std::uint64_t kSecondKey = 0x5EC0;
 const char* const kFaultsHeader =
     "# Scans of the drive that did not arrive as they were. drive_scan counts the scans of the\n"
     "# drive (ten a second), scan those in the rawlog and the rows of times and poses, from 0.\n"
@@ -47,6 +49,11 @@ DriveWriter::DriveWriter(const DriveRequest& request, const Scene& scene, const 
       faults_(kFaultsHeader) {
     if (request.imu) imu_.emplace(*request.imu, drive, request.scanner.seed);
     if (request.wheels) wheels_.emplace(*request.wheels, drive, request.scanner.seed);
+    if (request.second) {
+        ScannerOptions options = request.scanner;
+        options.seed += kSecondKey;  // noise of its own
+        second_.emplace(caster_, &trafficCaster_, request.sensor, options);
+    }
     if (request.gnss)
         gnss_.emplace(
             *request.gnss, [this](double time_s) { return drive_.lidarPoseAt(time_s); },
@@ -81,6 +88,7 @@ void DriveWriter::writeScan(std::size_t scan) {
     if (fault == Fault::kEmpty) last_ = {};
     if (fault == Fault::kNone) last_ = simulate(scan);
     add(scan, last_);
+    if (second_) addSecond(scan);
 }
 
 ScanPoints DriveWriter::simulate(std::size_t scan) {
@@ -103,6 +111,29 @@ void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
     writer_.add(stamp_s, request_.secondZero(), points.xyzi);
     times_ += timeRow(request_.epoch_s.value_or(0) + stamp_s);
     poses_ += poseRow(scan);
+}
+
+/** Where points have times, the second sensor turns freely. */
+void DriveWriter::addSecond(std::size_t scan) {
+    constexpr double kLater_s = 0.037;
+    const SecondSensor mounted{*request_.second, request_.distort ? kLater_s : 0};
+    const Sweep sweep = sweepOf(drive_, scan, request_.sensor, request_.distort,
+                                request_.scanner.seed + kSecondKey, mounted);
+    const ScanPoints points = second_->scan(sweep, scan);
+    Scan own;
+    own.stamp_s = sweep.stamp_s;
+    own.sensorPose = mounted.pose;
+    own.rings = points.ring;
+    if (request_.distort) own.times_s = points.time_s;
+    const auto cloud = mrpt::maps::CPointsMapXYZI::Create();
+    cloud->resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const float* p = &points.xyzi[4 * i];
+        cloud->setPointFast(i, p[0], p[1], p[2]);
+        cloud->setPointIntensity(i, p[3]);
+    }
+    own.points = cloud;
+    writer_.addOther(kSecondLabel, own, io::kDriveEpoch_s);
 }
 
 /** Of IMU and wheels, up to this stamp. */

@@ -32,6 +32,8 @@ struct DriveRequest {
     std::optional<ImuModel> imu;       //!< recorded beside the scans
     std::optional<WheelModel> wheels;  //!< likewise
     std::optional<double> epoch_s;     //!< Unix time of scan 0; nothing: stamps start at 0
+    /** Pose of a second sensor of the same model in the first one's frame. */
+    std::optional<Eigen::Isometry3d> second;
     bool embed = false, force = false;
 
     /** Unix time of second 0 of the drive. */
@@ -53,6 +55,7 @@ class DriveWriter {
  private:
     void writeScan(std::size_t scan);
     void add(std::size_t scan, const ScanPoints& points);
+    void addSecond(std::size_t scan);
     void addSamples(double stamp_s);
     ScanPoints simulate(std::size_t scan);
     std::string poseRow(std::size_t scan) const;
@@ -67,6 +70,7 @@ class DriveWriter {
     RayCaster caster_;
     TileWindow window_;
     Scanner scanner_;
+    std::optional<Scanner> second_;
     io::RawlogWriter writer_;
     std::optional<Imu> imu_;
     std::optional<Wheels> wheels_;

@@ -39,6 +39,13 @@ struct Arguments {
     Text extrinsics{"",    "extrinsics", "Poses of the sensors in the vehicle: see delio-slam",
                     false, "",           "FILE",
                     cmd};
+    Text vehicleBox{"",
+                    "vehicle-box",
+                    "Leave out points of the own vehicle: see delio-slam",
+                    false,
+                    "",
+                    "XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX",
+                    cmd};
     Text images{"", "images", "Folder with a rawlog's external files", false, "", "DIR", cmd};
     Text label{"", "label", "Sensor label in the rawlog", false, "velodyne", "LABEL", cmd};
     Number start{"", "start", "First scan to use, counted from 0", false, {}, "N", cmd};
@@ -188,16 +195,27 @@ void refuseItself(Arguments& args, const io::ScanReader& reader) {
     cli::refuseOverlap(inputs, io::RawlogWriter::outputsOf(args.output.getValue()));
 }
 
-int convert(Arguments& args) {
-    if (args.every.getValue() == 0) {
-        cli::inform("--every must be at least 1");
-        return cli::kExitBadCommandLine;
+/** The own vehicle's box, if any; nothing where the command line is wrong, which is said. */
+std::optional<Eigen::AlignedBox3d> boxOf(Arguments& args) {
+    try {
+        if (args.every.getValue() == 0) throw Error("--every must be at least 1");
+        if (!args.vehicleBox.isSet()) return Eigen::AlignedBox3d();
+        return cli::vehicleBoxIn(args.vehicleBox.getValue());
+    } catch (const Error& e) {
+        cli::inform(e.what());
+        return {};
     }
+}
+
+int convert(Arguments& args) {
+    const auto box = boxOf(args);
+    if (!box) return cli::kExitBadCommandLine;
     const std::string &input = args.input.getValue(), &output = args.output.getValue();
     if (input == "-") cli::endInputAtInterrupt();
     io::ScanSource source{input, args.sensor.getValue(), args.images.getValue(),
                           args.sensorInfo.getValue()};
     source.extrinsicsFile = args.extrinsics.getValue();
+    source.vehicleBox = *box;
     const auto reader = io::openScans(source);
     refuseItself(args, *reader);
     cli::inform("reading " + describe(reader->recording()));

@@ -146,6 +146,15 @@ struct Arguments {
         cmd};
     TCLAP::ValueArg<std::string> sensor{
         "", "sensor", "Sensor", false, "hdl64e", choiceOf(sensorNames()), cmd};
+    TCLAP::ValueArg<std::string> second{
+        "",
+        "second",
+        "Also record a second sensor of that kind (label second) at this pose in the frame of the "
+        "first one (label velodyne), metres and degrees",
+        false,
+        "",
+        "X,Y,Z,YAW,PITCH,ROLL",
+        cmd};
     TCLAP::ValueArg<double> imu{
         "",    "imu", "Also record an IMU at so many samples a second (CObservationIMU, label imu)",
         false, 0,     "HZ",
@@ -396,6 +405,22 @@ std::optional<WheelModel> wheelsOf(Arguments& args) {
     return model;
 }
 
+std::string faultInSecond(Arguments& args) {
+    if (!args.second.isSet()) return "";
+    if (cli::numbersIn(args.second.getValue(), 6).empty())
+        return "--second needs X,Y,Z,YAW,PITCH,ROLL in metres and degrees";
+    if (args.embed.isSet() || args.mount.isSet()) return "--second excludes --embed and --mount";
+    return "";
+}
+
+std::optional<Eigen::Isometry3d> secondOf(Arguments& args) {
+    if (!args.second.isSet()) return {};
+    const auto pose = cli::numbersIn(args.second.getValue(), 6);
+    Eigen::Isometry3d second = Mount{pose[5], pose[4], pose[3]}.pose();
+    second.translation() << pose[0], pose[1], pose[2];
+    return second;
+}
+
 DriveRequest requestOf(Arguments& args) {
     DriveRequest request;
     request.output = args.output.getValue();
@@ -419,6 +444,7 @@ DriveRequest requestOf(Arguments& args) {
     if (args.epoch.isSet()) request.epoch_s = args.epoch.getValue();
     request.imu = imuOf(args);
     request.wheels = wheelsOf(args);
+    request.second = secondOf(args);
     request.embed = args.embed.getValue();
     request.force = args.force.getValue();
     return request;
@@ -437,6 +463,7 @@ int makeDrive(Arguments& args) {
     if (fault.empty()) fault = faultInImu(args);
     if (fault.empty()) fault = faultInWheels(args);
     if (fault.empty()) fault = faultInGnss(args);
+    if (fault.empty()) fault = faultInSecond(args);
     if (!fault.empty()) {
         cli::inform(fault + "; see --help");
         return cli::kExitBadCommandLine;

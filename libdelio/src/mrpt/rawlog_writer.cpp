@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "clock.h"
 #include "delio/core/error.h"
@@ -127,6 +128,16 @@ void RawlogWriter::add(const Scan& scan, double epoch_s) {
     append(observation, scan.stamp_s, epoch_s);
 }
 
+void RawlogWriter::addOther(const std::string& label, const Scan& scan, double epoch_s) {
+    const std::string own = std::exchange(label_, label);
+    const auto count = std::exchange(count_, others_[label]++);
+    prefix_ = label + "_";
+    add(scan, epoch_s);
+    prefix_.clear();
+    label_ = own;
+    count_ = count;
+}
+
 void RawlogWriter::addLinked(double stamp_s, double epoch_s, const std::string& file) {
     const std::string link = extraFile(".bin");
     std::error_code fault;
@@ -224,7 +235,7 @@ void RawlogWriter::add(const earth::Fix& fix, double epoch_s) {
 std::string RawlogWriter::extraFile(const std::string& extension) const {
     char name[32];
     std::snprintf(name, sizeof(name), "%06zu", count_);
-    return (fs::path(partialImages_) / (name + extension)).string();
+    return (fs::path(partialImages_) / (prefix_ + name + extension)).string();
 }
 
 void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,

@@ -17,7 +17,9 @@
 #include "places/update_map.h"
 #include "run/tables.h"
 #include "slam/georeferencing.h"
+#include "slam/levelling.h"
 #include "slam/place_listeners.h"
+#include "slam/specific_force.h"
 
 namespace delio::run {
 namespace {
@@ -31,7 +33,8 @@ graph::PoseGraphOptions graphOptions(const Options& options, const RunSettings& 
 Run::Run(const Options& options, const RunSettings& settings)
     : settings_(settings),
       slam_(makeOdometry(options)),
-      graph_(std::make_shared<GraphBuilder>(graphOptions(options, settings))) {
+      graph_(std::make_shared<GraphBuilder>(graphOptions(options, settings))),
+      forces_(std::make_unique<SpecificForce>()) {
     options.check();
     if (settings.update && !options.map.removal.enabled)
         throw Error("--update needs removal.enabled=true: it looks for what scans saw through");
@@ -83,6 +86,19 @@ void Run::warn(const std::string& text) {
     if (settings_.onWarning) settings_.onWarning(text);
 }
 
+void Run::add(std::vector<CalibratedSensor> extrinsics) {
+    for (const auto& sensor : extrinsics) {
+        std::string kept;
+        for (const auto& axis : sensor.unobserved) kept += (kept.empty() ? "" : ", ") + axis;
+        if (!sensor.reason.empty())
+            warn("the pose of the sensor '" + sensor.label + "' was not refined: " + sensor.reason);
+        else if (!kept.empty())
+            warn("the pose of the sensor '" + sensor.label + "' was not refined " + kept +
+                 ": the drive does not show it");
+    }
+    record_.extrinsics = std::move(extrinsics);
+}
+
 void Run::fail(const std::string& fault) {
     if (record_.fault.empty()) record_.fault = fault;
 }
@@ -114,8 +130,16 @@ void Run::readSideFiles(const io::SideFile& calib, const io::SideFile& poses,
     truthWasAskedFor_ = !truth.empty();
 }
 
+void Run::addImu(const ImuSample& sample) {
+    slam_.addImu(sample);
+    forces_->add(sample);
+}
+
 RunRow Run::process(const Scan& scan, double read_ms) {
     const auto report = slam_.process(scan);
+    const auto imu = slam_.imuReport();
+    forces_->addScan(scan.stamp_s + (imu ? imu->offset_s : 0),
+                     imu ? imu->bias_radps : Eigen::Vector3d::Zero());
     for (const auto& failed : report.failed) switchOff(failed, scan.index);
     auto& rows = record_.rows;
     if (rows.empty()) record_.epoch_s = mrpt::Clock::toDouble(scan.time) - scan.stamp_s;
@@ -211,6 +235,39 @@ void Run::optimiseGraph() {
     }
 }
 
+/** The accelerometer says what is up, where the gyroscope agrees with the scans. */
+void Run::level() {
+    ForcesOnTrack track{record_.odometry.stamps_s, {}, {}, forces_->take()};
+    for (const auto& row : record_.rows) {
+        track.usable.push_back(!row.predicted && !row.lost && !row.interrupted);
+        track.mounts.push_back(row.sensorPose.linear() * *record_.imu->rotation);
+    }
+    const bool moves = settings_.graph && graph_ && !record_.isLocalised();
+    try {
+        auto found = levelled(record_.graph, track, moves ? &record_.options.graph : nullptr);
+        record_.vertical = found.vertical;
+        record_.graph = std::move(found.graph);
+    } catch (const std::exception& e) {
+        warn("the map is not levelled: " + plainMessage(e));
+    }
+}
+
+/** Turns the map so that its z is up; the heading of x stays. */
+void Run::standUpright() {
+    if (!record_.vertical || !record_.vertical->refusal.empty())
+        return warn("the map is not levelled: " +
+                    (record_.vertical ? record_.vertical->refusal
+                                      : "there is no IMU that agrees with the scans"));
+    Eigen::Vector3d& up = record_.vertical->up;
+    const Eigen::Isometry3d upright(
+        Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()));
+    auto poses = record_.graph.poses();
+    for (auto& pose : poses) pose = upright * pose;
+    record_.graph = record_.graph.withPoses(poses);
+    for (auto& pose : record_.odometry.poses) pose = upright * pose;
+    up = Eigen::Vector3d::UnitZ();
+}
+
 void Run::add(const earth::Fixes& fixes) {
     gnssFixes_.insert(gnssFixes_.end(), fixes.begin(), fixes.end());
 }
@@ -249,6 +306,8 @@ void Run::optimise() {
         record_.georeference = follower_->map().georeference();
         record_.cloudOrigin = follower_->map().cloudOrigin();
     }
+    if (record_.imu && record_.imu->rotation) level();
+    if (settings_.level && !record_.isLocalised()) standUpright();
     if (settings_.gnss && !gnssFixes_.empty() && !record_.georeference) georeference();
     record_.optimise_ms = watch.lap_ms();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
@@ -367,6 +426,17 @@ void Run::score() {
     }
 }
 
+void Run::findOwnVehicle() {
+    const Eigen::AlignedBox3d box = slam_.ownVehicle();
+    if (box.isEmpty() || record_.rows.empty()) return;
+    record_.ownVehicle = box.transformed(record_.rows.back().sensorPose);
+    const auto &low = record_.ownVehicle.min(), &high = record_.ownVehicle.max();
+    warn(mrpt::format(
+        "parts of the own vehicle were found and left out; to leave them out from the first scan "
+        "on: --vehicle-box %.2f,%.2f,%.2f,%.2f,%.2f,%.2f",
+        low.x(), low.y(), low.z(), high.x(), high.y(), high.z()));
+}
+
 void Run::finish(bool complete) {
     const Doubts doubts = doubtsOf(record_.rows);
     for (const auto& warning : warningsOf(doubts)) warn(warning);
@@ -381,6 +451,7 @@ void Run::finish(bool complete) {
     record_.wheels = slam_.odometryReport();
     if (record_.wheels)
         for (const auto& finding : record_.wheels->findings) warn(finding);
+    findOwnVehicle();
     slam_.close();
     optimise();
     if (const auto why = whyUnreliable(unlinkedOf(record_), doubts.pairs); !why.empty())

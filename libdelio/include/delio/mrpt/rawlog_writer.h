@@ -4,6 +4,7 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,10 @@ class RawlogWriter {
     /** Appends a scan with all that it has: rings and times of its points in files beside its own,
      *  and the sensor's pose. */
     void add(const Scan& scan, double epoch_s);
+
+    /** The same of another sensor, whose files begin with its label. scans() does not count it, and
+     *  side files have no row of it. Not for embedded scans. */
+    void addOther(const std::string& label, const Scan& scan, double epoch_s);
 
     /** Appends a scan that stays in `file`, which is in KITTI's format: OUT_Images holds a
      *  symbolic link to its absolute path. Not for embedded scans. Throws Error where that fails.
@@ -97,12 +102,13 @@ class RawlogWriter {
     std::string extraFile(const std::string& extension) const;
     void write(const std::string& file, const void* bytes, std::size_t count) const;
 
-    std::string path_, label_;
+    std::string path_, label_, prefix_;  //!< of the names of files
     bool embed_;
     OutputLock lock_;
     PartialFolder partial_;
     std::string partialRawlog_, partialImages_;
     std::size_t count_ = 0;
+    std::map<std::string, std::size_t> others_;  //!< scans of other sensors
     mrpt::io::CFileOutputStream out_;
 };
 }  // namespace delio::io
