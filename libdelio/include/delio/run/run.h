@@ -45,7 +45,7 @@ struct RunSettings {
     bool mayBeElsewhere = false;
     bool gnss = true;    //!< use GNSS fixes
     bool level = false;  //!< z of the map is up, as the IMU's accelerometer has it
-    bool loops = true;  //!< search for loop closures; needs `graph`
+    bool loops = true;   //!< search for loop closures; needs `graph`
     /** Called with every warning. */
     std::function<void(const std::string&)> onWarning;
 };
