@@ -60,7 +60,7 @@ TEST_F(OwnVehicleTest, AMastIsFoundAndDropped) {
     cloud = own_.without(std::move(cloud));
     ASSERT_EQ(cloud.points.cols(), 2);
     EXPECT_EQ(cloud.indices, (std::vector<std::uint32_t>{40, 41}));
-    EXPECT_EQ(cloud.times_s, (std::vector<float>{0.04F, 0.041F}));
+    EXPECT_EQ(cloud.times_s, (std::vector<float>{0.001F * 40.0F, 0.001F * 41.0F}));
     EXPECT_EQ(cloud.outOfRange, 40U);
 }
 
@@ -68,7 +68,7 @@ TEST_F(OwnVehicleTest, AMastIsFoundAndDropped) {
 TEST_F(OwnVehicleTest, TheWorldIsNotTheVehicle) {
     for (const auto& scene : {test::corridor(), test::highway(false), test::highway(true)}) {
         own_ = OwnVehicle();
-        drive(scene, 200, false);
+        drive(scene, 120, false);
         EXPECT_TRUE(own_.box().isEmpty());
     }
 }
