@@ -67,12 +67,27 @@ void play(SlamCommandLine& line, run::Playback& playback, run::Run& run, PoseOut
     });
 }
 
-/** The reader of `input`; null where a signal ended a live drive before its first scan. */
-std::unique_ptr<io::ScanReader> openInput(SlamCommandLine& line, const std::string& input) {
-    if (!isLive(line)) return io::openScans(sourceFor(line, input));
+/** Poses of several sensors that --calibrate-extrinsics refines, which `source` gets. */
+std::vector<run::CalibratedSensor> calibrated(SlamCommandLine& line, io::ScanSource& source) {
+    if (!line.calibrateExtrinsics.isSet()) return {};
+    const auto settings = playbackOf(line);
+    const auto meta = io::openScans(source)->meta();
+    cli::catchInterrupts();
+    cli::Progress progress("calibrating, scans", line.count.getValue());
+    std::size_t done = 0;
+    auto sensors = run::calibrateExtrinsics(
+        source, optionsFor(line, meta), settings,
+        [&](std::optional<double> fraction) { progress.update(++done, fraction); });
+    for (const auto& sensor : sensors) source.extrinsics[sensor.label] = sensor.pose;
+    return sensors;
+}
+
+/** The reader of `source`; null where a signal ended a live drive before its first scan. */
+std::unique_ptr<io::ScanReader> openInput(SlamCommandLine& line, const io::ScanSource& source) {
+    if (!isLive(line)) return io::openScans(source);
     cli::catchInterrupts();  // the recorded packets are worth writing
     try {
-        return io::openScans(sourceFor(line, input));
+        return io::openScans(source);
     } catch (const Error&) {
         if (!cli::interrupted()) throw;
         return nullptr;
@@ -131,7 +146,9 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
                       const std::string& place, LiveOutput& shown) {
     PoseOutput poses(line.poses.getValue(), line.publish.getValue());
     const std::string name = io::nameOfDrive(input);
-    auto reader = openInput(line, input);
+    io::ScanSource source = sourceFor(line, input);
+    const auto extrinsics = calibrated(line, source);
+    auto reader = openInput(line, source);
     if (!reader) return {cli::kExitInterrupted};
     const Options options = optionsFor(line, reader->meta());
     run::Playback playback(*reader, playbackOf(line));
@@ -143,6 +160,7 @@ DriveResult slamDrive(SlamCommandLine& line, const std::string& input, run::RunS
     run::Run run(options, settings);
     const auto copy = copyOf(line, input, *reader);
     prepare(line, *reader, run);
+    run.add(extrinsics);
     shown.begin(run);
     play(line, playback, run, poses);
     shown.end();
@@ -207,7 +225,7 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
         optionsFor(line, {});
         if (line.initialPose.isSet()) initialPoseIn(line.initialPose.getValue());
         if (line.antenna.isSet()) antennaIn(line.antenna.getValue());
-        if (line.vehicleBox.isSet()) vehicleBoxIn(line.vehicleBox.getValue());
+        if (line.vehicleBox.isSet()) cli::vehicleBoxIn(line.vehicleBox.getValue());
         const std::string contradiction = contradictionIn(line);
         if (!contradiction.empty()) throw Error(contradiction);
         if (line.printConfig.getValue()) {

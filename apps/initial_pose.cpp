@@ -23,17 +23,4 @@ Eigen::Vector3d antennaIn(const std::string& text) {
         throw Error("--antenna needs X,Y,Z (metres in the vehicle frame), not '" + text + "'");
     return Eigen::Vector3d(numbers.data());
 }
-
-Eigen::AlignedBox3d vehicleBoxIn(const std::string& text) {
-    const auto numbers = cli::numbersIn(text, 6);
-    Eigen::AlignedBox3d box;
-    if (!numbers.empty())
-        box = {Eigen::Vector3d(numbers.data()), Eigen::Vector3d(numbers.data() + 3)};
-    if (box.isEmpty())
-        throw Error(
-            "--vehicle-box needs XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX (metres in the vehicle frame), not "
-            "'" +
-            text + "'");
-    return box;
-}
 }  // namespace delio

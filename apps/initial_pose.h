@@ -11,8 +11,4 @@ Eigen::Isometry3d initialPoseIn(const std::string& text);
 /** Position of the GNSS antenna in the vehicle's frame, metres. Throws Error for another text than
  *  X,Y,Z. */
 Eigen::Vector3d antennaIn(const std::string& text);
-
-/** Box around the own vehicle in its frame, metres. Throws Error for another text than
- *  XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX. */
-Eigen::AlignedBox3d vehicleBoxIn(const std::string& text);
 }  // namespace delio

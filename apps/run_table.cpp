@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "delio/core/geometry.h"
 #include "delio/run/doubts.h"
 #include "delio/run/summary.h"
 
@@ -64,6 +65,16 @@ std::string wheelsOf(const OdometryReport& wheels) {
     return text;
 }
 
+/** Of a sensor whose pose was refined; standard deviations of the worst axis. */
+std::string extrinsicsOf(const run::CalibratedSensor& sensor) {
+    if (!sensor.reason.empty()) return "kept as given";
+    const auto pose = toMrpt(sensor.pose);
+    return format("%.4f %.4f %.4f m +- %.4f, %.3f %.3f %.3f deg +- %.3f", pose.x(), pose.y(),
+                  pose.z(), sensor.sigma.head<3>().maxCoeff(), mrpt::RAD2DEG(pose.yaw()),
+                  mrpt::RAD2DEG(pose.pitch()), mrpt::RAD2DEG(pose.roll()),
+                  mrpt::RAD2DEG(sensor.sigma.tail<3>().maxCoeff()));
+}
+
 /** Scans that were not or barely measured. */
 template <typename Row>
 void putDoubts(const run::RunRecord& record, const Row& row) {
@@ -100,6 +111,8 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
                        record.rows[static_cast<std::size_t>(found - record.fixes.begin())].scan);
         row("in the stored map", text);
     }
+    for (std::size_t i = 1; i < record.extrinsics.size(); ++i)
+        row(("sensor " + record.extrinsics[i].label).c_str(), extrinsicsOf(record.extrinsics[i]));
     if (record.georeference) row("georeference", georeferenceOf(record));
     if (record.extended)
         row("stored map extended", format("%zu edges of %zu candidates, %zu submaps added",
@@ -107,6 +120,11 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
                                               record.joints.begin(), record.joints.end(),
                                               [](const auto& joint) { return joint.accepted(); })),
                                           record.joints.size(), record.addedSubmaps));
+    if (record.update)
+        row("stored map updated",
+            format("%zu points gone, %zu doubted, %zu confirmed, %zu seen once",
+                   record.update->gone, record.update->doubted, record.update->confirmed,
+                   record.update->seenOnce));
     if (record.searchedLoops)
         row("loops", format("%zu closed of %zu candidates", record.closedLoops().size(),
                             record.loops.size()));

@@ -53,6 +53,7 @@ cli::HelpText slamHelp() {
          "with GNSS fixes: poses in east-north-up, TUM format; line for a map viewer"},
         {Folder::kCloudTum,
          "with --map of an imported cloud with an offset: poses in its coordinates"},
+        {Folder::kExtrinsics, "with --calibrate-extrinsics: the sensors' poses, for --extrinsics"},
         {both(Folder::kGraph, Folder::kMrptGraph), "pose graph"},
         {both(Folder::kPly, Folder::kScene), "map points; scene for SceneViewer3D"},
         {Folder::kMapPage, "the map as an interactive page for a browser"},
@@ -109,9 +110,11 @@ run::RunSettings settingsFor(SlamCommandLine& line, int argc, char** argv) {
     settings.map = !line.noMap.getValue();
     settings.keepDynamic = line.keepDynamic.getValue();
     settings.gnss = !line.noGnss.getValue();
+    settings.level = line.level.getValue();
     settings.loops = !line.noLoops.getValue();
     settings.storedMap = line.map.getValue();
     settings.extend = line.extend.getValue();
+    settings.update = line.update.getValue();
     if (line.initialPose.isSet()) settings.initialPose = initialPoseIn(line.initialPose.getValue());
     settings.onWarning = cli::warn;
     return settings;
@@ -125,7 +128,7 @@ io::ScanSource sourceFor(SlamCommandLine& line, const std::string& input) {
     io::ScanSource source{input, line.label.getValue(), line.images.getValue(),
                           line.sensorInfo.getValue()};
     source.extrinsicsFile = line.extrinsics.getValue();
-    if (line.vehicleBox.isSet()) source.vehicleBox = vehicleBoxIn(line.vehicleBox.getValue());
+    if (line.vehicleBox.isSet()) source.vehicleBox = cli::vehicleBoxIn(line.vehicleBox.getValue());
     if (!io::isLive(input)) return source;
     const fs::path folder = line.output.getValue();
     source.live.record =
@@ -148,10 +151,23 @@ std::string contradictionIn(SlamCommandLine& line) {
     if (line.serve.getValue() > 65535) return "--serve must be 65535 or less (0: any free port)";
     if (line.initialPose.isSet() && !line.map.isSet())
         return "--initial-pose needs --map: it is a pose in the stored map";
+    if (line.level.isSet() && line.noImu.isSet())
+        return "--level needs the IMU that --no-imu leaves out";
+    if (line.level.isSet() && line.map.isSet())
+        return "--level cannot turn the stored map of --map";
     if (line.noGnss.isSet() && (line.gnss.isSet() || line.antenna.isSet()))
         return "--no-gnss excludes --gnss and --antenna";
     if (line.extend.isSet() && !line.map.isSet())
         return "--extend needs --map: it adds to the stored map";
+    if (line.update.isSet() && !line.map.isSet())
+        return "--update needs --map: it updates the stored map";
+    if (line.update.isSet() && (line.extend.isSet() || inputs.size() > 1))
+        return "--update takes one drive, without --extend";
+    if (line.update.isSet() && line.noMap.isSet())
+        return "--update and --no-map exclude each other";
+    if (line.calibrateExtrinsics.isSet() &&
+        (inputs.size() > 1 || isLive(line) || inputs.front() == "-" || isGraph(inputs.front())))
+        return "--calibrate-extrinsics needs one recording as input";
     if (line.saveRawlog.isSet() && (inputs.size() > 1 || isLive(line) || inputs.front() == "-"))
         return "--save-rawlog needs one rawlog file as input";
     if (line.saveRawlog.isSet() && fs::path(line.saveRawlog.getValue()).extension() != ".rawlog")

@@ -75,6 +75,9 @@ struct SlamCommandLine {
         "",
         "FILE",
         cmd};
+    Switch calibrateExtrinsics{
+        "", "calibrate-extrinsics",
+        "Several sensors: first refine their poses relative to the first one from the drive", cmd};
     Text vehicleBox{"",
                     "vehicle-box",
                     "Ignore points in this box of the vehicle frame, metres: parts of the own "
@@ -114,6 +117,10 @@ struct SlamCommandLine {
                      cmd};
     Switch extend{"", "extend", "Extend that map by this drive; OUTDIR/map.delio contains both",
                   cmd};
+    Switch update{"", "update",
+                  "Update that map: OUTDIR/map.delio keeps when its points were seen, seen through "
+                  "and new",
+                  cmd};
     Text saveRawlog{
         "",
         "save-rawlog",
@@ -126,6 +133,7 @@ struct SlamCommandLine {
     Switch keepDynamic{"", "keep-dynamic", "Also write the removed dynamic points: map_dynamic.ply",
                        cmd};
     Switch noImu{"", "no-imu", "Do not use the recording's IMU", cmd};
+    Switch level{"", "level", "Turn the map so that z is up, by the accelerations of its IMU", cmd};
     Switch noOdometry{"", "no-odometry", "Do not use the recording's wheel odometry", cmd};
     Switch noMap{"", "no-map", "Do not build a map", cmd};
     Switch noGnss{"", "no-gnss", "Do not use GNSS fixes", cmd};

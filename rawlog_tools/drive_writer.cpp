@@ -14,6 +14,8 @@ namespace {
 // KITTI's axes (x right, y down, z forward) and about its lever arm from LiDAR to cam0.
 const char* const kCalib = "Tr: 0 -1 0 0 0 0 -1 -0.08 1 0 0 -0.27\n";
 const char* const kLabel = "velodyne";
+const char* const kSecondLabel = "second";
+constexpr std::uint64_t kSecondKey = 0x5EC0;
 const char* const kFaultsHeader =
     "# Scans of the drive that did not arrive as they were. drive_scan counts the scans of the\n"
     "# drive (ten a second), scan those in the rawlog and the rows of times and poses, from 0.\n"
@@ -23,9 +25,9 @@ const char* const kFaultsHeader =
     "# empty: no points.\n"
     "drive_scan\tscan\tkind\n";
 
-std::string timeRow(std::size_t scan) {
+std::string timeRow(double stamp_s) {
     char row[32];
-    std::snprintf(row, sizeof(row), "%.6f\n", kScanPeriod_s * static_cast<double>(scan));
+    std::snprintf(row, sizeof(row), "%.6f\n", stamp_s);
     return row;
 }
 }  // namespace
@@ -47,6 +49,11 @@ DriveWriter::DriveWriter(const DriveRequest& request, const Scene& scene, const 
       faults_(kFaultsHeader) {
     if (request.imu) imu_.emplace(*request.imu, drive, request.scanner.seed);
     if (request.wheels) wheels_.emplace(*request.wheels, drive, request.scanner.seed);
+    if (request.second) {
+        ScannerOptions options = request.scanner;
+        options.seed += kSecondKey;  // noise of its own
+        second_.emplace(caster_, &trafficCaster_, request.sensor, options);
+    }
     if (request.gnss)
         gnss_.emplace(
             *request.gnss, [this](double time_s) { return drive_.lidarPoseAt(time_s); },
@@ -81,6 +88,7 @@ void DriveWriter::writeScan(std::size_t scan) {
     if (fault == Fault::kEmpty) last_ = {};
     if (fault == Fault::kNone) last_ = simulate(scan);
     add(scan, last_);
+    if (second_) addSecond(scan);
 }
 
 ScanPoints DriveWriter::simulate(std::size_t scan) {
@@ -98,18 +106,42 @@ void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
     const double stamp_s = kScanPeriod_s * static_cast<double>(scan);
     if (gnss_)
         gnss_->upTo(stamp_s, [&](const earth::Fix& fix) {
-            writer_.add(fix, gnss_->quality(), io::kDriveEpoch_s);
+            writer_.add(fix, gnss_->quality(), request_.secondZero());
         });
-    writer_.add(stamp_s, io::kDriveEpoch_s, points.xyzi);
-    times_ += timeRow(scan);
+    writer_.add(stamp_s, request_.secondZero(), points.xyzi);
+    times_ += timeRow(request_.epoch_s.value_or(0) + stamp_s);
     poses_ += poseRow(scan);
+}
+
+/** Where points have times, the second sensor turns freely. */
+void DriveWriter::addSecond(std::size_t scan) {
+    constexpr double kLater_s = 0.037;
+    const SecondSensor mounted{*request_.second, request_.distort ? kLater_s : 0};
+    const Sweep sweep = sweepOf(drive_, scan, request_.sensor, request_.distort,
+                                request_.scanner.seed + kSecondKey, mounted);
+    const ScanPoints points = second_->scan(sweep, scan);
+    Scan own;
+    own.stamp_s = sweep.stamp_s;
+    own.sensorPose = mounted.pose;
+    own.rings = points.ring;
+    if (request_.distort) own.times_s = points.time_s;
+    const auto cloud = mrpt::maps::CPointsMapXYZI::Create();
+    cloud->resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const float* p = &points.xyzi[4 * i];
+        cloud->setPointFast(i, p[0], p[1], p[2]);
+        cloud->setPointIntensity(i, p[3]);
+    }
+    own.points = cloud;
+    writer_.addOther(kSecondLabel, own, io::kDriveEpoch_s);
 }
 
 /** Of IMU and wheels, up to this stamp. */
 void DriveWriter::addSamples(double stamp_s) {
     const auto add = [&](auto& source) {
         if (!source) return;
-        while (const auto sample = source->next(stamp_s)) writer_.add(*sample, io::kDriveEpoch_s);
+        while (const auto sample = source->next(stamp_s))
+            writer_.add(*sample, request_.secondZero());
     };
     add(imu_);
     add(wheels_);
@@ -141,7 +173,7 @@ void DriveWriter::finish() {
     meta.sensorModel = request_.sensor.name;
     meta.source = "synthetic";
     meta.motionCompensated = !request_.distort;
-    meta.epoch_s = io::kDriveEpoch_s;
+    meta.epoch_s = request_.epoch_s ? 0 : io::kDriveEpoch_s;
     meta.generator = std::string("synth2rawlog 2 (delio ") + kVersion + ")";
     writer_.finish(meta, times_, calibration(), poses_, faults_, origin(),
                    imu_ ? imu_->truth() : "", gnss_ ? gnss_->truth() : "");

@@ -31,7 +31,13 @@ struct DriveRequest {
     bool labels = false;   //!< OUT_Images/NNNNNN.label says which points move
     std::optional<ImuModel> imu;       //!< recorded beside the scans
     std::optional<WheelModel> wheels;  //!< likewise
+    std::optional<double> epoch_s;     //!< Unix time of scan 0; nothing: stamps start at 0
+    /** Pose of a second sensor of the same model in the first one's frame. */
+    std::optional<Eigen::Isometry3d> second;
     bool embed = false, force = false;
+
+    /** Unix time of second 0 of the drive. */
+    double secondZero() const { return epoch_s.value_or(io::kDriveEpoch_s); }
 };
 
 /** KITTI's Tr for the synthetic vehicle: coordinates of the LiDAR, mounted upright, to cam0's. */
@@ -49,6 +55,7 @@ class DriveWriter {
  private:
     void writeScan(std::size_t scan);
     void add(std::size_t scan, const ScanPoints& points);
+    void addSecond(std::size_t scan);
     void addSamples(double stamp_s);
     ScanPoints simulate(std::size_t scan);
     std::string poseRow(std::size_t scan) const;
@@ -63,6 +70,7 @@ class DriveWriter {
     RayCaster caster_;
     TileWindow window_;
     Scanner scanner_;
+    std::optional<Scanner> second_;
     io::RawlogWriter writer_;
     std::optional<Imu> imu_;
     std::optional<Wheels> wheels_;

@@ -1,6 +1,7 @@
 // scans2rawlog: any recording that delio-slam reads as an MRPT rawlog.
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -37,6 +38,13 @@ struct Arguments {
                     cmd};
     Text extrinsics{"",    "extrinsics", "Poses of the sensors in the vehicle: see delio-slam",
                     false, "",           "FILE",
+                    cmd};
+    Text vehicleBox{"",
+                    "vehicle-box",
+                    "Leave out points of the own vehicle: see delio-slam",
+                    false,
+                    "",
+                    "XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX",
                     cmd};
     Text images{"", "images", "Folder with a rawlog's external files", false, "", "DIR", cmd};
     Text label{"", "label", "Sensor label in the rawlog", false, "velodyne", "LABEL", cmd};
@@ -96,7 +104,9 @@ class Conversion {
         if (meta.sensorModel == "unknown" && !recording.sensor.empty())
             meta.sensorModel = recording.sensor;
         meta.epoch_s = epoch_s_;
+        takeSamples();  // fixes are complete after the last scan
         writeSamples();
+        writeFixes(last_s_ + kMargin_s);
         meta.generator = std::string("scans2rawlog (delio ") + kVersion + ")";
         writer_.finish(meta, times_, reader_.calibration().text, poses_);
         return writer_.scans();
@@ -123,11 +133,25 @@ class Conversion {
     void takeSamples() {
         for (const auto& sample : reader_.takeImu()) imu_.push_back(sample);
         for (const auto& sample : reader_.takeOdometry()) odometry_.push_back(sample);
+        for (const auto& fix : reader_.takeFixes()) fixes_.push_back(fix);
     }
 
     void writeSamples() {
         for (const auto& sample : std::exchange(imu_, {})) writer_.add(sample, epoch_s_);
         for (const auto& sample : std::exchange(odometry_, {})) writer_.add(sample, epoch_s_);
+    }
+
+    /** Those up to a stamp; not those from long before the first scan. They may lie ahead. */
+    void writeFixes(double stamp_s) {
+        std::stable_sort(fixes_.begin(), fixes_.end(),
+                         [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; });
+        earth::Fixes later;
+        for (const auto& fix : std::exchange(fixes_, {}))
+            if (fix.stamp_s > stamp_s)
+                later.push_back(fix);
+            else if (fix.stamp_s >= first_s_ - kMargin_s && earth::isUsable(fix))
+                writer_.add(fix, epoch_s_);
+        fixes_ = std::move(later);
     }
 
     void add(const Scan& scan) {
@@ -136,7 +160,10 @@ class Conversion {
             epoch_s_ = reader_.meta() && reader_.meta()->epoch_s > 0
                            ? reader_.meta()->epoch_s
                            : std::round(mrpt::Clock::toDouble(scan.time) - scan.stamp_s);
+        if (writer_.scans() == 0) first_s_ = scan.stamp_s;
+        last_s_ = scan.stamp_s;
         writeSamples();
+        writeFixes(scan.stamp_s);
         writer_.add(scan, epoch_s_);
         char row[48];
         std::snprintf(row, sizeof(row), "%.9f\n", scan.stamp_s);
@@ -150,7 +177,9 @@ class Conversion {
     io::RawlogWriter writer_;
     std::vector<ImuSample> imu_;            //!< before the next scan
     std::vector<OdometrySample> odometry_;  //!< likewise
-    double epoch_s_ = 0;
+    earth::Fixes fixes_;
+    static constexpr double kMargin_s = 1;  //!< between fixes and scans
+    double epoch_s_ = 0, first_s_ = 0, last_s_ = 0;
     std::string times_, poses_, fault_;
 };
 
@@ -166,16 +195,27 @@ void refuseItself(Arguments& args, const io::ScanReader& reader) {
     cli::refuseOverlap(inputs, io::RawlogWriter::outputsOf(args.output.getValue()));
 }
 
-int convert(Arguments& args) {
-    if (args.every.getValue() == 0) {
-        cli::inform("--every must be at least 1");
-        return cli::kExitBadCommandLine;
+/** The own vehicle's box, if any; nothing where the command line is wrong, which is said. */
+std::optional<Eigen::AlignedBox3d> boxOf(Arguments& args) {
+    try {
+        if (args.every.getValue() == 0) throw Error("--every must be at least 1");
+        if (!args.vehicleBox.isSet()) return Eigen::AlignedBox3d();
+        return cli::vehicleBoxIn(args.vehicleBox.getValue());
+    } catch (const Error& e) {
+        cli::inform(e.what());
+        return {};
     }
+}
+
+int convert(Arguments& args) {
+    const auto box = boxOf(args);
+    if (!box) return cli::kExitBadCommandLine;
     const std::string &input = args.input.getValue(), &output = args.output.getValue();
     if (input == "-") cli::endInputAtInterrupt();
     io::ScanSource source{input, args.sensor.getValue(), args.images.getValue(),
                           args.sensorInfo.getValue()};
     source.extrinsicsFile = args.extrinsics.getValue();
+    source.vehicleBox = *box;
     const auto reader = io::openScans(source);
     refuseItself(args, *reader);
     cli::inform("reading " + describe(reader->recording()));
@@ -196,7 +236,9 @@ int convert(Arguments& args) {
 cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
-        {"OUT.rawlog", "one CObservationPointCloud per scan, one CObservationIMU per IMU sample"},
+        {"OUT.rawlog",
+         "one CObservationPointCloud per scan, one CObservationIMU per IMU sample, one "
+         "CObservationGPS per GNSS fix"},
         {"OUT_Images/",
          "their points, x y z intensity as float32 (not with --embed), and rings and times where "
          "they exist; start RawLogViewer in the rawlog's folder to see the points"},

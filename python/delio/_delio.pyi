@@ -146,6 +146,8 @@ def open_scans(
     sensor_label: str = "",
     sensor_file: Optional[_Path] = None,
     images: Optional[_Path] = None,
+    extrinsics: Optional[_Path] = None,
+    vehicle_box: Optional[Sequence[Union[Sequence[float], _Floats]]] = None,
 ) -> Scans: ...
 
 class Step:

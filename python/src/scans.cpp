@@ -139,6 +139,19 @@ Scan nextOf(Scans& scans) {
 }
 }  // namespace
 
+namespace {
+/** The box with these two corners; empty for None. */
+Eigen::AlignedBox3d boxIn(const py::object& object) {
+    if (object.is_none()) return {};
+    if (!py::isinstance<py::sequence>(object) || py::len(object) != 2)
+        throw Error("'vehicle_box' must be two corners, each of shape (3,)");
+    const py::sequence corners = object;
+    Eigen::AlignedBox3d box;
+    for (const auto& corner : corners) box.extend(vectorIn(corner, "vehicle_box"));
+    return box;
+}
+}  // namespace
+
 void bindScans(py::module_& module) {
     bindScan(module);
     py::class_<Scans>(module, "Scans",
@@ -190,22 +203,30 @@ void bindScans(py::module_& module) {
     module.def(
         "open_scans",
         [](const std::filesystem::path& path, const std::string& label,
-           const OptionalPath& sensorFile, const OptionalPath& images) {
+           const OptionalPath& sensorFile, const OptionalPath& images,
+           const OptionalPath& extrinsics, const py::object& vehicleBox) {
+            io::ScanSource source{path.string(), label, textOf(images), textOf(sensorFile)};
+            source.extrinsicsFile = textOf(extrinsics);
+            source.vehicleBox = boxIn(vehicleBox);
             const py::gil_scoped_release release;
             auto scans = std::make_unique<Scans>();
-            scans->path = path.string();
-            scans->in = io::openScans({path.string(), label, textOf(images), textOf(sensorFile)});
+            scans->path = source.path;
+            scans->in = io::openScans(source);
             return scans;
         },
         py::arg("path"), py::kw_only(), py::arg("sensor_label") = "",
         py::arg("sensor_file") = py::none(), py::arg("images") = py::none(),
+        py::arg("extrinsics") = py::none(), py::arg("vehicle_box") = py::none(),
         R"(Opens a recording and returns its Scans; everything that `delio-slam -i` reads.
 
 path: rawlog, KITTI folder, folder of .pcd, .ply, .bin, .txt or .csv, ROS 1 or 2 bag, MCAP, or pcap
     of a Velodyne or Ouster; the format is detected from the content.
-sensor_label: the sensor to read: label in a rawlog, topic in a bag; empty: the first one.
+sensor_label: the sensor to read: label in a rawlog, topic in a bag; empty: the first one;
+    several, with commas between them, or 'all': merged in the frame of the first.
 sensor_file: an Ouster's json or a Velodyne's calibration; empty: the one beside the recording.
 images: folder of a rawlog's external files; empty: beside it.
+extrinsics: file with the sensors' poses in the vehicle, lines LABEL x y z yaw pitch roll (metres, degrees).
+vehicle_box: two corners ((x, y, z), (x, y, z)), metres; points in this box of the vehicle's frame are left out.
 Raises delio.Error if there is nothing to read or the format is unknown.)");
 }
 }  // namespace delio::python

@@ -47,11 +47,13 @@ std::optional<ImuModel> imuOfGrade(const std::string& grade) {
         model.rateBias_radps = 0.5 * kDegree;
         model.rateWalk = 0.003 * kDegree;
         model.accelerationNoise = 0.002;
+        model.accelerationBias_mps2 = 0.05;
     } else if (grade == "automotive") {
         model.rateNoise = 0.003 * kDegree;
         model.rateBias_radps = 0.05 * kDegree;
         model.rateWalk = 0.0003 * kDegree;
         model.accelerationNoise = 0.0005;
+        model.accelerationBias_mps2 = 0.02;
     } else {
         return {};
     }
@@ -64,6 +66,8 @@ Imu::Imu(const ImuModel& model, const Drive& drive, std::uint64_t seed)
     for (double& bias : firstBias_)
         bias = random.chance(0.5) ? model.rateBias_radps : -model.rateBias_radps;
     bias_ = firstBias_;
+    const double along = model.accelerationBias_mps2;
+    for (double& bias : accelerationBias_) bias = random.chance(0.5) ? along : -along;
 }
 
 double Imu::timeOf(std::size_t sample) const {
@@ -81,7 +85,7 @@ std::optional<ImuSample> Imu::next(double stamp_s) {
     sample.stamp_s = time_s + model_.offset_s;
     sample.rate_radps =
         toImu * rateAt(drive_, time_s) + bias_ + model_.rateNoise * bandwidth * normals(random);
-    sample.acceleration_mps2 = toImu * accelerationAt(drive_, time_s) +
+    sample.acceleration_mps2 = toImu * accelerationAt(drive_, time_s) + accelerationBias_ +
                                model_.accelerationNoise * bandwidth * normals(random);
     ++samples_;
     return sample;
@@ -89,15 +93,15 @@ std::optional<ImuSample> Imu::next(double stamp_s) {
 
 std::string Imu::truth() const {
     const auto& mount = model_.mount;
-    const auto bias = [](const Vector3d& b) {
-        const Vector3d deg = b / kDegree;
-        return mrpt::format("[%.6f, %.6f, %.6f]", deg.x(), deg.y(), deg.z());
+    const auto vector = [](const Vector3d& v) {
+        return mrpt::format("[%.6f, %.6f, %.6f]", v.x(), v.y(), v.z());
     };
     return mrpt::format("rate_hz: %.6g\n", model_.rate_hz) +
            mrpt::format("mount_roll_pitch_yaw_deg: [%.6g, %.6g, %.6g]\n", mount.roll_deg,
                         mount.pitch_deg, mount.yaw_deg) +
            mrpt::format("offset_s: %.6g\n", model_.offset_s) +
-           "first_bias_deg_per_s: " + bias(firstBias_) + "\n" +
-           "last_bias_deg_per_s: " + bias(bias_) + "\n";
+           "first_bias_deg_per_s: " + vector(firstBias_ / kDegree) + "\n" +
+           "last_bias_deg_per_s: " + vector(bias_ / kDegree) + "\n" +
+           "acceleration_bias_mps2: " + vector(accelerationBias_) + "\n";
 }
 }  // namespace delio::synth

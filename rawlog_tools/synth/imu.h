@@ -14,12 +14,13 @@ namespace delio::synth {
 /** An IMU beside the LiDAR, and its errors. */
 struct ImuModel {
     double rate_hz = 200;
-    double rateNoise = 0;          //!< rad/s per square root of Hz
-    double rateBias_radps = 0;     //!< at the start about each axis, with a random sign
-    double rateWalk = 0;           //!< random walk of that, rad/s per square root of s
-    double accelerationNoise = 0;  //!< m/s^2 per square root of Hz
-    double offset_s = 0;           //!< its stamps are late by this
-    Mount mount;                   //!< orientation on the vehicle
+    double rateNoise = 0;              //!< rad/s per square root of Hz
+    double rateBias_radps = 0;         //!< at the start about each axis, with a random sign
+    double rateWalk = 0;               //!< random walk of that, rad/s per square root of s
+    double accelerationNoise = 0;      //!< m/s^2 per square root of Hz
+    double accelerationBias_mps2 = 0;  //!< along each axis, with a random sign
+    double offset_s = 0;               //!< its stamps are late by this
+    Mount mount;                       //!< orientation on the vehicle
 };
 
 /** Names of the grades of IMUs, worst first. */
@@ -45,7 +46,7 @@ class Imu {
     ImuModel model_;
     const Drive& drive_;
     std::uint64_t seed_;
-    Eigen::Vector3d firstBias_, bias_;
+    Eigen::Vector3d firstBias_, bias_, accelerationBias_;
     std::size_t samples_ = 0;
 };
 }  // namespace delio::synth

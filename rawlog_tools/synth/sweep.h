@@ -19,10 +19,17 @@ struct Sweep {
     std::vector<Eigen::Isometry3d> lidarToWorld;  //!< when the column was fired
 };
 
+/** How another sensor is mounted: in the frame of the first one, and how much later it stamps its
+ *  scans. */
+struct SecondSensor {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< its frame to the first one's
+    double later_s = 0;                                      //!< than the first one's stamp
+};
+
 /** A sweep takes a scan period. `distort`: the columns are fired on the way; otherwise all from
  *  where the vehicle is at the stamp, at the stamp, as in scans whose motion was compensated. */
 Sweep sweepOf(const Drive& drive, std::size_t scan, const SensorModel& sensor, bool distort,
-              std::uint64_t seed);
+              std::uint64_t seed, const SecondSensor& mounted = {});
 
 /** When a column is fired, seconds from the scan's stamp. */
 double firingTime(double azimuth_rad);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 #include "delio/run/run_folder.h"
@@ -83,5 +84,73 @@ TEST_F(SeveralLidars, OneRawlogOfBoth) {
                 test::readText(folder_ / "converted/trajectory_kitti.txt"));
     test::expectFailure(run(halves_, "none", {"--sensor-label", "left,roof"}), 1,
                         {"no scans of the sensor 'roof'"});
+}
+
+/** Two VLP-16. The pose of the second one in `given.txt` is wrong by 5 cm and 1 deg. */
+class SecondLidar : public SeveralLidars {
+ protected:
+    void SetUp() override {
+        const auto made =
+            test::runTool("synth2rawlog", {"-o", rawlog_, "--scene", "urban", "--sensor", "vlp16",
+                                           "--scans", "90", "--seed", "4", "--start", "moving",
+                                           "--distort", "--second", "-0.8,0.3,0.1,170,3,0"});
+        ASSERT_EQ(made.exitCode, 0) << made.err;
+        test::writeText(given_,
+                        "velodyne 0 0 0 0 0 0\nsecond -0.77 0.27 0.13 170.57735 3.57735 0.57735\n");
+    }
+    test::CommandResult calibrate(const std::string& name, const test::Words& more = {}) const {
+        return run(rawlog_, name,
+                   test::Words{"--sensor-label", "velodyne,second", "--extrinsics", given_,
+                               "--calibrate-extrinsics"} +
+                       more);
+    }
+    const std::string given_ = folder_ / "given.txt";
+};
+
+TEST_F(SecondLidar, ItsPoseIsRefinedFromTheDrive) {
+    const auto done = calibrate("calibrated", {"--threads", "1"});
+    ASSERT_EQ(done.exitCode, 0) << done.err;
+    EXPECT_NE(done.out.find("sensor second"), std::string::npos) << done.out;
+    std::map<std::string, double> found;
+    for (const auto& [name, value] : run::RunFolder(folder_ / "calibrated").summary().extrinsics)
+        found[name] = value;
+    ASSERT_EQ(found.size(), 13U);
+    EXPECT_NEAR(found["second x_m"], -0.8, 0.01);
+    EXPECT_NEAR(found["second y_m"], 0.3, 0.01);
+    EXPECT_NEAR(found["second z_m"], 0.1, 0.01);
+    EXPECT_NEAR(found["second yaw_deg"], 170, 0.05);
+    EXPECT_NEAR(found["second pitch_deg"], 3, 0.05);
+    EXPECT_NEAR(found["second roll_deg"], 0, 0.05);
+    for (const char* axis : {"x", "y", "z"}) {
+        EXPECT_GT(found["second sigma_" + std::string(axis) + "_m"], 0);
+        EXPECT_LT(found["second sigma_" + std::string(axis) + "_m"], 0.01);
+    }
+    const auto again = calibrate("again", {"--threads", "2"});
+    ASSERT_EQ(again.exitCode, 0) << again.err;
+    const std::string poses = folder_ / "calibrated/extrinsics.txt";
+    const auto given =
+        run(rawlog_, "given", {"--sensor-label", "velodyne,second", "--extrinsics", poses});
+    ASSERT_EQ(given.exitCode, 0) << given.err;
+    for (const char* name : {"trajectory_kitti.txt", "extrinsics.txt"})
+        EXPECT_TRUE(test::readText(fs::path(folder_ / "calibrated") / name) ==
+                    test::readText(fs::path(folder_ / "again") / name))
+            << name;
+    EXPECT_FALSE(fs::exists(folder_ / "given/extrinsics.txt"));
+    EXPECT_LT(endError("given"), 0.3);
+}
+
+TEST_F(SecondLidar, CalibrationNeedsTwoSensorsAndADrive) {
+    test::expectFailure(run(rawlog_, "one", {"--calibrate-extrinsics"}), 1,
+                        {"where several are merged"});
+    test::expectFailure(test::runTool("delio-slam", {"-i", "udp://2368", "-o", folder_ / "live",
+                                                     "--calibrate-extrinsics"}),
+                        2, {"--calibrate-extrinsics needs one recording as input"});
+    const auto shortDrive = calibrate("short", {"--count", "20"});
+    ASSERT_EQ(shortDrive.exitCode, 0) << shortDrive.err;
+    EXPECT_NE(shortDrive.err.find("the pose of the sensor 'second' was not refined: the drive has"),
+              std::string::npos)
+        << shortDrive.err;
+    EXPECT_NE(test::readText(folder_ / "short/extrinsics.txt").find("second -0.77000 0.27000"),
+              std::string::npos);
 }
 }  // namespace

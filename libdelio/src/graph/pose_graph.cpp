@@ -89,6 +89,16 @@ void PoseGraph::correct(const std::vector<NodePose>& corrected) {
             increment.pose = poses_[from].inverse() * poses_[to];
 }
 
+PoseGraph PoseGraph::withPoses(const std::vector<Eigen::Isometry3d>& poses) const {
+    if (poses.size() != poses_.size())
+        throw Error("pose graph: " + std::to_string(poses.size()) + " poses for " +
+                    std::to_string(poses_.size()) + " nodes");
+    for (std::size_t i = 0; i < poses.size(); ++i) requireFinite(poses[i], i);
+    PoseGraph moved = *this;
+    moved.poses_ = poses;
+    return moved;
+}
+
 void PoseGraph::append(const Edge& edge, const Matrix6& information) {
     const std::string name = nameOf(edge.from, edge.to);
     if (edge.from >= poses_.size() || edge.to >= poses_.size())

@@ -4,10 +4,12 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "clock.h"
 #include "delio/core/error.h"
@@ -126,6 +128,16 @@ void RawlogWriter::add(const Scan& scan, double epoch_s) {
     append(observation, scan.stamp_s, epoch_s);
 }
 
+void RawlogWriter::addOther(const std::string& label, const Scan& scan, double epoch_s) {
+    const std::string own = std::exchange(label_, label);
+    const auto count = std::exchange(count_, others_[label]++);
+    prefix_ = label + "_";
+    add(scan, epoch_s);
+    prefix_.clear();
+    label_ = own;
+    count_ = count;
+}
+
 void RawlogWriter::addLinked(double stamp_s, double epoch_s, const std::string& file) {
     const std::string link = extraFile(".bin");
     std::error_code fault;
@@ -204,10 +216,26 @@ void RawlogWriter::add(const earth::Fix& fix, int quality, double epoch_s) {
     }
 }
 
+void RawlogWriter::add(const earth::Fix& fix, double epoch_s) {
+    // GGA has one number, and heights count as twice as uncertain.
+    earth::Fix rounded = fix;
+    const Eigen::Vector3d variances = fix.covariance.diagonal();
+    rounded.covariance =
+        std::max({variances.x(), variances.y(), variances.z() / 4}) * Eigen::Matrix3d::Identity();
+    int best = 1;
+    const auto off = [&](int quality) {
+        return std::abs(
+            std::log(rounded.covariance(0, 0) / earth::covarianceOf(quality, 1)(0, 0)));
+    };
+    for (const int quality : {2, 4, 5})
+        if (off(quality) < off(best)) best = quality;
+    add(rounded, best, epoch_s);
+}
+
 std::string RawlogWriter::extraFile(const std::string& extension) const {
     char name[32];
     std::snprintf(name, sizeof(name), "%06zu", count_);
-    return (fs::path(partialImages_) / (name + extension)).string();
+    return (fs::path(partialImages_) / (prefix_ + name + extension)).string();
 }
 
 void RawlogWriter::finish(const DriveMeta& meta, const std::string& timesText,

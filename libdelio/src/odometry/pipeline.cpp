@@ -68,7 +68,7 @@ Step PlaneOdometry::process(const Scan& scan) {
     PointCloud cloud;
     {
         const StageTimer timer(step, "preprocess");
-        cloud = preprocess(scan, options_.scan);
+        cloud = own_.without(preprocess(scan, options_.scan));
         countFromMiddle(cloud);
         if (isEmpty) upright_ = uprightOf(scan.sensorPose, cloud.points);
     }

@@ -10,6 +10,7 @@
 #include "odometry/inertial.h"
 #include "odometry/initial_guess.h"
 #include "odometry/motion_model.h"
+#include "odometry/own_vehicle.h"
 #include "odometry/register_together.h"
 #include "odometry/register_trajectory.h"
 #include "odometry/tracking_state.h"
@@ -45,6 +46,7 @@ class PlaneOdometry : public Odometry {
     std::optional<ImuReport> imuReport() const override { return gyro_.report(); }
     void addOdometry(const OdometrySample& sample) override { wheels_.add(sample); }
     std::optional<OdometryReport> odometryReport() const override { return wheels_.report(); }
+    Eigen::AlignedBox3d ownVehicle() const override { return own_.box(); }
 
  private:
     void begin(const PointCloud& cloud, Step& step);
@@ -213,6 +215,7 @@ class PlaneOdometry : public Odometry {
     double time_s_ = 0;  //!< of the latest scan, since the start
     LocalMap map_;
     DynamicObjects dynamics_;
+    OwnVehicle own_;
     ReferenceScan reference_;
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
     ScanTrajectory motion_{Twist{}};  //!< during the latest scan, seen from pose_

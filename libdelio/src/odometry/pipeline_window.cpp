@@ -88,9 +88,11 @@ void PlaneOdometry::endWindow() {
     start_.reset();
 }
 
-/** The scan as it came, for a window that may begin with it. */
+/** The scan as it came, for a window that may begin with it, and to find the own vehicle in it. */
 void PlaneOdometry::keep(PointCloud cloud, const Step& step) {
     latest_.reset();
+    if (options_.dynamics.enabled && std::holds_alternative<Tracking>(state_))
+        own_.add(cloud.points, upright_, pose_);
     if (cloud.times_s.empty() || step.predicted || step.interrupted || !window_.isEmpty()) return;
     latest_ = Latest{std::move(cloud), time_s_, trajectoryOfLatest()};
 }

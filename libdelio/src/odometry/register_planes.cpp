@@ -199,13 +199,13 @@ bool isAmong(const std::vector<Eigen::Isometry3d>& poses, const Eigen::Isometry3
 }
 
 /** With one kernel, until both stand still. False where they do not. */
-bool iterate(Matcher& matcher, const Prior& known, double kernel,
+bool iterate(const FindMatches& find, const Prior& known, double kernel,
              const PlaneRegistrationOptions& options, Iterate& now) {
     auto& [pose, matches, iterations] = now;
     std::vector<Eigen::Isometry3d> passed;
     for (unsigned i = 0; i < options.max_iterations; ++i) {
         ++iterations;
-        matches = matcher.at(pose, kernel);
+        matches = find(pose, kernel);
         if (matches.size() < options.min_matches) return false;
         const Prior prior = known.times(varianceFactor(matches, pose));
         const auto turn = rotationFromPlanes(matches, pose, prior);
@@ -316,23 +316,42 @@ Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions
                      std::pow(options.prior_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity());
 }
 
-PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
-                               const Prior& prior, double kernel,
-                               const PlaneRegistrationOptions& options) {
-    Matcher matcher(map, points, plane_tuning::kPointSigma_m);
+namespace {
+/** `reached`: gets the pose that the iteration came to. */
+PlaneEstimate registered(const FindMatches& find, const Prior& prior, double kernel,
+                         const PlaneRegistrationOptions& options, Eigen::Isometry3d* reached) {
     Iterate now{prior.pose, {}};
     bool converged = false;
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        converged = iterate(matcher, prior, width, options, now);
+        converged = iterate(find, prior, width, options, now);
         if (width <= options.last_kernel) break;
     }
+    *reached = now.pose;
     if (now.matches.size() < options.min_matches) return predictedEstimate(prior.pose, options);
     PlaneEstimate estimate;
     settle(now.matches, now.pose, prior, estimate);
     estimate.rotation.iterations = now.iterations;
     estimate.rotation.converged = converged;
-    estimate.inlierRatio = matcher.shareAt(now.pose, options.last_kernel);
+    return estimate;
+}
+}  // namespace
+
+PlaneEstimate registerByMatches(const FindMatches& find, const Prior& prior, double kernel,
+                                const PlaneRegistrationOptions& options) {
+    Eigen::Isometry3d reached;
+    return registered(find, prior, kernel, options, &reached);
+}
+
+PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
+                               const Prior& prior, double kernel,
+                               const PlaneRegistrationOptions& options) {
+    Matcher matcher(map, points, plane_tuning::kPointSigma_m);
+    Eigen::Isometry3d reached;
+    auto estimate = registered(
+        [&](const Eigen::Isometry3d& pose, double width) { return matcher.at(pose, width); }, prior,
+        kernel, options, &reached);
+    if (estimate.valid) estimate.inlierRatio = matcher.shareAt(reached, options.last_kernel);
     return estimate;
 }
 }  // namespace delio::odometry

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/estimates.h"
@@ -118,6 +119,13 @@ class Matcher {
     };
     std::vector<Place> latest_;  //!< of the points
 };
+
+/** Finds the correspondences of points at a pose, with a kernel of that width (metres). */
+using FindMatches = std::function<Correspondences(const Eigen::Isometry3d& pose, double kernel)>;
+
+/** registerToPlanes() for points that are compared with several maps: `inlierRatio` stays 0. */
+PlaneEstimate registerByMatches(const FindMatches& find, const Prior& prior, double kernel,
+                                const PlaneRegistrationOptions& options);
 
 /** What plane residuals say of the rotation alone. */
 struct PlaneRotation {

@@ -53,6 +53,19 @@ constexpr double kIndependentRatio = 0.16;  //!< neighbours err together: so man
 constexpr double kSearchSpeed_mps = 40;     //!< an unknown motion is searched up to this speed
 }  // namespace plane_tuning
 
+/** Parts of the own vehicle. */
+namespace own_vehicle_tuning {
+constexpr double kVoxel_m = 0.25;       //!< places in the sensor's frame
+constexpr double kReach_m = 10;         //!< a trailer's rear is not farther
+constexpr double kLongest_m = 6;        //!< part
+constexpr double kAboveGround_m = 0.4;  //!< the ground stays at one place, too
+constexpr double kGroundShare = 0.05;   //!< of the near points, the lowest, are no higher than it
+constexpr double kStep_m = 0.5;         //!< between two scans that are compared
+constexpr unsigned kScans = 40;         //!< that are compared: over 20 m at least
+constexpr double kAlways = 0.9;         //!< of the scans show a part of the own vehicle
+constexpr double kOften = 0.3;          //!< of the scans show what it would be connected to
+}  // namespace own_vehicle_tuning
+
 /** Dynamic objects. */
 namespace dynamic_tuning {
 constexpr double kMargin_m = 0.4;       //!< a beam that went on by this saw the place free

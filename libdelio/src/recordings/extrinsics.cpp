@@ -1,5 +1,7 @@
 #include "extrinsics.h"
 
+#include <mrpt/core/format.h>
+
 #include <cmath>
 
 #include "delio/core/error.h"
@@ -10,6 +12,8 @@
 
 namespace delio::io {
 namespace {
+constexpr double kDegree = M_PI / 180;
+
 Eigen::Isometry3d poseIn(const std::vector<std::string_view>& words) {
     constexpr std::size_t kWords = 7;
     constexpr double kFarthest_m = 1000, kFullTurn_deg = 360;
@@ -21,7 +25,6 @@ Eigen::Isometry3d poseIn(const std::vector<std::string_view>& words) {
             throw Error("");
         values[i] = *number;
     }
-    constexpr double kDegree = M_PI / 180;
     return fromMrpt(mrpt::poses::CPose3D(values[0], values[1], values[2], values[3] * kDegree,
                                          values[4] * kDegree, values[5] * kDegree));
 }
@@ -48,5 +51,11 @@ Extrinsics readExtrinsics(const std::string& path) {
         }
     }
     return poses;
+}
+
+std::string extrinsicsLine(const std::string& label, const Eigen::Isometry3d& pose) {
+    const auto p = toMrpt(pose);
+    return mrpt::format("%s %.5f %.5f %.5f %.4f %.4f %.4f", label.c_str(), p.x(), p.y(), p.z(),
+                        p.yaw() / kDegree, p.pitch() / kDegree, p.roll() / kDegree);
 }
 }  // namespace delio::io

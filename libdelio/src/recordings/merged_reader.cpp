@@ -79,6 +79,8 @@ void MergedReader::takePoses(const Extrinsics& poses) {
     const Scan& first = sensors_.front().ahead.front();
     reference_ = poseOf(sensors_.front(), first);
     vehiclePose_ = poses.empty() ? first.sensorPose : reference_;
+    for (const Sensor& sensor : sensors_)
+        poses_.emplace_back(sensor.label, poseOf(sensor, sensor.ahead.front()));
     if (poses.empty())
         for (const Sensor& sensor : sensors_)
             if (&sensor != &sensors_.front() &&

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "delio/recordings/scan_reader.h"
@@ -39,6 +40,10 @@ class MergedReader : public ScanReader {
     }
     const std::string& label() const override { return label_; }
     const std::set<std::string>& otherLabels() const override { return others_; }
+    /** As their first scans say, where nothing else does. */
+    std::vector<std::pair<std::string, Eigen::Isometry3d>> mergedSensors() const override {
+        return poses_;
+    }
     std::optional<double> fraction() const override;
     const std::optional<DriveMeta>& meta() const override {
         return sensors_.front().reader->meta();
@@ -76,6 +81,7 @@ class MergedReader : public ScanReader {
     Eigen::Isometry3d poseOf(const Sensor& sensor, const Scan& scan) const;
 
     std::vector<Sensor> sensors_;
+    std::vector<std::pair<std::string, Eigen::Isometry3d>> poses_;  //!< of the sensors
     std::string label_;
     std::set<std::string> others_;  //!< that are not merged
     double interval_s_ = 0;         //!< between two scans, usually; 0: not known

@@ -50,8 +50,9 @@ std::unique_ptr<ScanReader> openMerged(const ScanSource& source,
     if (source.path == "-" && labels.size() > 1)
         throw Error("several sensors are merged from a file only, not from standard input");
     if (isLive(source.path)) throw Error("--extrinsics needs a recording, not a live sensor");
-    const Extrinsics poses =
-        source.extrinsicsFile.empty() ? Extrinsics{} : readExtrinsics(source.extrinsicsFile);
+    Extrinsics poses = source.extrinsics;
+    if (poses.empty() && !source.extrinsicsFile.empty())
+        poses = readExtrinsics(source.extrinsicsFile);
     if (poses.empty() && !source.extrinsicsFile.empty())
         throw Error("'" + source.extrinsicsFile + "' has no pose of a sensor");
     std::vector<MergedSensor> sensors;

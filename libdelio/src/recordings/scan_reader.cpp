@@ -72,7 +72,7 @@ std::string warningOfOther(const std::string& label) {
 std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
     const auto labels = labelsOf(source, openSensor);
     std::unique_ptr<ScanReader> scans;
-    if (labels.size() > 1 || !source.extrinsicsFile.empty()) {
+    if (labels.size() > 1 || !source.extrinsicsFile.empty() || !source.extrinsics.empty()) {
         scans = openMerged(source, labels, openSensor);
     } else {
         ScanSource one = source;

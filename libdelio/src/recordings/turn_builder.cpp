@@ -83,6 +83,7 @@ Scan TurnBuilder::scanOf(const std::vector<double>& starts_s) const {
     points->resize(points_.size());
     Scan scan;
     scan.rings.reserve(points_.size());
+    if (!starts_s.empty()) scan.times_s.reserve(points_.size());
     double first_s = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
         const std::size_t end = b + 1 < blocks_.size() ? blocks_[b + 1].first : points_.size();

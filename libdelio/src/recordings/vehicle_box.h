@@ -4,6 +4,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "delio/recordings/scan_reader.h"
@@ -23,6 +24,9 @@ class WithoutVehicle : public ScanReader {
     const std::string& label() const override { return source_->label(); }
     const std::set<std::string>& otherLabels() const override { return source_->otherLabels(); }
     std::optional<SensorMount> mount() override { return source_->mount(); }
+    std::vector<std::pair<std::string, Eigen::Isometry3d>> mergedSensors() const override {
+        return source_->mergedSensors();
+    }
     std::optional<double> fraction() const override { return source_->fraction(); }
     const std::optional<DriveMeta>& meta() const override { return source_->meta(); }
     /** Warns of a box without any point. */

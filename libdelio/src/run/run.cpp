@@ -2,18 +2,24 @@
 
 #include <mrpt/core/format.h>
 
+#include <cmath>
 #include <limits>
 
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/formats/drive_meta.h"
+#include "delio/mrpt/rawlog_writer.h"
 #include "delio/run/doubts.h"
 #include "delio/run/run_folder.h"
 #include "odometry/preprocess.h"
 #include "places/join_maps.h"
+#include "places/tiles.h"
+#include "places/update_map.h"
 #include "run/tables.h"
 #include "slam/georeferencing.h"
+#include "slam/levelling.h"
 #include "slam/place_listeners.h"
+#include "slam/specific_force.h"
 
 namespace delio::run {
 namespace {
@@ -27,8 +33,11 @@ graph::PoseGraphOptions graphOptions(const Options& options, const RunSettings& 
 Run::Run(const Options& options, const RunSettings& settings)
     : settings_(settings),
       slam_(makeOdometry(options)),
-      graph_(std::make_shared<GraphBuilder>(graphOptions(options, settings))) {
+      graph_(std::make_shared<GraphBuilder>(graphOptions(options, settings))),
+      forces_(std::make_unique<SpecificForce>()) {
     options.check();
+    if (settings.update && !options.map.removal.enabled)
+        throw Error("--update needs removal.enabled=true: it looks for what scans saw through");
     record_.profile = settings.profile;
     record_.command = settings.command;
     record_.drive = settings.drive;
@@ -77,6 +86,19 @@ void Run::warn(const std::string& text) {
     if (settings_.onWarning) settings_.onWarning(text);
 }
 
+void Run::add(std::vector<CalibratedSensor> extrinsics) {
+    for (const auto& sensor : extrinsics) {
+        std::string kept;
+        for (const auto& axis : sensor.unobserved) kept += (kept.empty() ? "" : ", ") + axis;
+        if (!sensor.reason.empty())
+            warn("the pose of the sensor '" + sensor.label + "' was not refined: " + sensor.reason);
+        else if (!kept.empty())
+            warn("the pose of the sensor '" + sensor.label + "' was not refined " + kept +
+                 ": the drive does not show it");
+    }
+    record_.extrinsics = std::move(extrinsics);
+}
+
 void Run::fail(const std::string& fault) {
     if (record_.fault.empty()) record_.fault = fault;
 }
@@ -108,8 +130,16 @@ void Run::readSideFiles(const io::SideFile& calib, const io::SideFile& poses,
     truthWasAskedFor_ = !truth.empty();
 }
 
+void Run::addImu(const ImuSample& sample) {
+    slam_.addImu(sample);
+    forces_->add(sample);
+}
+
 RunRow Run::process(const Scan& scan, double read_ms) {
     const auto report = slam_.process(scan);
+    const auto imu = slam_.imuReport();
+    forces_->addScan(scan.stamp_s + (imu ? imu->offset_s : 0),
+                     imu ? imu->bias_radps : Eigen::Vector3d::Zero());
     for (const auto& failed : report.failed) switchOff(failed, scan.index);
     auto& rows = record_.rows;
     if (rows.empty()) record_.epoch_s = mrpt::Clock::toDouble(scan.time) - scan.stamp_s;
@@ -205,6 +235,39 @@ void Run::optimiseGraph() {
     }
 }
 
+/** The accelerometer says what is up, where the gyroscope agrees with the scans. */
+void Run::level() {
+    ForcesOnTrack track{record_.odometry.stamps_s, {}, {}, forces_->take()};
+    for (const auto& row : record_.rows) {
+        track.usable.push_back(!row.predicted && !row.lost && !row.interrupted);
+        track.mounts.push_back(row.sensorPose.linear() * *record_.imu->rotation);
+    }
+    const bool moves = settings_.graph && graph_ && !record_.isLocalised();
+    try {
+        auto found = levelled(record_.graph, track, moves ? &record_.options.graph : nullptr);
+        record_.vertical = found.vertical;
+        record_.graph = std::move(found.graph);
+    } catch (const std::exception& e) {
+        warn("the map is not levelled: " + plainMessage(e));
+    }
+}
+
+/** Turns the map so that its z is up; the heading of x stays. */
+void Run::standUpright() {
+    if (!record_.vertical || !record_.vertical->refusal.empty())
+        return warn("the map is not levelled: " +
+                    (record_.vertical ? record_.vertical->refusal
+                                      : "there is no IMU that agrees with the scans"));
+    Eigen::Vector3d& up = record_.vertical->up;
+    const Eigen::Isometry3d upright(
+        Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()));
+    auto poses = record_.graph.poses();
+    for (auto& pose : poses) pose = upright * pose;
+    record_.graph = record_.graph.withPoses(poses);
+    for (auto& pose : record_.odometry.poses) pose = upright * pose;
+    up = Eigen::Vector3d::UnitZ();
+}
+
 void Run::add(const earth::Fixes& fixes) {
     gnssFixes_.insert(gnssFixes_.end(), fixes.begin(), fixes.end());
 }
@@ -243,6 +306,8 @@ void Run::optimise() {
         record_.georeference = follower_->map().georeference();
         record_.cloudOrigin = follower_->map().cloudOrigin();
     }
+    if (record_.imu && record_.imu->rotation) level();
+    if (settings_.level && !record_.isLocalised()) standUpright();
     if (settings_.gnss && !gnssFixes_.empty() && !record_.georeference) georeference();
     record_.optimise_ms = watch.lap_ms();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
@@ -260,11 +325,49 @@ void Run::store() {
                       record_.georeference,
                       {}};
     stored_ = own_;
+    if (!follower_ || !record_.isLocalised()) return;
     try {
-        if (settings_.extend && follower_ && record_.isLocalised()) extend();
+        if (settings_.extend) extend();
     } catch (const std::exception& e) {
         fail("the map was not extended: " + plainMessage(e));
     }
+    try {
+        if (settings_.update) update();
+    } catch (const std::exception& e) {
+        fail("the map was not updated: " + plainMessage(e));
+    }
+}
+
+/** Without times where the recording's own begin at 0. */
+Visit Run::visit() const {
+    constexpr double kFirstUnix_s = 5e8;
+    const auto& stamps = record_.odometry.stamps_s;
+    const double begin_s = record_.epoch_s + stamps.front();
+    const bool isMadeUp = std::abs(record_.epoch_s - io::kDriveEpoch_s) < 1;
+    if (isMadeUp || begin_s < kFirstUnix_s) return {settings_.drive};
+    return {settings_.drive, begin_s, record_.epoch_s + stamps.back()};
+}
+
+void Run::update() {
+    std::vector<bool> measured;
+    VisitScans scans;
+    scans.visit = visit();
+    for (std::size_t i = 0; i < record_.fixes.size(); ++i) {
+        measured.push_back(isAnchor(record_.fixes[i]));
+        if (measured.back()) scans.poses.push_back(record_.final.poses[i]);
+    }
+    const auto level = places::levelFrames(own_->submaps, record_.final.poses);
+    std::vector<Eigen::Matrix3Xf> parts;
+    for (std::size_t i = 0; i < level.size(); ++i)
+        if (measured[own_->submaps[i].key])
+            parts.emplace_back(level[i].cast<float>() * own_->points(i));
+    scans.points = places::together(parts);
+    scans.seenThrough = [&](const Eigen::Matrix3Xf& points) {
+        return map_->builder().seenThrough(points, record_.final.poses, measured);
+    };
+    auto result = updated(follower_->map(), scans);
+    record_.update = result.figures;
+    stored_ = std::move(result.content);
 }
 
 void Run::extend() {
@@ -323,6 +426,17 @@ void Run::score() {
     }
 }
 
+void Run::findOwnVehicle() {
+    const Eigen::AlignedBox3d box = slam_.ownVehicle();
+    if (box.isEmpty() || record_.rows.empty()) return;
+    record_.ownVehicle = box.transformed(record_.rows.back().sensorPose);
+    const auto &low = record_.ownVehicle.min(), &high = record_.ownVehicle.max();
+    warn(mrpt::format(
+        "parts of the own vehicle were found and left out; to leave them out from the first scan "
+        "on: --vehicle-box %.2f,%.2f,%.2f,%.2f,%.2f,%.2f",
+        low.x(), low.y(), low.z(), high.x(), high.y(), high.z()));
+}
+
 void Run::finish(bool complete) {
     const Doubts doubts = doubtsOf(record_.rows);
     for (const auto& warning : warningsOf(doubts)) warn(warning);
@@ -337,6 +451,7 @@ void Run::finish(bool complete) {
     record_.wheels = slam_.odometryReport();
     if (record_.wheels)
         for (const auto& finding : record_.wheels->findings) warn(finding);
+    findOwnVehicle();
     slam_.close();
     optimise();
     if (const auto why = whyUnreliable(unlinkedOf(record_), doubts.pairs); !why.empty())

@@ -14,6 +14,7 @@
 #include "delio/map/page.h"
 #include "delio/map/simplemap.h"
 #include "mrpt/interpolator.h"
+#include "recordings/extrinsics.h"
 #include "run/tables.h"
 
 namespace delio::run {
@@ -40,6 +41,7 @@ constexpr const char* kAll[] = {RunFolder::kSummary,
                                 RunFolder::kLoops,
                                 RunFolder::kLocalisation,
                                 RunFolder::kJoints,
+                                RunFolder::kExtrinsics,
                                 RunFolder::kConfig,
                                 RunFolder::kSimplemap,
                                 RunFolder::kPly,
@@ -168,6 +170,12 @@ void RunFolder::writeTables(const RunRecord& record) const {
     if (!record.joints.empty()) writeLoopTable(record.joints, path(kJoints));
     if (!record.fixes.empty())
         writeLocalisationTable(record.rows, record.fixes, path(kLocalisation));
+    if (!record.extrinsics.empty())
+        io::replaceTextFile(path(kExtrinsics), [&](std::ostream& out) {
+            out << "# LABEL x y z yaw pitch roll (metres and degrees, in the vehicle)\n";
+            for (const auto& sensor : record.extrinsics)
+                out << io::extrinsicsLine(sensor.label, sensor.pose) << "\n";
+        });
     io::replaceTextFile(path(kConfig), [&](std::ostream& out) { record.options.write(out); });
 }
 

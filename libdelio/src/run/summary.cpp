@@ -10,6 +10,7 @@
 
 #include "core/percentile.h"
 #include "delio/core/error.h"
+#include "delio/core/geometry.h"
 #include "delio/core/text.h"
 #include "delio/files/output.h"
 #include "delio/run/doubts.h"
@@ -85,6 +86,14 @@ Summary::Figures meanTimes(const RunRecord& record) {
     return means;
 }
 
+void addStages(const RunRecord& record, Summary& summary) {
+    for (const auto& [name, ms] : meanTimes(record))
+        if (name == "map")
+            summary.map_ms_per_scan = ms;
+        else
+            summary.ms_per_scan_of_stages.emplace_back(name, ms);
+}
+
 template <typename Flag>
 std::size_t countOf(const RunRecord& record, const Flag& flag) {
     return static_cast<std::size_t>(std::count_if(record.rows.begin(), record.rows.end(),
@@ -114,6 +123,21 @@ Summary::Figures figuresOf(const ImuReport& imu) {
     return figures;
 }
 
+/** Appends to those of the IMU. */
+void put(const Vertical& vertical, Summary::Figures& figures) {
+    if (!vertical.refusal.empty()) return;
+    figures.insert(
+        figures.end(),
+        {{"up_x", vertical.up.x()},
+         {"up_y", vertical.up.y()},
+         {"up_z", vertical.up.z()},
+         {"up_sigma_deg", 180 / M_PI * vertical.sigma_rad},
+         {"acceleration_bias_x_mps2", vertical.bias_mps2.x()},
+         {"acceleration_bias_y_mps2", vertical.bias_mps2.y()},
+         {"acceleration_bias_z_mps2", vertical.bias_mps2.z()},
+         {"tilts_held", vertical.holdsTilt ? static_cast<double>(vertical.stretches) : 0}});
+}
+
 Summary::Figures figuresOf(const OdometryReport& wheels) {
     Summary::Figures figures{{"samples", static_cast<double>(wheels.samples)},
                              {"dropped", static_cast<double>(wheels.dropped)},
@@ -124,6 +148,41 @@ Summary::Figures figuresOf(const OdometryReport& wheels) {
                              {"stretches_off", static_cast<double>(wheels.contradicting)},
                              {"scale", wheels.scale}};
     if (wheels.sigma) figures.emplace_back("sigma_m_per_m", *wheels.sigma);
+    return figures;
+}
+
+/** Of the corners, metres. */
+Summary::Figures figuresOf(const Eigen::AlignedBox3d& box) {
+    if (box.isEmpty()) return {};
+    return {{"min_x_m", box.min().x()}, {"min_y_m", box.min().y()}, {"min_z_m", box.min().z()},
+            {"max_x_m", box.max().x()}, {"max_y_m", box.max().y()}, {"max_z_m", box.max().z()}};
+}
+
+/** In MRPT's order, each after the sensor's label; standard deviations about x, y and z. */
+Summary::Figures figuresOf(const std::vector<CalibratedSensor>& sensors) {
+    constexpr double kDegrees = 180 / M_PI;
+    Summary::Figures figures;
+    for (const auto& sensor : sensors) {
+        if (sensor.matches == 0) continue;
+        const auto put = [&](const char* name, double value) {
+            figures.emplace_back(sensor.label + " " + name, value);
+        };
+        const auto pose = toMrpt(sensor.pose);
+        const Vector6& sigma = sensor.sigma;
+        put("x_m", pose.x());
+        put("y_m", pose.y());
+        put("z_m", pose.z());
+        put("yaw_deg", kDegrees * pose.yaw());
+        put("pitch_deg", kDegrees * pose.pitch());
+        put("roll_deg", kDegrees * pose.roll());
+        put("sigma_x_m", sigma[0]);
+        put("sigma_y_m", sigma[1]);
+        put("sigma_z_m", sigma[2]);
+        put("sigma_about_x_deg", kDegrees * sigma[3]);
+        put("sigma_about_y_deg", kDegrees * sigma[4]);
+        put("sigma_about_z_deg", kDegrees * sigma[5]);
+        put("points", static_cast<double>(sensor.matches));
+    }
     return figures;
 }
 
@@ -238,6 +297,8 @@ void forEachField(Record& s, const Field& field) {
     }
     if (field.hasGroup("imu", !s.imu.empty())) field("imu", s.imu);
     if (field.hasGroup("odometry", !s.odometry.empty())) field("odometry", s.odometry);
+    if (field.hasGroup("own_vehicle", !s.own_vehicle.empty())) field("own_vehicle", s.own_vehicle);
+    if (field.hasGroup("extrinsics", !s.extrinsics.empty())) field("extrinsics", s.extrinsics);
     if (field.hasGroup("georeference", !s.georeference.empty()))
         field("georeference", s.georeference);
     field("path_m", s.path_m);
@@ -324,7 +385,10 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
            : fix.where == Whereabouts::kOutside ? summary.outside_map
                                                 : summary.not_found_in_map);
     if (record.imu) summary.imu = figuresOf(*record.imu);
+    if (record.vertical) put(*record.vertical, summary.imu);
     if (record.wheels) summary.odometry = figuresOf(*record.wheels);
+    summary.own_vehicle = figuresOf(record.ownVehicle);
+    summary.extrinsics = figuresOf(record.extrinsics);
     summary.deskewed = countOf(record, &RunRow::deskewed);
     summary.georeference = georeferenceOf(record);
     summary.path_m = record.path_m();
@@ -332,11 +396,7 @@ Summary summaryOf(const RunRecord& record, double pictures_ms) {
     summary.ms_per_scan = record.msPerScan();
     summary.latency_ms = latencyOf(record.rows);
     if (record.live) summary.live = liveFiguresOf(*record.live);
-    for (const auto& [name, ms] : meanTimes(record))
-        if (name == "map")
-            summary.map_ms_per_scan = ms;
-        else
-            summary.ms_per_scan_of_stages.emplace_back(name, ms);
+    addStages(record, summary);
     summary.optimisation_ms = record.optimise_ms;
     summary.optimisation_iterations = record.optimisation.iterations;
     summary.optimisation_cost_before = record.optimisation.initial_cost;

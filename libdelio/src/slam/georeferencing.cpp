@@ -182,16 +182,6 @@ std::vector<bool> fitting(const EnuGraph& graph, const std::vector<Factor>& fact
     return inliersOf(errors);
 }
 
-graph::PoseGraph withPoses(const graph::PoseGraph& graph, const std::vector<Isometry3d>& poses) {
-    graph::PoseGraph moved;
-    for (const auto& pose : poses) moved.addNode(pose);
-    for (std::size_t i = 0; i < graph.edges().size(); ++i) {
-        const auto& edge = graph.edges()[i];
-        moved.addEdge(edge.from, edge.to, edge.increment.pose, graph.information(i));
-    }
-    return moved;
-}
-
 /** Moves the poses by the fixes, all but the first in the map's frame; sets found.place. */
 void optimise(const graph::PoseGraph& graph, const std::vector<Factor>& factors,
               const graph::PoseGraphOptions& options, Georeferenced& found) {
@@ -209,7 +199,7 @@ void optimise(const graph::PoseGraph& graph, const std::vector<Factor>& factors,
     std::vector<Isometry3d> poses;
     for (const auto& pose : enu.poses()) poses.push_back(enuFromMap.inverse() * pose);
     poses.front() = first;
-    found.graph = withPoses(graph, poses);
+    found.graph = graph.withPoses(poses);
     found.place.enuFromMap = enuFromMap;
     found.place.moveOriginToMap();
     found.figures.inGraph = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));

@@ -92,6 +92,11 @@ std::optional<OdometryReport> Slam::odometryReport() const {
     return odometry_->odometryReport();
 }
 
+Eigen::AlignedBox3d Slam::ownVehicle() const {
+    requireOpen();
+    return odometry_->ownVehicle();
+}
+
 ScanReport Slam::process(const Scan& scan) {
     requireOpen();
     requireConsistent(scan);

@@ -74,6 +74,9 @@ class PoseGraph {
      *  then lead where the nodes are; their covariances stay. Error as addNode(). */
     void correct(const std::vector<NodePose>& corrected);
 
+    /** The same edges between nodes at other poses, one for each node; Error otherwise. */
+    PoseGraph withPoses(const std::vector<Eigen::Isometry3d>& poses) const;
+
     /** Error, naming the node, where a node is not connected to node 0. */
     OptimisationResult optimise(const PoseGraphOptions& options);
 

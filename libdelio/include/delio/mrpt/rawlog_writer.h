@@ -4,6 +4,7 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,10 @@ class RawlogWriter {
      *  and the sensor's pose. */
     void add(const Scan& scan, double epoch_s);
 
+    /** The same of another sensor, whose files begin with its label. scans() does not count it, and
+     *  side files have no row of it. Not for embedded scans. */
+    void addOther(const std::string& label, const Scan& scan, double epoch_s);
+
     /** Appends a scan that stays in `file`, which is in KITTI's format: OUT_Images holds a
      *  symbolic link to its absolute path. Not for embedded scans. Throws Error where that fails.
      */
@@ -59,6 +64,9 @@ class RawlogWriter {
     /** Appends a GNSS fix as a CObservationGPS with GGA; its stamp counts from `epoch_s`, an
      * antenna that is not known is at 0. `quality`: as GGA numbers it. */
     void add(const earth::Fix& fix, int quality, double epoch_s);
+    /** The same with quality and HDOP by its covariance: as GGA has one number for it, no axis
+     * becomes more certain. */
+    void add(const earth::Fix& fix, double epoch_s);
 
     /** Writes one value per point of the next scan into `OUT_Images/NNNNNN` + extension. Throws
      *  Error where that fails. */
@@ -94,12 +102,13 @@ class RawlogWriter {
     std::string extraFile(const std::string& extension) const;
     void write(const std::string& file, const void* bytes, std::size_t count) const;
 
-    std::string path_, label_;
+    std::string path_, label_, prefix_;  //!< of the names of files
     bool embed_;
     OutputLock lock_;
     PartialFolder partial_;
     std::string partialRawlog_, partialImages_;
     std::size_t count_ = 0;
+    std::map<std::string, std::size_t> others_;  //!< scans of other sensors
     mrpt::io::CFileOutputStream out_;
 };
 }  // namespace delio::io

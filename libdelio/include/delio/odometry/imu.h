@@ -42,4 +42,16 @@ struct ImuReport {
     /** Why the gyroscope was not or not always used, a line each. */
     std::vector<std::string> findings;
 };
+
+/** The vertical of a drive's map, by the IMU's accelerometer. */
+struct Vertical {
+    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  //!< unit vector in the map's frame
+    /** Standard deviation about the worse horizontal axis, rad. A bias that the drive does not show
+     *  is taken as below 0.1 m/s^2. */
+    double sigma_rad = 0;
+    Eigen::Vector3d bias_mps2 = Eigen::Vector3d::Zero();  //!< of the acceleration, IMU's frame
+    std::size_t stretches = 0;                            //!< of four seconds, that it is made of
+    bool holdsTilt = false;  //!< they hold the tilt of the poses in the pose graph
+    std::string refusal;     //!< why it is not known; empty: it is
+};
 }  // namespace delio

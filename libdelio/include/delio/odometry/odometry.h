@@ -36,6 +36,10 @@ class Odometry {
 
     /** What was found out about the wheels so far; nothing: no sample came, or none is used. */
     virtual std::optional<OdometryReport> odometryReport() const;
+
+    /** Box about parts of the own vehicle, in the sensor's frame, metres: they stayed where they
+     *  are while the sensor moved, and are left out since. Empty: none were found. */
+    virtual Eigen::AlignedBox3d ownVehicle() const { return {}; }
 };
 
 /** The odometry that the options choose. Throws Error where two of its options contradict each

@@ -2,10 +2,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "delio/earth/fix.h"
@@ -91,6 +93,12 @@ class ScanReader {
      *  that the source says. */
     virtual std::optional<SensorMount> mount() { return {}; }
 
+    /** Label and pose in the vehicle of each sensor whose scans are merged, the first one first;
+     *  empty: only one is read. */
+    virtual std::vector<std::pair<std::string, Eigen::Isometry3d>> mergedSensors() const {
+        return {};
+    }
+
     /** Part of the drive read so far, 0 to 1; nothing where that is not known. */
     virtual std::optional<double> fraction() const = 0;
 
@@ -154,6 +162,8 @@ struct ScanSource {
     /** Poses of the sensors in the vehicle, instead of the recording's: lines `LABEL x y z yaw
      * pitch roll`, metres and degrees. Empty: none. */
     std::string extrinsicsFile = {};
+    /** The same by label, in place of the file's; empty: none. */
+    std::map<std::string, Eigen::Isometry3d> extrinsics = {};
     /** Points in this box of the vehicle's frame, metres, are left out. Empty: none are. */
     Eigen::AlignedBox3d vehicleBox = {};
 };

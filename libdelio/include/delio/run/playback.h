@@ -70,6 +70,15 @@ class Playback {
     std::vector<double> latencies_ms_;
 };
 
+/** Refines the poses of several LiDARs relative to the first one: this one's odometry alone makes
+ *  a map, on which the points of the others have to lie; rotation first, then translation. The
+ *  first sensor's pose in the vehicle stays. Reads the recording once per sensor. `onScan`: called
+ *  after each scan of the first one. Throws Error as openScans(), and where `source` names fewer
+ *  than two sensors. */
+std::vector<CalibratedSensor> calibrateExtrinsics(
+    const io::ScanSource& source, const Options& options, PlaybackSettings settings,
+    const std::function<void(std::optional<double> fraction)>& onScan = {});
+
 /** A warning for each sensor of the recording that is not read. */
 std::vector<std::string> warningsOfOthers(const io::ScanReader& reader);
 }  // namespace delio::run

@@ -14,6 +14,7 @@
 namespace delio {
 class LoopCloser;
 class MapFollower;
+class SpecificForce;
 }  // namespace delio
 
 namespace delio::run {
@@ -40,9 +41,11 @@ struct RunSettings {
     /** Of the vehicle at the first scan in that map, if it is known to some metres. */
     std::optional<Eigen::Isometry3d> initialPose;
     bool extend = false;  //!< extend that map by this drive
+    bool update = false;  //!< mark what is gone and new in that map; needs `map`
     /** A drive that is not in the map keeps its own frame, which is no fault. */
     bool mayBeElsewhere = false;
-    bool gnss = true;   //!< use GNSS fixes
+    bool gnss = true;    //!< use GNSS fixes
+    bool level = false;  //!< z of the map is up, as the IMU's accelerometer has it
     bool loops = true;  //!< search for loop closures; needs `graph`
     /** Called with every warning. */
     std::function<void(const std::string&)> onWarning;
@@ -71,7 +74,7 @@ class Run {
     void attach(std::shared_ptr<SlamListener> listener) { slam_.attach(std::move(listener)); }
 
     /** Takes a sample of the drive's IMU: see Odometry::addImu(). */
-    void addImu(const ImuSample& sample) { slam_.addImu(sample); }
+    void addImu(const ImuSample& sample);
     /** See Odometry::imuReport(). */
     std::optional<ImuReport> imuReport() const { return slam_.imuReport(); }
     /** Takes a pose by the drive's wheels: see Odometry::addOdometry(). */
@@ -87,6 +90,10 @@ class Run {
 
     /** Records what a live sensor sent; before finish(). */
     void add(LiveRecord live) { record_.live = std::move(live); }
+
+    /** Records the poses of several LiDARs that were refined, with a warning for those that were
+     *  not; before finish(). */
+    void add(std::vector<CalibratedSensor> extrinsics);
 
     /** Pose of the vehicle at the latest scan. */
     struct Pose {
@@ -116,16 +123,21 @@ class Run {
     }
 
  private:
+    void findOwnVehicle();
     bool searchesLoops() const;
     places::LoopOptions loopOptions() const;
     void switchOff(const FailedListener& failed, std::size_t scan);
     void optimise();
     void optimiseGraph();
     void closeLoops();
+    void level();
+    void standUpright();
     void georeference();
     void anchor();
     void store();
     void extend();
+    void update();
+    Visit visit() const;
     void score();
     evaluation::Comparison compared(const io::Trajectory& vehicle) const;
 
@@ -136,7 +148,8 @@ class Run {
     std::shared_ptr<GraphBuilder> graph_;
     std::shared_ptr<MapListener> map_;
     std::shared_ptr<MapFollower> follower_;
-    std::shared_ptr<LoopCloser> loops_;       //!< keeps the submaps, too
+    std::shared_ptr<LoopCloser> loops_;  //!< keeps the submaps, too
+    std::unique_ptr<SpecificForce> forces_;
     std::optional<MapContent> own_, stored_;  //!< of the drive; and what is written
     earth::Fixes gnssFixes_;
     std::optional<io::Trajectory> truth_;

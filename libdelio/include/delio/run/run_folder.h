@@ -65,6 +65,8 @@ class RunFolder {
     static constexpr const char* kLoops = "loops.csv";            //!< where loops were searched for
     static constexpr const char* kLocalisation = "localisation.csv";  //!< in a stored map
     static constexpr const char* kJoints = "joints.csv";              //!< where one was extended
+    /** Refined poses of several LiDARs, for ScanSource::extrinsicsFile. */
+    static constexpr const char* kExtrinsics = "extrinsics.txt";
     static constexpr const char* kConfig = "config.ini";        //!< every option that had an effect
     static constexpr const char* kSimplemap = "map.simplemap";  //!< MRPT's keyframes with points
     static constexpr const char* kPly = "map.ply";              //!< points of the map

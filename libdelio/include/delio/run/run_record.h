@@ -77,6 +77,20 @@ struct LiveRecord {
     std::vector<double> latency_ms;
 };
 
+/** One of several LiDARs, and its pose in the vehicle: see calibrateExtrinsics(). */
+struct CalibratedSensor {
+    std::string label;                                        //!< as --extrinsics names it
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();   //!< sensor to vehicle
+    Eigen::Isometry3d given = Eigen::Isometry3d::Identity();  //!< the same before
+    /** Standard deviations along and about the vehicle's axes, relative to the first sensor:
+     *  [x y z wx wy wz], metres and radians; 0: of the first sensor, or not refined. */
+    Vector6 sigma = Vector6::Zero();
+    std::size_t matches = 0;  //!< points on planes of the first sensor's map
+    /** "along x", "about z", ...: what the drive does not show, where the given pose was kept. */
+    std::vector<std::string> unobserved;
+    std::string reason;  //!< why the whole pose was kept; empty: it was refined
+};
+
 /** Settings and results of a run, except the map; RunFolder writes them. */
 struct RunRecord {
     std::string profile;               //!< that the options were made of
@@ -106,17 +120,24 @@ struct RunRecord {
     std::vector<places::LoopCandidate> joints;  //!< with the map's submaps, where it was extended
     bool extended = false;                      //!< the stored map got what this drive saw
     std::size_t addedSubmaps = 0;               //!< that it got
+    std::optional<UpdateFigures> update;        //!< of the stored map, where it was updated
     bool searchedLoops = false;                 //!< else `loops` says nothing
     std::vector<places::LoopCandidate> loops;   //!< and what became of them
     double loop_search_ms = 0;                  //!< beside the drive, and after it
 
     std::optional<ImuReport> imu;          //!< what was found out about the IMU, where there is one
+    std::optional<Vertical> vertical;      //!< by its accelerometer, in the frame of `final`
     std::optional<OdometryReport> wheels;  //!< likewise of wheels or another odometry
     std::optional<earth::Georeference> georeference;  //!< of the final poses, where it is known
     earth::GnssFigures gnss;                          //!< of the drive's fixes
     /** Of the imported cloud that the drive was localised in. */
     std::optional<CloudOrigin> cloudOrigin;
 
+    /** Box about parts of the own vehicle that were found in the scans, in the vehicle's frame,
+     *  metres; empty: none. */
+    Eigen::AlignedBox3d ownVehicle;
+    /** LiDARs whose poses were refined, the first one first; empty: none were. */
+    std::vector<CalibratedSensor> extrinsics;
     io::Calibration calibration;  //!< of the drive, where there is one
     /** The final trajectory beside true poses, where they are known. */
     std::optional<evaluation::Comparison> metrics;
@@ -125,10 +146,11 @@ struct RunRecord {
     /** True poses in the frame of `final`, for pictures. */
     std::vector<Eigen::Isometry3d> truth;
 
-    /** Loop closures or GNSS fixes moved the poses: without them, the graph is the chain that the
-     *  odometry's poses were made of. */
+    /** Loop closures, GNSS fixes or the vertical moved the poses: without them, the graph is the
+     *  chain that the odometry's poses were made of. */
     bool optimised() const {
-        return graph.edges().size() + 1 > graph.poses().size() || gnss.inGraph > 0;
+        return graph.edges().size() + 1 > graph.poses().size() || gnss.inGraph > 0 ||
+               (vertical && vertical->holdsTilt);
     }
     std::size_t predicted() const;  //!< scans that were not registered
     bool isLocalised() const;       //!< it was found in the stored map

@@ -45,9 +45,12 @@ struct Summary {
     std::size_t not_found_in_map = 0;                    //!< scans before it was found
     /** Samples, calibration and residual of the IMU, where there is one. */
     Figures imu;
-    Figures odometry;      //!< samples, scale and agreement of wheels, where there are any
-    Figures georeference;  //!< empty: not georeferenced
-    double path_m = 0;     //!< length of the final way
+    Figures odometry;     //!< samples, scale and agreement of wheels, where there are any
+    Figures own_vehicle;  //!< corners of its parts' box, where any were found
+    /** Pose and standard deviations of each LiDAR whose pose was refined, after its label. */
+    Figures extrinsics;
+    Figures georeference;                  //!< empty: not georeferenced
+    double path_m = 0;                     //!< length of the final way
     double vertical_correction_deg = 0;    //!< that was added to each point's vertical angle
     double ms_per_scan = 0;                //!< reading, odometry, the graph's window, submaps
     Figures ms_per_scan_of_stages;         //!< the same by stage

@@ -87,6 +87,8 @@ class Slam {
     void addOdometry(const OdometrySample& sample);
     /** See Odometry::odometryReport(). */
     std::optional<OdometryReport> odometryReport() const;
+    /** See Odometry::ownVehicle(). */
+    Eigen::AlignedBox3d ownVehicle() const;
 
     /** Ends the drive and frees the odometry. process() is an Error from then on. */
     void close() { odometry_.reset(); }
