@@ -12,7 +12,7 @@
 #include "recordings/decode_observation.h"
 
 namespace delio {
-/** What drivers gave, until it is written. Where more than ten scans wait, the oldest is dropped.
+/** What drivers gave, until it is written. Where more than 20 scans wait, the oldest is dropped.
  */
 class WaitingObjects {
  public:
@@ -45,7 +45,7 @@ class WaitingObjects {
     }
 
  private:
-    static constexpr std::size_t kMostScans = 10;
+    static constexpr std::size_t kMostScans = 20;
 
     static bool isScan(const Object& object) {
         const auto* scan = dynamic_cast<const mrpt::obs::CObservation*>(object.get());

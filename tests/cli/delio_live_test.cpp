@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "delio/formats/trajectory.h"
+#include "delio/recordings/rawlog_reader.h"
 #include "delio_slam_fixture.h"
 #include "pcap_writer.h"
 #include "tools.h"
@@ -104,9 +105,11 @@ TEST_F(DelioLive, ASignalEndsTheDriveAndItsRawlogIsWhole) {
     const auto ended = run.wait();
     EXPECT_EQ(ended.exitCode, 0) << ended.err;
     EXPECT_EQ(ended.out, "");  // what drivers print goes to stderr
-    const auto read = slamOf(made_);
-    EXPECT_EQ(read.exitCode, 0) << read.err;
-    EXPECT_GE(rows("trajectory_kitti.txt"), 5U);
+    io::RawlogReader reader(made_);
+    std::size_t scans = 0;
+    while (reader.next()) ++scans;  // throws where it is cut off
+    EXPECT_GE(scans, 6U);
+    EXPECT_EQ(reader.label(), "lidar_SCAN");
 }
 
 TEST_F(DelioLive, EndsWithItsReader) {
