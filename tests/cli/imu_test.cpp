@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.h"
+#include "delio/formats/trajectory.h"
 #include "delio/run/run_folder.h"
 #include "test_data.h"
 
@@ -86,6 +87,42 @@ TEST(Imu, TheSameForAnyNumberOfThreads) {
     const std::string trajectory = run::RunFolder::kTrajectory;
     EXPECT_TRUE(test::readText(folder / "one" / trajectory) ==
                 test::readText(folder / "four" / trajectory));
+}
+
+TEST(Imu, LevelsTheMap) {
+    const test::TemporaryFolder folder;
+    const std::string rawlog = handWithImu(folder, {"--imu-grade", "automotive"});
+    const auto tilted = slam(rawlog, folder / "tilted");
+    const Eigen::Vector3d up(figure(tilted.imu, "up_x"), figure(tilted.imu, "up_y"),
+                             figure(tilted.imu, "up_z"));
+    // The world of the scene is level; its frame is turned as cam0's: y points down, x to the
+    // right.
+    const auto cam0 = io::readTrajectory(folder / "hand.origin.txt").poses.front();
+    const Eigen::Vector3d down = cam0.linear().row(1).transpose();
+    const Eigen::Vector3d truth = -Eigen::Vector3d(down.z(), -down.x(), -down.y());
+    EXPECT_LT(std::acos(std::min(1.0, up.dot(truth))), 0.7 * M_PI / 180);
+    EXPECT_GT(std::acos(std::min(1.0, truth.z())), 5 * M_PI / 180);
+    const auto level = slam(rawlog, folder / "level", {"--level"});
+    EXPECT_EQ(figure(level.imu, "up_z"), 1);
+    const auto first = io::readTrajectory(folder / "level/trajectory_kitti.txt").poses.front();
+    EXPECT_TRUE((first.linear() * up).isApprox(Eigen::Vector3d::UnitZ(), 1e-6));
+    EXPECT_NEAR(figure(level.metrics, "end_error_m"), figure(tilted.metrics, "end_error_m"), 1e-6);
+}
+
+TEST(Imu, LevellingNeedsAccelerations) {
+    const test::TemporaryFolder folder;
+    const std::string rawlog = folder / "plain.rawlog";
+    const auto made = test::runTool(
+        "synth2rawlog", {"-o", rawlog, "--scene", "urban", "--sensor", "vlp16", "--scans", "3"});
+    ASSERT_EQ(made.exitCode, 0) << made.err;
+    const auto summary = slam(rawlog, folder / "out", {"--level"});
+    ASSERT_EQ(summary.warnings.size(), 1U);
+    EXPECT_NE(summary.warnings.front().find("not levelled"), std::string::npos);
+    for (const Words& wrong : {Words{"--no-imu"}, Words{"--map", "m.delio"}}) {
+        Words words{"-i", rawlog, "-o", folder / "none", "--level"};
+        words.insert(words.end(), wrong.begin(), wrong.end());
+        EXPECT_EQ(test::runTool("delio-slam", words).exitCode, 2) << wrong.front();
+    }
 }
 
 TEST(Imu, OptionsAreChecked) {
