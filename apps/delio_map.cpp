@@ -79,6 +79,7 @@ struct Arguments {
     /** An option that would have no effect; empty: none. */
     std::string fault();
     std::string importFault();
+    bool isStored();
     /** The graph of a stored map is listed or edited. */
     bool isGraph();
     std::string graphFault();
@@ -106,7 +107,26 @@ struct Arguments {
                "",
                "FOLDER",
                cmd};
-    Text import, edits, output;
+    Text import;
+    Text edits{
+        "",
+        "edits",
+        "Edit the pose graph of a stored map: lines 'add A B' (an edge between two submaps, if "
+        "registration confirms it) and 'forbid A B'; OUT is a .delio. With -o OUT.csv and "
+        "without this option, the edges between submaps are listed",
+        false,
+        "",
+        "EDITS.txt",
+        cmd};
+    Text at{"",
+            "at",
+            "Stored map as it was then: 2026-11-28T06:00:00Z, without the time of day, or Unix "
+            "seconds",
+            false,
+            "",
+            "TIME",
+            cmd};
+    Text output;
     Text crop{"",    "crop", "Keep the points in this box (metres, in the output frame)",
               false, "",     &boxes,
               cmd};
@@ -142,11 +162,6 @@ Arguments::Arguments()
              "Point cloud of another program (metres, z up, any origin) to localise drives in; OUT "
              "is a .delio",
              false, "", "CLOUD.ply|.pcd|.las", cmd),
-      edits("", "edits",
-            "Edit the pose graph of a stored map: lines 'add A B' (an edge between two submaps, if "
-            "registration confirms it) and 'forbid A B'; OUT is a .delio. With -o OUT.csv and "
-            "without this option, the edges between submaps are listed",
-            false, "", "EDITS.txt", cmd),
       output("o", "output",
              "File to write; a .yaml for ROS's map_server comes with a .pgm image; a .delio with "
              "--import and --edits; a .csv lists the edges of a stored map",
@@ -179,6 +194,8 @@ std::string Arguments::fault() {
     if (input.isSet() + import.isSet() + clean.isSet() != 1)
         return "give either -i, --clean or --import";
     if (import.isSet()) return importFault();
+    if (at.isSet() && !isStored())
+        return "--at needs a stored map as input: a .delio or the folder of a run";
     if (isGraph()) return clean.isSet() ? "--clean writes no graph" : graphFault();
     if (georeference.isSet() && control.isSet()) return "give either --georeference or --control";
     if (georeference.isSet() && frame.isSet() && frame.getValue() != "utm")
@@ -198,7 +215,7 @@ std::string Arguments::fault() {
 std::string Arguments::importFault() {
     if (fs::path(output.getValue()).extension() != ".delio")
         return "--import writes a stored map: give -o OUT.delio";
-    auto none = withoutEffect({&edits, &crop, &colourBy, &colormap, &resolution, &height,
+    auto none = withoutEffect({&edits, &at, &crop, &colourBy, &colormap, &resolution, &height,
                                &maxHeight, &frame, &georeference, &control},
                               "with --import");
     if (!none.empty()) return none;
@@ -214,6 +231,11 @@ std::string Arguments::withoutEffect(std::initializer_list<TCLAP::Arg*> args,
     return "";
 }
 
+bool Arguments::isStored() {
+    const fs::path path = input.getValue();
+    return input.isSet() && (path.extension() == ".delio" || fs::is_directory(path));
+}
+
 bool Arguments::isGraph() {
     return edits.isSet() || fs::path(output.getValue()).extension() == ".csv";
 }
@@ -221,8 +243,8 @@ bool Arguments::isGraph() {
 std::string Arguments::graphFault() {
     if (fs::path(output.getValue()).extension() != (edits.isSet() ? ".delio" : ".csv"))
         return "--edits writes a stored map: give -o OUT.delio";
-    return withoutEffect({&crop, &spacing, &colourBy, &colormap, &resolution, &height, &maxHeight,
-                          &frame, &georeference, &control},
+    return withoutEffect({&at, &crop, &spacing, &colourBy, &colormap, &resolution, &height,
+                          &maxHeight, &frame, &georeference, &control},
                          "on the graph of a map");
 }
 
@@ -254,9 +276,10 @@ void refuseMissingFolder(const std::string& output) {
 /** Checks of the files before the map is read. */
 void checkFiles(Arguments& asked) {
     const std::string output = asked.output.getValue();
-    if (!asked.clean.isSet()) mapFileIn(asked.input.getValue());
+    if (!asked.clean.isSet() && !asked.at.isSet()) mapFileIn(asked.input.getValue());
     auto inputs = asked.clean.isSet() ? pcdFilesIn(asked.clean.getValue())
                                       : mapFilesIn(asked.input.getValue());
+    if (asked.at.isSet()) inputs.push_back(run::storedMapIn(asked.input.getValue()));
     if (asked.control.isSet()) inputs.push_back(asked.control.getValue());
     cli::refuseOverlap(inputs, outputsOf(output));
     for (const auto& file : outputsOf(output)) cli::refuseExisting(file, asked.force.getValue());
@@ -367,8 +390,9 @@ void write(const MapInput& map, const std::string& path, const MapOutputOptions&
 }
 
 MapInput read(Arguments& asked) {
-    return asked.clean.isSet() ? cleanedFolder(asked.clean.getValue())
-                               : readMap(asked.input.getValue(), 0);
+    if (asked.clean.isSet()) return cleanedFolder(asked.clean.getValue());
+    if (!asked.at.isSet()) return readMap(asked.input.getValue(), 0);
+    return readMap(run::storedMapIn(asked.input.getValue()), 0, asked.at.getValue());
 }
 
 void convert(Arguments& asked) {

@@ -40,7 +40,10 @@ LiveMap::~LiveMap() {
 }
 
 void LiveMap::add(const SlamScan& scan) {
-    Arrived arrived{scan.node, scan.pose, scan.corrected, staticPoints(scan)};
+    const Eigen::Matrix3d toMap = scan.pose.linear() * scan.scan.sensorPose.linear();
+    const Eigen::Matrix3Xd& weak = scan.step.quality.unobservedTranslation;
+    Arrived arrived{scan.node, scan.pose, scan.corrected, staticPoints(scan),
+                    (toMap * weak).cast<float>()};
     {
         const std::lock_guard lock(arrivals_);
         if (waiting_.size() >= kMostWaiting) arrived.points.resize(3, 0);
@@ -69,6 +72,7 @@ void LiveMap::take(const Arrived& scan) {
     const std::lock_guard lock(map_);
     correct(scan.corrected);
     vehicle_ = scan.pose;
+    weakAxes_ = scan.weakAxes;
     ++scans_;
     const Eigen::Vector3f at = scan.pose.translation().cast<float>();
     if (trajectory_.empty() || (trajectory_.back().second - at).norm() > kPath_m)
@@ -178,6 +182,7 @@ LiveMap::News LiveMap::newsSince(const Seen& seen, std::size_t mostPoints) const
     news.allPoints = points_.size();
     news.allPoses = trajectory_.size();
     news.vehicle = vehicle_;
+    news.weakAxes = weakAxes_;
     news.scans = scans_;
     news.isEnded = isEnded_;
     return news;
@@ -200,6 +205,7 @@ void LiveMap::clear() {
     scans_ = 0;
     voxel_m_ = firstVoxel_m_;
     latest_.resize(3, 0);
+    weakAxes_.resize(3, 0);
     vehicle_ = mapped_ = Eigen::Isometry3d::Identity();
     isEnded_ = false;
 }

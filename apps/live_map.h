@@ -37,8 +37,10 @@ class LiveMap : public SlamListener {
         std::vector<Eigen::Vector3f> trajectory;  //!< places of the vehicle, 0.1 m apart or more
         std::size_t allPoints = 0, allPoses = 0;  //!< of the map by now
         Eigen::Isometry3d vehicle = Eigen::Isometry3d::Identity();  //!< at the last scan
-        std::size_t scans = 0;                                      //!< so far
-        bool isEnded = false;                                       //!< no more scans come
+        /** Unit vectors in the map: where the last scan does not show how far the vehicle moved. */
+        Eigen::Matrix3Xf weakAxes;
+        std::size_t scans = 0;  //!< so far
+        bool isEnded = false;   //!< no more scans come
         Seen seen() const {
             return {from.generation, from.points + points.size(), from.poses + trajectory.size()};
         }
@@ -67,6 +69,7 @@ class LiveMap : public SlamListener {
         Eigen::Isometry3d pose;
         std::vector<NodePose> corrected;
         Eigen::Matrix3Xf points;  //!< in the vehicle's frame; none where there is no time for them
+        Eigen::Matrix3Xf weakAxes;  //!< in the map
     };
     struct Low {  //!< of a cell of the ground: the lowest points, of which one may be noise
         float lowest, second;
@@ -104,7 +107,7 @@ class LiveMap : public SlamListener {
     Eigen::Isometry3d vehicle_ = Eigen::Isometry3d::Identity();
     Eigen::Isometry3d mapped_ = Eigen::Isometry3d::Identity();  //!< of the last scan in the map
     std::size_t scans_ = 0;
-    Eigen::Matrix3Xf latest_;
+    Eigen::Matrix3Xf latest_, weakAxes_;
     bool isEnded_ = false;
 
     std::thread thread_;

@@ -11,9 +11,10 @@ LiveOutput::LiveOutput(SlamCommandLine& line) {
     map_ = std::make_shared<LiveMap>();
     if (line.serve.isSet()) {
         const auto& inputs = line.input.getValue();
+        const std::string first = inputs.front() == "-" ? "standard input" : inputs.front();
         server_ =
             std::make_unique<MapServer>(static_cast<std::uint16_t>(line.serve.getValue()), map_,
-                                        inputs.front() + (inputs.size() > 1 ? " and others" : ""));
+                                        first + (inputs.size() > 1 ? " and others" : ""));
         cli::inform("the map is at " + server_->address());
     }
     if (line.gui.getValue()) view_ = std::make_unique<LiveView>(map_);

@@ -37,6 +37,7 @@ constexpr auto kFastest = milliseconds(100);  // from picture to picture
 constexpr double kDrawn = 0.02;               // part of the time that drawing may take
 constexpr auto kKeys = milliseconds(30);      // between looks at the keyboard
 constexpr unsigned kWidth_px = 1280, kHeight_px = 720;
+constexpr float kWeak_m = 6;  // the line of a weak axis, to either side
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 constexpr const char* kHelp =
     "Space: pause   F: follow   T: view from above   S: screenshot   mouse: turn, zoom, move";
@@ -56,6 +57,7 @@ class LiveScene {
     std::vector<CPointCloudColoured::Ptr> blocks_;
     mrpt::opengl::CPointCloud::Ptr current_ = mrpt::opengl::CPointCloud::Create();
     mrpt::opengl::CSetOfLines::Ptr path_ = mrpt::opengl::CSetOfLines::Create();
+    mrpt::opengl::CSetOfLines::Ptr weak_ = mrpt::opengl::CSetOfLines::Create();
     mrpt::opengl::CSetOfObjects::Ptr vehicle_ = mrpt::opengl::stock_objects::CornerXYZSimple(2, 3);
     LiveMap::Seen seen_;
     std::size_t scans_ = 0;
@@ -70,11 +72,14 @@ void LiveScene::insertInto(COpenGLScene& scene) {
     current_->setColor_u8(TColor(255, 255, 255));
     path_->setColor_u8(TColor(255, 210, 0));
     path_->setLineWidth(3);
+    weak_->setColor_u8(TColor(255, 64, 200));
+    weak_->setLineWidth(5);
     auto grid = mrpt::opengl::CGridPlaneXY::Create(-1000, 1000, -1000, 1000, -2, 20);
     grid->setColor_u8(TColor(70, 70, 75));
     scene.insert(grid);
     scene.insert(current_);
     scene.insert(path_);
+    scene.insert(weak_);
     scene.insert(vehicle_);
 }
 
@@ -108,6 +113,12 @@ void LiveScene::add(const LiveMap::News& news, const Eigen::Matrix3Xf& latestSca
     seen_ = news.seen();
     scans_ = news.scans;
     vehicle_->setPose(toMrpt(news.vehicle));
+    weak_->clear();
+    const Eigen::Vector3f at = news.vehicle.translation().cast<float>();
+    for (const auto& axis : news.weakAxes.colwise()) {
+        const Eigen::Vector3f from = at - kWeak_m * axis, to = at + kWeak_m * axis;
+        weak_->appendLine(from.x(), from.y(), from.z(), to.x(), to.y(), to.z());
+    }
     current_->clear();
     for (const auto& point : latestScan.colwise())
         current_->insertPoint(point.x(), point.y(), point.z());

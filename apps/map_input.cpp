@@ -16,10 +16,12 @@ namespace fs = std::filesystem;
 using run::RunFolder;
 
 namespace {
-MapInput readStored(const std::string& path, double spacing_m) {
+MapInput readStored(const std::string& path, double spacing_m, const std::string& at) {
     constexpr double kLeast_m = 0.005;  // as its coordinates are rounded
     const StoredMap stored(path);
-    const auto cloud = stored.cloud(std::max(spacing_m, kLeast_m));
+    std::optional<std::size_t> visit;
+    if (!at.empty()) visit = stored.visitAt(at);
+    const auto cloud = stored.cloud(std::max(spacing_m, kLeast_m), visit);
     MapInput input;
     input.points.resize(static_cast<std::size_t>(cloud.cols()));
     for (std::size_t i = 0; i < input.points.size(); ++i)
@@ -91,11 +93,11 @@ MapInput readFolder(const std::string& path) {
     return input;
 }
 
-MapInput readAny(const std::string& path, double storedSpacing_m) {
+MapInput readAny(const std::string& path, double storedSpacing_m, const std::string& at) {
     const std::string kind = fs::path(path).extension().string();
     if (fs::is_directory(path)) return readFolder(path);
     if (kind == ".simplemap") return readSimplemap(path);
-    if (kind == ".delio") return readStored(path, storedSpacing_m);
+    if (kind == ".delio") return readStored(path, storedSpacing_m, at);
     if (kind == ".ply") return ofPoints(map::loadPly(path));
     if (kind == ".pcd") return ofPoints(map::loadPcd(path));
     if (kind == ".las") return readLas(path);
@@ -144,8 +146,8 @@ std::vector<std::string> mapFilesIn(const std::string& path) {
     return files;
 }
 
-MapInput readMap(const std::string& path, double storedSpacing_m) {
-    MapInput input = readAny(path, storedSpacing_m);
+MapInput readMap(const std::string& path, double storedSpacing_m, const std::string& at) {
+    MapInput input = readAny(path, storedSpacing_m, at);
     const fs::path name = fs::absolute(path).lexically_normal();
     input.name = (name.has_filename() ? name : name.parent_path()).stem().string();
     if (input.points.empty()) throw Error("'" + path + "' is an empty map");

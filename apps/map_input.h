@@ -46,6 +46,7 @@ std::vector<std::string> mapFilesIn(const std::string& path);
 
 /** Reads the folder of a run, a .ply, .pcd, .las, .simplemap or .delio.
  *  @param storedSpacing_m of a .delio one point in so many metres is taken; 0: all
+ *  @param at time as StoredMap::visitAt() has it: a .delio as it was then; empty: as it is now
  *  Throws Error for another kind of file, where it cannot be read, and for a map without points. */
-MapInput readMap(const std::string& path, double storedSpacing_m);
+MapInput readMap(const std::string& path, double storedSpacing_m, const std::string& at = "");
 }  // namespace delio

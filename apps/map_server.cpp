@@ -36,16 +36,21 @@ void append(float number, std::string& bytes) {
 /** A line of JSON; then x, y, z of each pose and x, y, z, height above the ground of each point as
  *  32-bit floats. */
 std::string textOf(const LiveMap::News& news) {
-    const Eigen::Vector3d at = news.vehicle.translation();
+    const auto list = [](const Eigen::Vector3d& v) {
+        return "[" + fixed(v.x(), 3) + "," + fixed(v.y(), 3) + "," + fixed(v.z(), 3) + "]";
+    };
+    std::string weak;
+    for (const auto& axis : news.weakAxes.colwise())
+        weak += (weak.empty() ? "" : ",") + list(axis.cast<double>());
     std::string text = "{\"generation\":" + std::to_string(news.from.generation) +
                        ",\"first\":" + std::to_string(news.from.points) +
                        ",\"points\":" + std::to_string(news.points.size()) +
                        ",\"all\":" + std::to_string(news.allPoints) +
                        ",\"firstPose\":" + std::to_string(news.from.poses) +
                        ",\"poses\":" + std::to_string(news.trajectory.size()) +
-                       ",\"scans\":" + std::to_string(news.scans) + ",\"vehicle\":[" +
-                       fixed(at.x(), 3) + "," + fixed(at.y(), 3) + "," + fixed(at.z(), 3) +
-                       "],\"ended\":" + (news.isEnded ? "true" : "false") + "}\n";
+                       ",\"scans\":" + std::to_string(news.scans) +
+                       ",\"vehicle\":" + list(news.vehicle.translation()) + ",\"weakAxes\":[" +
+                       weak + "],\"ended\":" + (news.isEnded ? "true" : "false") + "}\n";
     for (const auto& place : news.trajectory)
         for (const float number : place) append(number, text);
     for (const auto& point : news.points) {

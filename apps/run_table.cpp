@@ -120,6 +120,11 @@ void printTable(const run::RunRecord& record, const std::string& folder, std::os
                                               record.joints.begin(), record.joints.end(),
                                               [](const auto& joint) { return joint.accepted(); })),
                                           record.joints.size(), record.addedSubmaps));
+    if (record.update)
+        row("stored map updated",
+            format("%zu points gone, %zu doubted, %zu confirmed, %zu seen once",
+                   record.update->gone, record.update->doubted, record.update->confirmed,
+                   record.update->seenOnce));
     if (record.searchedLoops)
         row("loops", format("%zu closed of %zu candidates", record.closedLoops().size(),
                             record.loops.size()));

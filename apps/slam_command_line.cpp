@@ -114,6 +114,7 @@ run::RunSettings settingsFor(SlamCommandLine& line, int argc, char** argv) {
     settings.loops = !line.noLoops.getValue();
     settings.storedMap = line.map.getValue();
     settings.extend = line.extend.getValue();
+    settings.update = line.update.getValue();
     if (line.initialPose.isSet()) settings.initialPose = initialPoseIn(line.initialPose.getValue());
     settings.onWarning = cli::warn;
     return settings;
@@ -158,6 +159,12 @@ std::string contradictionIn(SlamCommandLine& line) {
         return "--no-gnss excludes --gnss and --antenna";
     if (line.extend.isSet() && !line.map.isSet())
         return "--extend needs --map: it adds to the stored map";
+    if (line.update.isSet() && !line.map.isSet())
+        return "--update needs --map: it updates the stored map";
+    if (line.update.isSet() && (line.extend.isSet() || inputs.size() > 1))
+        return "--update takes one drive, without --extend";
+    if (line.update.isSet() && line.noMap.isSet())
+        return "--update and --no-map exclude each other";
     if (line.calibrateExtrinsics.isSet() &&
         (inputs.size() > 1 || isLive(line) || inputs.front() == "-" || isGraph(inputs.front())))
         return "--calibrate-extrinsics needs one recording as input";

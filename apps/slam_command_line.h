@@ -117,6 +117,10 @@ struct SlamCommandLine {
                      cmd};
     Switch extend{"", "extend", "Extend that map by this drive; OUTDIR/map.delio contains both",
                   cmd};
+    Switch update{"", "update",
+                  "Update that map: OUTDIR/map.delio keeps when its points were seen, seen through "
+                  "and new",
+                  cmd};
     Text saveRawlog{
         "",
         "save-rawlog",

@@ -25,9 +25,9 @@ const char* const kFaultsHeader =
     "# empty: no points.\n"
     "drive_scan\tscan\tkind\n";
 
-std::string timeRow(std::size_t scan) {
+std::string timeRow(double stamp_s) {
     char row[32];
-    std::snprintf(row, sizeof(row), "%.6f\n", kScanPeriod_s * static_cast<double>(scan));
+    std::snprintf(row, sizeof(row), "%.6f\n", stamp_s);
     return row;
 }
 }  // namespace
@@ -106,10 +106,10 @@ void DriveWriter::add(std::size_t scan, const ScanPoints& points) {
     const double stamp_s = kScanPeriod_s * static_cast<double>(scan);
     if (gnss_)
         gnss_->upTo(stamp_s, [&](const earth::Fix& fix) {
-            writer_.add(fix, gnss_->quality(), io::kDriveEpoch_s);
+            writer_.add(fix, gnss_->quality(), request_.secondZero());
         });
-    writer_.add(stamp_s, io::kDriveEpoch_s, points.xyzi);
-    times_ += timeRow(scan);
+    writer_.add(stamp_s, request_.secondZero(), points.xyzi);
+    times_ += timeRow(request_.epoch_s.value_or(0) + stamp_s);
     poses_ += poseRow(scan);
 }
 
@@ -140,7 +140,8 @@ void DriveWriter::addSecond(std::size_t scan) {
 void DriveWriter::addSamples(double stamp_s) {
     const auto add = [&](auto& source) {
         if (!source) return;
-        while (const auto sample = source->next(stamp_s)) writer_.add(*sample, io::kDriveEpoch_s);
+        while (const auto sample = source->next(stamp_s))
+            writer_.add(*sample, request_.secondZero());
     };
     add(imu_);
     add(wheels_);
@@ -172,7 +173,7 @@ void DriveWriter::finish() {
     meta.sensorModel = request_.sensor.name;
     meta.source = "synthetic";
     meta.motionCompensated = !request_.distort;
-    meta.epoch_s = io::kDriveEpoch_s;
+    meta.epoch_s = request_.epoch_s ? 0 : io::kDriveEpoch_s;
     meta.generator = std::string("synth2rawlog 2 (delio ") + kVersion + ")";
     writer_.finish(meta, times_, calibration(), poses_, faults_, origin(),
                    imu_ ? imu_->truth() : "", gnss_ ? gnss_->truth() : "");

@@ -31,9 +31,13 @@ struct DriveRequest {
     bool labels = false;   //!< OUT_Images/NNNNNN.label says which points move
     std::optional<ImuModel> imu;       //!< recorded beside the scans
     std::optional<WheelModel> wheels;  //!< likewise
+    std::optional<double> epoch_s;     //!< Unix time of scan 0; nothing: stamps start at 0
     /** Pose of a second sensor of the same model in the first one's frame. */
     std::optional<Eigen::Isometry3d> second;
     bool embed = false, force = false;
+
+    /** Unix time of second 0 of the drive. */
+    double secondZero() const { return epoch_s.value_or(io::kDriveEpoch_s); }
 };
 
 /** KITTI's Tr for the synthetic vehicle: coordinates of the LiDAR, mounted upright, to cam0's. */

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "cli.h"
 #include "delio/core/error.h"
@@ -58,12 +59,26 @@ struct Arguments {
     TCLAP::SwitchArg verbose{"", "verbose", "Print full error texts", cmd};
 };
 
+/** What came up to a stamp, in the order of the stamps. */
+template <typename Value>
+void addUpTo(double stamp_s, const std::vector<Value>& values, std::size_t& next, double epoch_s,
+             io::RawlogWriter& writer) {
+    for (; next < values.size() && values[next].stamp_s <= stamp_s; ++next)
+        writer.add(values[next], epoch_s);
+}
+
 /** False if Ctrl-C came before the last scan. */
 bool writeScans(const io::KittiDrive& drive, bool link, io::RawlogWriter& writer) {
     cli::Progress progress("converting", drive.scans.size());
+    std::size_t imu = 0, fix = 0;
+    const auto addOxts = [&](double stamp_s) {
+        addUpTo(stamp_s, drive.imu, imu, drive.meta.epoch_s, writer);
+        addUpTo(stamp_s, drive.fixes, fix, drive.meta.epoch_s, writer);
+    };
     for (std::size_t i = 0; i < drive.scans.size(); ++i) {
         if (cli::interrupted()) return false;
         const auto& file = drive.scans[i];
+        addOxts(drive.times_s[i]);
         if (link) {
             sizeOf(file);
             writer.addLinked(drive.times_s[i], drive.meta.epoch_s, file.string());
@@ -72,6 +87,7 @@ bool writeScans(const io::KittiDrive& drive, bool link, io::RawlogWriter& writer
         }
         progress.update(i + 1);
     }
+    addOxts(std::numeric_limits<double>::infinity());
     return true;
 }
 
@@ -115,7 +131,9 @@ int convert(Arguments& args) {
 cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
-        {"OUT.rawlog", "one CObservationPointCloud per scan"},
+        {"OUT.rawlog",
+         "one CObservationPointCloud per scan; of a raw drive with oxts/ also its fixes "
+         "(CObservationGPS) and rates (CObservationIMU)"},
         {"OUT_Images/",
          "their points, x y z intensity as float32 (not with --embed); start RawLogViewer in the "
          "rawlog's folder to see them"},

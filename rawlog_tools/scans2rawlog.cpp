@@ -1,6 +1,7 @@
 // scans2rawlog: any recording that delio-slam reads as an MRPT rawlog.
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -103,7 +104,9 @@ class Conversion {
         if (meta.sensorModel == "unknown" && !recording.sensor.empty())
             meta.sensorModel = recording.sensor;
         meta.epoch_s = epoch_s_;
+        takeSamples();  // fixes are complete after the last scan
         writeSamples();
+        writeFixes(last_s_ + kMargin_s);
         meta.generator = std::string("scans2rawlog (delio ") + kVersion + ")";
         writer_.finish(meta, times_, reader_.calibration().text, poses_);
         return writer_.scans();
@@ -130,11 +133,25 @@ class Conversion {
     void takeSamples() {
         for (const auto& sample : reader_.takeImu()) imu_.push_back(sample);
         for (const auto& sample : reader_.takeOdometry()) odometry_.push_back(sample);
+        for (const auto& fix : reader_.takeFixes()) fixes_.push_back(fix);
     }
 
     void writeSamples() {
         for (const auto& sample : std::exchange(imu_, {})) writer_.add(sample, epoch_s_);
         for (const auto& sample : std::exchange(odometry_, {})) writer_.add(sample, epoch_s_);
+    }
+
+    /** Those up to a stamp; not those from long before the first scan. They may lie ahead. */
+    void writeFixes(double stamp_s) {
+        std::stable_sort(fixes_.begin(), fixes_.end(),
+                         [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; });
+        earth::Fixes later;
+        for (const auto& fix : std::exchange(fixes_, {}))
+            if (fix.stamp_s > stamp_s)
+                later.push_back(fix);
+            else if (fix.stamp_s >= first_s_ - kMargin_s && earth::isUsable(fix))
+                writer_.add(fix, epoch_s_);
+        fixes_ = std::move(later);
     }
 
     void add(const Scan& scan) {
@@ -143,7 +160,10 @@ class Conversion {
             epoch_s_ = reader_.meta() && reader_.meta()->epoch_s > 0
                            ? reader_.meta()->epoch_s
                            : std::round(mrpt::Clock::toDouble(scan.time) - scan.stamp_s);
+        if (writer_.scans() == 0) first_s_ = scan.stamp_s;
+        last_s_ = scan.stamp_s;
         writeSamples();
+        writeFixes(scan.stamp_s);
         writer_.add(scan, epoch_s_);
         char row[48];
         std::snprintf(row, sizeof(row), "%.9f\n", scan.stamp_s);
@@ -157,7 +177,9 @@ class Conversion {
     io::RawlogWriter writer_;
     std::vector<ImuSample> imu_;            //!< before the next scan
     std::vector<OdometrySample> odometry_;  //!< likewise
-    double epoch_s_ = 0;
+    earth::Fixes fixes_;
+    static constexpr double kMargin_s = 1;  //!< between fixes and scans
+    double epoch_s_ = 0, first_s_ = 0, last_s_ = 0;
     std::string times_, poses_, fault_;
 };
 
@@ -214,7 +236,9 @@ int convert(Arguments& args) {
 cli::HelpText help() {
     cli::HelpText help;
     help.writes = {
-        {"OUT.rawlog", "one CObservationPointCloud per scan, one CObservationIMU per IMU sample"},
+        {"OUT.rawlog",
+         "one CObservationPointCloud per scan, one CObservationIMU per IMU sample, one "
+         "CObservationGPS per GNSS fix"},
         {"OUT_Images/",
          "their points, x y z intensity as float32 (not with --embed), and rings and times where "
          "they exist; start RawLogViewer in the rawlog's folder to see the points"},

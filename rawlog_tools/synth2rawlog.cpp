@@ -91,6 +91,18 @@ struct Arguments {
                                    1,
                                    "S",
                                    cmd};
+    TCLAP::ValueArg<int> parkedSeed{"",
+                                    "parked-seed",
+                                    "Random seed of the cars parked in the world of --seed (urban, "
+                                    "loop); 0: none; default: the value of --seed",
+                                    false,
+                                    0,
+                                    "S",
+                                    cmd};
+    TCLAP::ValueArg<double> epoch{
+        "",    "epoch", "Unix time of scan 0: stamps are Unix times; default: they start at 0",
+        false, 0,       "UNIX_S",
+        cmd};
     TCLAP::SwitchArg reverse{
         "", "reverse",
         "Drive the same road in the opposite direction, in the other lane (vehicle only)", cmd};
@@ -283,6 +295,9 @@ std::string faultInScene(Arguments& args) {
     const std::string& scene = args.scene.getValue();
     if (!isOneOf(sceneNames(), scene))
         return "unknown scene '" + scene + "'; choose one of: " + sceneOptions();
+    if (args.parkedSeed.isSet() && !hasParkedCars(scene))
+        return "--parked-seed needs --scene urban or loop";
+    if (args.parkedSeed.getValue() < 0) return "--parked-seed must be at least 0";
     if (!args.trajectory.isSet()) return "";
     if (args.trajectory.getValue().empty()) return "--trajectory needs a file name";
     if (!takesTrajectory(scene))
@@ -324,6 +339,10 @@ std::string faultInDrive(Arguments& args) {
             return "--" + rate->getName() + " must be at least 0 and less than 1";
     if (args.gap.isSet() && !gapIn(args.gap.getValue()))
         return "--gap needs FIRST,COUNT, both 1 or more, not '" + args.gap.getValue() + "'";
+    constexpr double kFirst_s = 5e8, kLast_s = 4e9;  // what readers take for Unix times
+    const double epoch_s = args.epoch.getValue();
+    if (args.epoch.isSet() && !(epoch_s >= kFirst_s && epoch_s <= kLast_s))
+        return "--epoch must be a Unix time between 5e8 and 4e9 s";
     if (args.threads.getValue() < 0) return "--threads must be 0 or more";
     if (args.threads.getValue() > static_cast<int>(cli::kMostThreads))
         return "--threads must be " + std::to_string(cli::kMostThreads) + " or less (0: all)";
@@ -422,6 +441,7 @@ DriveRequest requestOf(Arguments& args) {
     request.gnss = gnssOf(args);
     request.distort = args.distort.getValue();
     request.labels = args.labels.getValue();
+    if (args.epoch.isSet()) request.epoch_s = args.epoch.getValue();
     request.imu = imuOf(args);
     request.wheels = wheelsOf(args);
     request.second = secondOf(args);
@@ -453,9 +473,15 @@ int makeDrive(Arguments& args) {
     cli::refuseOverlap({args.trajectory.getValue()}, io::RawlogWriter::outputsOf(request.output));
     const auto count = static_cast<std::size_t>(args.scans.getValue());
     const Start start = startOf(args.start.getValue());
-    const auto world =
-        makeScene({args.scene.getValue(), static_cast<std::uint64_t>(args.seed.getValue()),
-                   count + scansBefore(start), args.trajectory.getValue(), lidarToCam0()});
+    SceneRequest wanted;
+    wanted.name = args.scene.getValue();
+    wanted.seed = static_cast<std::uint64_t>(args.seed.getValue());
+    wanted.scans = count + scansBefore(start);
+    if (args.parkedSeed.isSet())
+        wanted.parkedSeed = static_cast<std::uint64_t>(args.parkedSeed.getValue());
+    wanted.trajectory = args.trajectory.getValue();
+    wanted.lidarToCam0 = lidarToCam0();
+    const auto world = makeScene(wanted);
     Drive drive(world->road(), count, request.scanner.seed, gaitOf(args.motion.getValue()), start);
     if (args.reverse.isSet()) drive.turnBack();
     suit(request, drive.carrier());

@@ -89,7 +89,12 @@ std::vector<std::string> sceneNames() {
 
 bool takesTrajectory(const std::string& sceneName) { return kindOf(sceneName).build != nullptr; }
 
-std::unique_ptr<Scene> makeScene(const SceneRequest& request) {
+bool hasParkedCars(const std::string& sceneName) {
+    return sceneName == "urban" || sceneName == "loop";
+}
+
+namespace {
+std::unique_ptr<Scene> makeWorld(const SceneRequest& request) {
     const Kind kind = kindOf(request.name);
     if (!request.trajectory.empty()) {
         const auto recording =
@@ -101,5 +106,13 @@ std::unique_ptr<Scene> makeScene(const SceneRequest& request) {
     const double longest_m =
         kind.profile.style.fastest_m_s * kScanPeriod_s * static_cast<double>(request.scans);
     return kind.make(request.seed, longest_m);
+}
+}  // namespace
+
+std::unique_ptr<Scene> makeScene(const SceneRequest& request) {
+    auto scene = makeWorld(request);
+    if (auto* street = dynamic_cast<UrbanScene*>(scene.get()); street && request.parkedSeed)
+        street->park(*request.parkedSeed);
+    return scene;
 }
 }  // namespace delio::synth

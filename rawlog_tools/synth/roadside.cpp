@@ -11,7 +11,11 @@ constexpr double kSameStretch_m = 30;
 }  // namespace
 
 Random RoadsideScene::stream(int tile, double side, std::uint64_t part) const {
-    return Random{seed_, static_cast<std::uint64_t>(tile + 1000000), side > 0 ? 1U : 0U, part};
+    return streamOf(seed_, tile, side, part);
+}
+
+Random RoadsideScene::streamOf(std::uint64_t seed, int tile, double side, std::uint64_t part) {
+    return Random{seed, static_cast<std::uint64_t>(tile + 1000000), side > 0 ? 1U : 0U, part};
 }
 
 Random RoadsideScene::stretchStream(double s, double length_m, double side,

@@ -26,6 +26,8 @@ class RoadsideScene : public Scene {
     bool isStripFree(double s0, double s1, double side) const;
     double sharpestCurvature(double begin_s, double end_s) const;
     std::uint64_t seed() const { return seed_; }
+    /** stream() of another seed. */
+    static Random streamOf(std::uint64_t seed, int tile, double side, std::uint64_t part);
 
  private:
     std::uint64_t seed_;

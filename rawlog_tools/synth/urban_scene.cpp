@@ -21,7 +21,9 @@ Mesh UrbanScene::tile(int index) const {
     for (const double side : {-1.0, 1.0}) {
         addHouses(mesh, begin_s, side, stream(index, side, kHouses));
         addBackRow(mesh, begin_s, side, stream(index, side, kBackRow));
-        addParkedCars(mesh, begin_s, side, stream(index, side, kCars));
+        if (parkedSeed_ != 0)
+            addParkedCars(mesh, begin_s, side,
+                          streamOf(parkedSeed_.value_or(seed()), index, side, kCars));
         addSidewalk(mesh, begin_s, side, stream(index, side, kSidewalk));
     }
     return mesh;

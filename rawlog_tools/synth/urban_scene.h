@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "roadside.h"
 
@@ -10,6 +11,8 @@ class UrbanScene : public RoadsideScene {
  public:
     using RoadsideScene::RoadsideScene;
     Mesh tile(int index) const override;
+    /** Other parked cars than those of the world's seed; 0: none. */
+    void park(std::uint64_t seed) { parkedSeed_ = seed; }
 
  private:
     void addHouses(Mesh& mesh, double begin_s, double side, Random random) const;
@@ -20,5 +23,7 @@ class UrbanScene : public RoadsideScene {
     void addBackRow(Mesh& mesh, double begin_s, double side, Random random) const;
     void addParkedCars(Mesh& mesh, double begin_s, double side, Random random) const;
     void addSidewalk(Mesh& mesh, double begin_s, double side, Random random) const;
+
+    std::optional<std::uint64_t> parkedSeed_;
 };
 }  // namespace delio::synth

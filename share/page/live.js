@@ -1,8 +1,9 @@
 'use strict';
 // Lets the map grow while it is made: asks the server of the page for what is new. Needs map.js.
 
-const pause_ms = 500, firstRoom = 4096;
-let seen = {generation: 0, points: 0, poses: 0}, path = [], vehicle = null, tilesByKey = new Map();
+const pause_ms = 500, firstRoom = 4096, weak_m = 6;
+let seen = {generation: 0, points: 0, poses: 0}, path = [], vehicle = null, weak = [];
+let tilesByKey = new Map();
 
 const followed = document.createElement('label');
 followed.className = 'check';
@@ -90,6 +91,17 @@ function moveTo(place) {
   }
 }
 
+/** Lines through the vehicle along the axes on which the scan does not show its motion. */
+function showWeak(axes, place) {
+  for (const line of weak) {
+    scene.remove(line);
+    line.geometry.dispose();
+    line.material.dispose();
+  }
+  const end = (axis, way_m) => place.map((at, k) => at + way_m * axis[k]);
+  weak = axes.map(axis => pathOf([end(axis, -weak_m), end(axis, weak_m)], 0xff40c8));
+}
+
 /** Whether there is more that did not fit into the reply. */
 function take(bytes) {
   const end = new Uint8Array(bytes).indexOf(10);
@@ -103,6 +115,7 @@ function take(bytes) {
   if (news.poses) showPath();
   marker.visible = news.scans > 0;
   if (news.scans > 0) moveTo(vector(news.vehicle));
+  showWeak(news.weakAxes, news.vehicle);
   byId('footer').textContent = `${seen.points} points \u00b7 scan ${news.scans}` +
       (news.ended ? ' \u00b7 the drive has ended' : '');
   update();

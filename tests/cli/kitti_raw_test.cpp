@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "delio/formats/trajectory.h"
+#include "delio/recordings/scan_reader.h"
 #include "kitti_tools.h"
 #include "poses.h"
 
@@ -71,8 +72,11 @@ class KittiRaw : public testing::Test {
         const double lat = std::atan(std::exp(north / scale)) * 360 / M_PI - 90;
         const double lon = kLon + at.x() / scale * 180 / M_PI;
         char row[256];
-        std::snprintf(row, sizeof(row), "%.15g %.15g %.15g %.15g %.15g %.15g 0 0 0\n", lat, lon,
-                      116.0 + at.z(), a.roll, a.pitch, a.yaw);
+        std::snprintf(row, sizeof(row),
+                      "%.15g %.15g %.15g %.15g %.15g %.15g 0 0 0 0 0 "
+                      "0.1 0.2 9.8 0 0 0 0.01 0.02 %.15g 0 0 0 0.05 0.1 4 8 4 4 0\n",
+                      lat, lon, 116.0 + at.z(), a.roll, a.pitch, a.yaw,
+                      0.1 * static_cast<double>(i));
         return row;
     }
 
@@ -123,6 +127,37 @@ TEST_F(KittiRaw, CalibrationPosesAndTimes) {
     EXPECT_EQ(meta->source, "kitti-raw");
     EXPECT_FALSE(meta->motionCompensated);
     EXPECT_NEAR(meta->epoch_s, kEpoch_s, 1e-6);
+}
+
+// One per row of OXTS, also where a scan is missing; fixes only with the scans.
+TEST_F(KittiRaw, FixesAndRatesOfOxts) {
+    std::string times;
+    for (int i = 0; i < 6; ++i) times += "2011-09-26 13:02:26." + std::to_string(i) + "00000000\n";
+    writeText(drive_ / "oxts" / "timestamps.txt", times);
+    writeText(drive_ / "oxts" / "data" / "0000000004.txt", "49 8 116 0 0 0\n");
+    ASSERT_EQ(convert().exitCode, 0);
+    const auto reader = io::openScans(rawlog_.string());
+    std::vector<ImuSample> rates;
+    earth::Fixes fixes;
+    for (bool more = true; more;) {
+        more = reader->next().has_value();
+        for (const auto& rate : reader->takeImu()) rates.push_back(rate);
+        for (const auto& fix : reader->takeFixes()) fixes.push_back(fix);
+    }
+    ASSERT_EQ(fixes.size(), 5U);
+    EXPECT_NEAR(fixes[1].place.latitude_deg, kLat, 1e-4);
+    EXPECT_NEAR(fixes[1].place.height_m, 116.05, 1e-9);
+    EXPECT_NEAR(fixes[1].covariance(0, 0), 0.05 * 0.05, 1e-9);
+    EXPECT_TRUE(fixes[1].antenna->isApprox(Eigen::Vector3d(-0.81, 0.32, -0.8)));
+    ASSERT_EQ(rates.size(), 5U);  // row 4 is too short
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+        const double row = i < 4 ? static_cast<double>(i) : 5;
+        EXPECT_NEAR(rates[i].stamp_s, 0.048800663 + 0.1 * row, 1e-6);
+        EXPECT_TRUE(rates[i].rate_radps.isApprox(Eigen::Vector3d(0.01, 0.02, 0.1 * row)));
+        EXPECT_TRUE(rates[i].acceleration_mps2.isApprox(Eigen::Vector3d(0.1, 0.2, 9.8)));
+        ASSERT_TRUE(rates[i].sensorPose);
+        EXPECT_TRUE(rates[i].sensorPose->isApprox(test::poseAt(-0.81, 0.32, -0.8)));
+    }
 }
 
 TEST_F(KittiRaw, TimesComeBackAlsoFromAFractionalEpoch) {

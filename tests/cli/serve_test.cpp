@@ -201,6 +201,28 @@ TEST_F(Serve, ARecordingIsServedAndGivesTheSameResults) {
     EXPECT_EQ(readText(out_ / "trajectory_kitti.txt"), bare);
 }
 
+TEST_F(Serve, NamesTheAxisThatATunnelHides) {
+    ASSERT_EQ(
+        test::runTool("synth2rawlog", {"-o", rawlog_, "--scene", "tunnel", "--sensor", "vlp16",
+                                       "--scans", "25", "--seed", "3", "--start", "moving"})
+            .exitCode,
+        0);
+    run_ = std::make_unique<test::RunningTool>(
+        "delio-slam", Words{"-i", rawlog_, "-o", out_, "--no-map", "--serve", "0"});
+    findPort();
+    std::size_t one = 0;  // replies with the tunnel's axis alone
+    for (std::string answer; !(answer = httpGet(port_, "/live")).empty();) {
+        const auto news = newsOf(answer);
+        const auto axes = news.head["weakAxes"].asSequence();
+        EXPECT_LE(axes.size(), 3U);
+        if (news.count("scans") < 2 || axes.size() != 1) continue;
+        EXPECT_GT(std::abs(axes[0].asSequence()[0].as<double>()), 0.98);
+        ++one;
+    }
+    run_->wait();  // with 1: such a drive is not to be relied on
+    EXPECT_GT(one, 0U);
+}
+
 TEST_F(Serve, InABrowser) {
     DELIO_NEED_DATA("mrpt/vlp16_packets_1206.bin");
     DELIO_NEED_PROGRAMS("chromium")

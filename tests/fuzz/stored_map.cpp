@@ -53,10 +53,13 @@ std::string take(std::string& from, std::size_t count) {
     return taken;
 }
 
-/** A map of the plain bytes of its parts: the index (of one submap, without the places of its
- *  parts), a descriptor and points, each behind its length of two bytes. */
+/** A map of the plain bytes of its parts: a byte for the version, the index (of one submap, up to
+ *  the places of its parts), a descriptor, points, and the rest of the index, each behind its
+ *  length of two bytes. */
 std::string mapOf(std::string plain) {
-    std::array<std::string, 3> parts;
+    const std::string kind = take(plain, 1) + std::string(1, '\0');
+    const std::uint32_t version = 1 + static_cast<std::uint8_t>(kind[0]) % StoredMap::kVersion;
+    std::array<std::string, 4> parts;
     for (std::string& part : parts) {
         const std::string length = take(plain, 2) + std::string(2, '\0');
         part = take(plain, static_cast<std::uint8_t>(length[0]) +
@@ -66,9 +69,9 @@ std::string mapOf(std::string plain) {
     ByteWriter end, head;
     put(end, packed.add(parts[1]));
     put(end, packed.add(parts[2]));
-    const Part index = packed.add(parts[0] + textOf(end));
+    const Part index = packed.add(parts[0] + textOf(end) + parts[3]);
     for (const char letter : {'D', 'e', 'L', 'i', 'O', 'm', 'a', 'p'}) head.put(letter);
-    head.put(StoredMap::kVersion);
+    head.put(version);
     put(head, index);
     head.put<std::uint64_t>(kHead + packed.bytes().size());
     head.put(static_cast<std::uint32_t>(crc32_z(0, head.bytes().data(), head.bytes().size())));

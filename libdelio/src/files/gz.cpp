@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
@@ -13,24 +15,52 @@
 #include "input_file.h"
 
 namespace delio::io {
-GzInput::GzInput(const std::string& path) : file_(nullptr) {
+namespace {
+// With damaged data zlib discards the buffer, so request no more than needed.
+constexpr unsigned kBuffer = 1U << 15;
+}  // namespace
+
+GzInput::GzInput(const std::string& path) {
     std::error_code fault;
     if (path == "-") {
         size_ = std::numeric_limits<std::uint64_t>::max();
-        file_ = gzdopen(dup(STDIN_FILENO), "rb");
-    } else if (std::filesystem::is_regular_file(path, fault)) {
+        input_ = dup(STDIN_FILENO);
+        return;
+    }
+    if (std::filesystem::is_regular_file(path, fault)) {
         size_ = std::filesystem::file_size(path, fault);
         file_ = gzopen(path.c_str(), "rb");
     }
     if (!file_) throw Error("cannot read '" + path + "': no such file, or not readable");
-    // With damaged data zlib discards the buffer, so request no more than needed.
-    constexpr unsigned kBuffer = 1U << 15;
     gzbuffer(file_, kBuffer);
 }
 
-GzInput::~GzInput() { gzclose(file_); }
+GzInput::~GzInput() { file_ ? gzclose(file_) : close(input_); }
+
+std::size_t GzInput::readPlain(void* buffer, std::size_t count) {
+    buffer_.resize(kBuffer);
+    if (taken_ == buffered_) {
+        ssize_t read = -1;
+        do read = ::read(input_, buffer_.data(), buffer_.size());
+        while (read < 0 && errno == EINTR);
+        if (read < 0) throw std::runtime_error(std::strerror(errno));
+        taken_ = 0;
+        buffered_ = static_cast<std::size_t>(read);
+        ended_ = read == 0;
+    }
+    const std::size_t some = std::min(count, buffered_ - taken_);
+    std::memcpy(buffer, buffer_.data() + taken_, some);
+    taken_ += some;
+    position_ += some;
+    return some;
+}
 
 std::size_t GzInput::readSome(void* buffer, std::size_t count) {
+    if (!file_ && position_ == 0 && beginOfInput(input_).rfind("\x1f\x8b", 0) == 0) {
+        file_ = gzdopen(input_, "rb");
+        gzbuffer(file_, kBuffer);
+    }
+    if (!file_) return readPlain(buffer, count);
     constexpr std::size_t kMost = 1U << 30;  // zlib counts in int
     const int read = gzread(file_, buffer, static_cast<unsigned>(std::min(count, kMost)));
     int state = Z_OK;
@@ -63,7 +93,9 @@ bool GzInput::compressed() const {
     return size_ == std::numeric_limits<std::uint64_t>::max() || gzdirect(file_) == 0;
 }
 
-std::uint64_t GzInput::getPosition() const { return static_cast<std::uint64_t>(gztell(file_)); }
+std::uint64_t GzInput::getPosition() const {
+    return file_ ? static_cast<std::uint64_t>(gztell(file_)) : position_;
+}
 
 std::size_t GzInput::Write(const void*, std::size_t) {
     throw std::logic_error("a file to read is not written to");

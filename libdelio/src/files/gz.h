@@ -2,6 +2,7 @@
 #include <mrpt/io/CStream.h>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 struct gzFile_s;
 
@@ -42,9 +43,15 @@ class GzInput : public mrpt::io::CStream {
 
  private:
     std::size_t readSome(void* buffer, std::size_t count);
+    std::size_t readPlain(void* buffer, std::size_t count);
 
-    gzFile_s* file_;
-    std::uint64_t size_ = 0;
+    gzFile_s* file_ = nullptr;
+    /** Standard input. Where it is not compressed, zlib has no part in it: it waits until its
+     * buffer is full, and so delays what a sensor sends. */
+    int input_ = -1;
+    std::vector<char> buffer_;               //!< of that
+    std::size_t buffered_ = 0, taken_ = 0;   //!< bytes in the buffer
+    std::uint64_t size_ = 0, position_ = 0;  //!< position: of that
     bool ended_ = false;
 };
 

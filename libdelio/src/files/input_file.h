@@ -16,4 +16,8 @@ constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
 /** True where there is a file at `path`. Throws Error where something else is there: a pipe would
  * be waited for, a device has no end. For files that nobody has named but that are looked for. */
 bool isFileThere(const std::string& path);
+
+/** The first bytes of standard input, 16 at most, which stay there. Throws Error where it is empty,
+ *  or neither a pipe nor a file. `file`: its descriptor. */
+std::string beginOfInput(int file);
 }  // namespace delio::io

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
@@ -107,5 +108,30 @@ std::optional<double> unixTimeOfDate(const std::string& text) {
     date.tm_year -= 1900;
     date.tm_mon -= 1;
     return static_cast<double>(timegm(&date)) + *numberIn<double>(std::string("0.") + fraction);
+}
+
+std::string dateOf(double unix_s) {
+    const auto seconds = static_cast<std::time_t>(std::floor(unix_s));
+    std::tm date{};
+    char text[64] = "";
+    if (gmtime_r(&seconds, &date)) std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &date);
+    return text;
+}
+
+std::optional<double> unixTimeIn(const std::string& text) {
+    if (const auto seconds = numberIn<double>(text))
+        return *seconds > 0 && std::isfinite(*seconds) ? seconds : std::nullopt;
+    std::string date = text;
+    if (!date.empty() && date.back() == 'Z') date.pop_back();
+    for (const char* format : {"%Y-%m-%dT%H:%M:%S", "%Y-%m-%dT%H:%M", "%Y-%m-%d"}) {
+        std::tm parts{};
+        const char* const end = strptime(date.c_str(), format, &parts);
+        if (!end || *end != '\0') continue;
+        const std::tm given = parts;
+        const double seconds = static_cast<double>(timegm(&parts));
+        // There is no 31st of April.
+        if (seconds > 0 && parts.tm_mday == given.tm_mday) return seconds;
+    }
+    return {};
 }
 }  // namespace delio::io

@@ -29,4 +29,11 @@ std::string lowerCase(std::string text);
 /** Unix seconds of "2011-09-26 13:02:25.951199337", as KITTI raw writes dates (UTC is assumed: it
  *  gives no zone); nothing where `text` does not begin with a date and time. */
 std::optional<double> unixTimeOfDate(const std::string& text);
+
+/** "2011-09-26T13:02:25Z": of Unix seconds, rounded down. */
+std::string dateOf(double unix_s);
+
+/** Unix seconds of "2011-09-26T13:02:25Z" (UTC; the Z, the seconds, or the time of day may be
+ *  missing), or of a number of Unix seconds; nothing for other texts. */
+std::optional<double> unixTimeIn(const std::string& text);
 }  // namespace delio::io

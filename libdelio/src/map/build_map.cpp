@@ -167,6 +167,22 @@ Eigen::Vector3d pointAt(const float* floats) {
     return {double{floats[0]}, double{floats[1]}, double{floats[2]}};
 }
 
+/** Asks the range images of all scans, or of those whose poses are `usable`. */
+void look(const MapParts& parts, const std::vector<Isometry3d>& poses,
+          const std::vector<bool>& usable, VisibilityVotes& votes) {
+    // What is far away stays in view for long: every other scan will do.
+    constexpr float kFar_m = 60, kNear_m = 35;
+    bool farToo = false;
+    for (const StoredScan& scan : parts.scans) {
+        if (scan.view.floats == 0) continue;
+        const Isometry3d& vehicle = poseOf(scan, poses);
+        if (!usable.empty() && !usable[scan.poseIndex]) continue;
+        farToo = !farToo;
+        votes.look({readView(scan, *parts.spool), parts.options.removal.cell_deg},
+                   vehicle * scan.sensorPose, farToo ? kFar_m : kNear_m);
+    }
+}
+
 /** Votes of all scans about the voxels. */
 std::shared_ptr<const VisibilityVotes> votesOf(const MapParts& parts,
                                                const std::vector<Isometry3d>& poses) {
@@ -180,15 +196,7 @@ std::shared_ptr<const VisibilityVotes> votesOf(const MapParts& parts,
                        static_cast<std::uint32_t>(i));
     }
     if (!parts.options.removal.enabled) return votes;
-    // What is far away stays in view for long: every other scan will do.
-    constexpr float kFar_m = 60, kNear_m = 35;
-    bool farToo = false;
-    for (const StoredScan& scan : parts.scans) {
-        if (scan.view.floats == 0) continue;
-        farToo = !farToo;
-        votes->look({readView(scan, *parts.spool), parts.options.removal.cell_deg},
-                    poseOf(scan, poses) * scan.sensorPose, farToo ? kFar_m : kNear_m);
-    }
+    look(parts, poses, {}, *votes);
     votes->decide();
     return votes;
 }
@@ -264,5 +272,19 @@ BuiltMap buildMap(const MapParts& parts, const std::vector<Isometry3d>& poses) {
     findSurfaces(map.points, parts.options.voxelSize_m);
     findSurfaces(map.dynamic, parts.options.voxelSize_m);
     return map;
+}
+
+std::vector<std::uint8_t> seenThrough(const MapParts& parts, const std::vector<Isometry3d>& poses,
+                                      const std::vector<bool>& usable,
+                                      const Eigen::Matrix3Xf& points) {
+    VisibilityVotes votes(parts.options.removal);
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        votes.hit(points.col(i).cast<double>(), false, 0);
+    look(parts, poses, usable, votes);
+    votes.decide();
+    std::vector<std::uint8_t> through(static_cast<std::size_t>(points.cols()));
+    for (std::size_t i = 0; i < through.size(); ++i)
+        through[i] = votes.isDynamic(points.col(static_cast<Eigen::Index>(i)).cast<double>());
+    return through;
 }
 }  // namespace delio::map

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,4 +18,10 @@ struct MapParts {
 
 /** Throws Error if a scan's poseIndex is outside `poses`, or if the disk fails. */
 BuiltMap buildMap(const MapParts& parts, const std::vector<Eigen::Isometry3d>& poses);
+
+/** See MapBuilder::seenThrough(). */
+std::vector<std::uint8_t> seenThrough(const MapParts& parts,
+                                      const std::vector<Eigen::Isometry3d>& poses,
+                                      const std::vector<bool>& usable,
+                                      const Eigen::Matrix3Xf& points);
 }  // namespace delio::map

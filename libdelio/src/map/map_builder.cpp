@@ -179,4 +179,10 @@ bool MapBuilder::add(std::size_t poseIndex, const Isometry3d& approximatePose,
 BuiltMap MapBuilder::build(const std::vector<Isometry3d>& poses) const {
     return buildMap({scans_, spool_, options_, sensorLabel_}, poses);
 }
+
+std::vector<std::uint8_t> MapBuilder::seenThrough(const Eigen::Matrix3Xf& points,
+                                                  const std::vector<Isometry3d>& poses,
+                                                  const std::vector<bool>& usable) const {
+    return map::seenThrough({scans_, spool_, options_, sensorLabel_}, poses, usable, points);
+}
 }  // namespace delio::map

@@ -4,6 +4,7 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -213,6 +214,21 @@ void RawlogWriter::add(const earth::Fix& fix, int quality, double epoch_s) {
     } catch (const std::exception&) {
         giveUp();
     }
+}
+
+void RawlogWriter::add(const earth::Fix& fix, double epoch_s) {
+    // GGA has one number, and heights count as twice as uncertain.
+    earth::Fix rounded = fix;
+    const Eigen::Vector3d variances = fix.covariance.diagonal();
+    rounded.covariance =
+        std::max({variances.x(), variances.y(), variances.z() / 4}) * Eigen::Matrix3d::Identity();
+    int best = 1;
+    const auto off = [&](int quality) {
+        return std::abs(std::log(rounded.covariance(0, 0) / earth::covarianceOf(quality, 1)(0, 0)));
+    };
+    for (const int quality : {2, 4, 5})
+        if (off(quality) < off(best)) best = quality;
+    add(rounded, best, epoch_s);
 }
 
 std::string RawlogWriter::extraFile(const std::string& extension) const {

@@ -155,6 +155,22 @@ std::vector<std::size_t> newOnes(const Both& both, const std::vector<LoopCandida
             added.push_back(i);
     return added;
 }
+
+/** The history of a map's points; the drives are one visit of it. */
+void addVisits(const StoredMap& map, const MapContent& drive, const std::vector<std::size_t>& kept,
+               MapContent& content) {
+    content.visits = map.visits();
+    content.visits.push_back(visitOf(drive.drives.front()));
+    PointLayer added;
+    added.first = added.last = static_cast<std::uint32_t>(map.visits().size());
+    content.layers = [&map, &drive, kept, added](std::size_t i) {
+        const std::size_t older = map.submaps().size();
+        if (kept[i] < older) return map.layers(kept[i]);
+        PointLayer layer = added;
+        layer.points = drive.points(kept[i] - older);
+        return std::vector<PointLayer>{layer};
+    };
+}
 }  // namespace
 
 JoinedMap joined(const StoredMap& map, const MapContent& drive, const std::vector<MapFix>& fixes,
@@ -194,6 +210,7 @@ JoinedMap joined(const StoredMap& map, const MapContent& drive, const std::vecto
     content.points = [&map, &drive, kept, older](std::size_t i) {
         return kept[i] < older ? map.points(kept[i]) : drive.points(kept[i] - older);
     };
+    if (map.isUpdated()) addVisits(map, drive, kept, content);
     return result;
 }
 }  // namespace delio

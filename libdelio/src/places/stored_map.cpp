@@ -16,6 +16,7 @@
 #include "delio/files/output.h"
 #include "files/input_file.h"
 #include "files/names.h"
+#include "formats/number_line.h"
 #include "places/bytes.h"
 #include "places/descriptor.h"
 #include "places/tiles.h"
@@ -27,6 +28,7 @@ namespace {
 constexpr std::array<char, 8> kMagic{'D', 'e', 'L', 'i', 'O', 'm', 'a', 'p'};
 constexpr std::size_t kHead = 8 + 4 + 8 + 8 + 8 + 4 + 8 + 4;
 constexpr std::uint32_t kDrivesOnly = 1;  // version without CloudOrigin
+constexpr std::uint32_t kImported = 2;    // version without visits
 constexpr double kCell_m = places::HeightImage::kCell_m;
 
 std::uint32_t checksumOf(const std::uint8_t* bytes, std::size_t count) {
@@ -122,6 +124,48 @@ CloudOrigin getCloudOrigin(ByteReader& bytes) {
     return cloud;
 }
 
+void put(ByteWriter& bytes, const std::vector<Visit>& visits) {
+    bytes.put<std::uint64_t>(visits.size());
+    for (const auto& visit : visits) {
+        bytes.put(visit.name);
+        bytes.put(visit.begin_s);
+        bytes.put(visit.end_s);
+    }
+}
+
+void put(ByteWriter& bytes, const std::vector<PointLayer>& layers) {
+    bytes.put<std::uint64_t>(layers.size());
+    for (const auto& layer : layers) {
+        for (const auto number : {layer.first, layer.last, layer.against, layer.doubted})
+            bytes.put(number);
+        bytes.put<std::uint8_t>(layer.confirmed);
+        put(bytes, layer.points);
+    }
+}
+std::vector<PointLayer> getLayers(ByteReader& bytes, std::size_t visits) {
+    std::vector<PointLayer> layers;
+    for (auto left = bytes.get<std::uint64_t>(); left > 0; --left) {
+        PointLayer layer;
+        for (auto* number : {&layer.first, &layer.last, &layer.against, &layer.doubted})
+            *number = bytes.get<std::uint32_t>();
+        if (std::max({layer.first, layer.last, layer.doubted}) >= visits)
+            throw std::out_of_range("visit");
+        layer.confirmed = bytes.get<std::uint8_t>() != 0;
+        layer.points = getPoints(bytes);
+        layers.push_back(std::move(layer));
+    }
+    return layers;
+}
+
+/** Points of all layers that `isWanted`. */
+template <typename Predicate>
+Eigen::Matrix3Xf pointsOf(const std::vector<PointLayer>& layers, const Predicate& isWanted) {
+    std::vector<Eigen::Matrix3Xf> parts;
+    for (const auto& layer : layers)
+        if (isWanted(layer)) parts.push_back(layer.points);
+    return places::together(parts);
+}
+
 /** Centres of cells, as whole numbers of half a cell. */
 void putCentres(ByteWriter& bytes, const Eigen::Matrix2Xd& centres) {
     std::vector<std::int16_t> halves;
@@ -165,6 +209,17 @@ places::Descriptor getSketch(ByteReader& bytes) {
             places::HeightImage(cells, std::move(bands), std::move(grounds), std::move(heights))};
 }
 }  // namespace
+
+Eigen::Matrix3Xf validPoints(const std::vector<PointLayer>& layers) {
+    return pointsOf(layers, [](const PointLayer& layer) { return layer.isValid(); });
+}
+
+Visit visitOf(const StoredDrive& drive) {
+    constexpr double kFirstUnix_s = 5e8;  // smaller stamps count from the start of the drive
+    const auto& stamps = drive.stamps_s;
+    if (stamps.empty() || stamps.front() < kFirstUnix_s) return {drive.name};
+    return {drive.name, stamps.front(), stamps.back()};
+}
 
 /** Packs parts one behind the other. */
 class StoredMap::Writer {
@@ -225,17 +280,23 @@ void StoredMap::save(const MapContent& content, const std::string& path) {
             put(index, content.submaps[i]);
             ByteWriter descriptor, points;
             put(descriptor, content.descriptor(i));
-            put(points, content.points(i));
+            if (content.layers)
+                put(points, content.layers(i));
+            else
+                put(points, content.points(i));
             Writer::put(index, writer.add(descriptor));
             Writer::put(index, writer.add(points));
         }
-        if (content.cloud) index.put<std::uint8_t>(content.georeference.has_value());
+        const bool isUpdated = static_cast<bool>(content.layers);
+        if (content.cloud || isUpdated) index.put<std::uint8_t>(content.georeference.has_value());
         if (content.georeference) put(index, *content.georeference);
+        if (isUpdated) index.put<std::uint8_t>(content.cloud.has_value());
         if (content.cloud) put(index, *content.cloud);
+        if (isUpdated) put(index, content.visits);
         const Part part = writer.add(index);
         ByteWriter head;
         for (const char letter : kMagic) head.put(letter);
-        head.put<std::uint32_t>(content.cloud ? kVersion : kDrivesOnly);
+        head.put<std::uint32_t>(isUpdated ? kVersion : content.cloud ? kImported : kDrivesOnly);
         Writer::put(head, part);
         head.put(writer.end());
         head.put(checksumOf(head.bytes().data(), head.bytes().size()));
@@ -260,7 +321,7 @@ StoredMap::StoredMap(const std::string& path) : path_(path) {
         ByteReader reader(head);
         for (std::size_t i = 0; i < kMagic.size(); ++i) reader.get<char>();
         const auto version = reader.get<std::uint32_t>();
-        if (version != kVersion && version != kDrivesOnly)
+        if (version < kDrivesOnly || version > kVersion)
             throw Error("'" + path + "' is a stored map with format version " +
                         std::to_string(version) + "; this program reads versions up to " +
                         std::to_string(kVersion));
@@ -325,15 +386,68 @@ void StoredMap::readIndex(const Part& index, std::uint32_t version) {
             clouds_.push_back(Writer::get(reader));
         }
         // A map of drives without a georeference ends here.
-        const bool isImported = version != kDrivesOnly;
-        if (isImported ? reader.get<std::uint8_t>() != 0 : !reader.atEnd())
+        if (version != kDrivesOnly ? reader.get<std::uint8_t>() != 0 : !reader.atEnd())
             georeference_ = getGeoreference(reader);
-        if (isImported) cloud_ = getCloudOrigin(reader);
+        isUpdated_ = version == kVersion;
+        if (isUpdated_ ? reader.get<std::uint8_t>() != 0 : version == kImported)
+            cloud_ = getCloudOrigin(reader);
         if (cloud_ && cloud_->tiles > submaps_.size()) throw std::out_of_range("tiles");
+        if (isUpdated_)
+            readVisits(reader);
+        else
+            visits_ = visitsOfDrives();
     } catch (const std::exception&) {
         damaged("invalid index");
     }
     level_ = places::levelFrames(submaps_, graph_.poses());
+}
+
+void StoredMap::readVisits(ByteReader& reader) {
+    for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
+        Visit visit;
+        visit.name = reader.getText();
+        visit.begin_s = reader.get<double>();
+        visit.end_s = reader.get<double>();
+        visits_.push_back(std::move(visit));
+    }
+}
+
+std::vector<Visit> StoredMap::visitsOfDrives() const {
+    std::vector<Visit> visits;
+    if (cloud_ && cloud_->tiles > 0) visits.push_back({"cloud"});
+    for (const auto& drive : drives_) visits.push_back(delio::visitOf(drive));
+    return visits;
+}
+
+std::uint32_t StoredMap::visitOf(const places::Submap& submap) const {
+    std::uint32_t visit = cloud_ && cloud_->tiles > 0 ? 1 : 0;
+    for (std::size_t i = 0; i < drives_.size(); ++i, ++visit)
+        if (submap.key >= drives_[i].firstNode &&
+            submap.key - drives_[i].firstNode < drives_[i].stamps_s.size())
+            return visit;
+    return 0;
+}
+
+std::size_t StoredMap::visitAt(const std::string& time) const {
+    const auto unix_s = io::unixTimeIn(time);
+    if (!unix_s)
+        throw Error("'" + time +
+                    "' is not a time: give 2026-11-28T06:00:00Z, a date, or Unix seconds");
+    std::optional<std::size_t> found;
+    std::optional<double> earliest_s;
+    for (std::size_t i = 0; i < visits_.size(); ++i) {
+        const double begin_s = visits_[i].begin_s;
+        if (begin_s > 0 && !earliest_s) earliest_s = begin_s;
+        // Visits without a time at the map's start were before all others.
+        if (begin_s > 0 ? begin_s <= *unix_s : !earliest_s) found = i;
+    }
+    if (!earliest_s)
+        throw Error("the visits of the map '" + path_ +
+                    "' have no times: the stamps of their recordings are not Unix times");
+    if (!found)
+        throw Error("the map '" + path_ + "' begins at " + io::dateOf(*earliest_s) +
+                    ": there is no map before that");
+    return *found;
 }
 
 io::Trajectory StoredMap::trajectory(const StoredDrive& drive) const {
@@ -351,11 +465,17 @@ places::Descriptor StoredMap::descriptor(std::size_t submap) const {
     }
 }
 
-Eigen::Matrix3Xf StoredMap::points(std::size_t submap) const {
+Eigen::Matrix3Xf StoredMap::points(std::size_t submap) const { return validPoints(layers(submap)); }
+
+std::vector<PointLayer> StoredMap::layers(std::size_t submap) const {
     const auto bytes = read(clouds_[submap]);
     ByteReader reader(bytes);
     try {
-        return getPoints(reader);
+        if (isUpdated_) return getLayers(reader, visits_.size());
+        PointLayer layer;
+        if (!visits_.empty()) layer.first = layer.last = visitOf(submaps_[submap]);
+        layer.points = getPoints(reader);
+        return {layer};
     } catch (const std::out_of_range&) {
         damaged("invalid points");
     }
@@ -368,29 +488,27 @@ Eigen::Matrix3Xf StoredMap::surroundings(std::size_t submap) const {
     return places::surroundings(submap, tiles, [this](std::size_t i) { return points(i); });
 }
 
-Eigen::Matrix3Xf StoredMap::cloud(double spacing) const {
+Eigen::Matrix3Xf StoredMap::cloud(double spacing, std::optional<std::size_t> visit) const {
+    const auto isWanted = [&](const PointLayer& layer) {
+        return visit ? layer.isValidAt(*visit) : layer.isValid();
+    };
     std::vector<Eigen::Matrix3Xf> parts;
-    Eigen::Index count = 0;
-    for (std::size_t i = 0; i < submaps_.size(); ++i) {
-        parts.emplace_back(level_[i].cast<float>() * points(i));
-        count += parts.back().cols();
-    }
-    Eigen::Matrix3Xf all(3, count);
-    count = 0;
-    for (const auto& part : parts) {
-        all.middleCols(count, part.cols()) = part;
-        count += part.cols();
-    }
-    return firstOfVoxels(all, spacing);
+    for (std::size_t i = 0; i < submaps_.size(); ++i)
+        parts.emplace_back(level_[i].cast<float>() * pointsOf(layers(i), isWanted));
+    return firstOfVoxels(places::together(parts), spacing);
 }
 
 MapContent StoredMap::content() const {
-    return {graph_,
-            drives_,
-            submaps_,
-            [this](std::size_t i) { return descriptor(i); },
-            [this](std::size_t i) { return points(i); },
-            georeference_,
-            cloud_};
+    MapContent content{graph_,
+                       drives_,
+                       submaps_,
+                       [this](std::size_t i) { return descriptor(i); },
+                       [this](std::size_t i) { return points(i); },
+                       georeference_,
+                       cloud_};
+    if (!isUpdated_) return content;
+    content.visits = visits_;
+    content.layers = [this](std::size_t i) { return layers(i); };
+    return content;
 }
 }  // namespace delio

@@ -6,6 +6,9 @@
 #include <vector>
 
 namespace delio::places {
+/** The columns of all parts, one part after the other. */
+Eigen::Matrix3Xf together(const std::vector<Eigen::Matrix3Xf>& parts);
+
 /** Edge of the squares into which a cloud is cut. PlaceIndex searches 20 m about the middle of a
  *  place. */
 constexpr double kTile_m = 30;

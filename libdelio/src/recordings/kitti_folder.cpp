@@ -243,6 +243,48 @@ void readOxtsFixes(const fs::path& folder, const CPose3D& imu, KittiDrive& drive
     }
 }
 
+/** A row of OXTS as a sample of its IMU (x forward, y left, z up); nothing where it is too short.
+ */
+std::optional<ImuSample> imuSampleOf(const fs::path& file) {
+    constexpr std::size_t kAcceleration = 11, kRate = 17;  // m/s^2, rad/s
+    if (!fs::exists(file)) return {};
+    const auto row = delio::numbersIn(textOf(file));
+    if (row.size() < kRate + 3) return {};
+    ImuSample sample;
+    sample.acceleration_mps2 = Eigen::Vector3d(row.data() + kAcceleration);
+    sample.rate_radps = Eigen::Vector3d(row.data() + kRate);
+    return sample;
+}
+
+/** Samples of all rows about the scans; without timestamps.txt those of the scans. */
+void readOxtsImu(const fs::path& folder, const CPose3D& imu, KittiDrive& drive) {
+    constexpr double kMargin_s = 1;
+    const auto add = [&](const std::string& name, double stamp_s) {
+        auto sample = imuSampleOf(folder / "oxts" / "data" / (name + ".txt"));
+        if (!sample) return;
+        sample->stamp_s = stamp_s;
+        sample->sensorPose = fromMrpt(imu);
+        drive.imu.push_back(*sample);
+    };
+    const fs::path times = folder / "oxts" / "timestamps.txt";
+    if (!fs::exists(times)) {
+        for (std::size_t i = 0; i < drive.scans.size(); ++i)
+            add(drive.scans[i].stem().string(), drive.times_s[i]);
+        return;
+    }
+    const auto lines = linesOf(times);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const auto date = unixTimeOfDate(lines[i]);
+        if (!date) continue;
+        const double stamp_s = *date - drive.meta.epoch_s;
+        const std::string number = std::to_string(i);
+        if (stamp_s < drive.times_s.front() - kMargin_s ||
+            stamp_s > drive.times_s.back() + kMargin_s || number.size() > 10)
+            continue;
+        add(std::string(10 - number.size(), '0') + number, stamp_s);
+    }
+}
+
 void readRawDrive(const fs::path& folder, KittiDrive& drive) {
     drive.meta.source = "kitti-raw";
     takeKittisSensor(drive.meta);
@@ -275,6 +317,7 @@ void readRawDrive(const fs::path& folder, KittiDrive& drive) {
     const CPose3D imu = rigid(readRawCalibration(imuToVelo), "R", "T", imuToVelo);
     readOxts(folder, Tr + imu, drive);
     readOxtsFixes(folder, imu, drive);
+    readOxtsImu(folder, imu, drive);
 }
 }  // namespace
 

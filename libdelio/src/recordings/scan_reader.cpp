@@ -1,9 +1,7 @@
 #include "delio/recordings/scan_reader.h"
 
-#include <fcntl.h>
 #include <unistd.h>
 
-#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +11,7 @@
 #include "delio/core/error.h"
 #include "delio/core/text.h"
 #include "delio/recordings/rawlog_reader.h"
+#include "files/input_file.h"
 #include "files/names.h"
 #include "open_merged.h"
 #include "recognised_reader.h"
@@ -58,7 +57,9 @@ std::unique_ptr<ScanReader> openSensor(const ScanSource& source) {
         throw Error("'" + source.path +
                     "' is neither a file nor a folder; read a pipe from standard input with -i -");
     auto scans = fs::is_directory(source.path) ? openFolder(source) : openFile(source);
-    return std::make_unique<RecognisedReader>(std::make_unique<TurnAssembler>(std::move(scans)));
+    // What comes through a pipe may be measured now.
+    return std::make_unique<RecognisedReader>(std::make_unique<TurnAssembler>(std::move(scans)),
+                                              source.path == "-");
 }
 }  // namespace
 
@@ -102,26 +103,8 @@ std::string nameOfDrive(const std::string& path) {
 namespace {
 constexpr std::size_t kBytes = 16;
 
-/** The first bytes of standard input, which stay there. */
-std::string beginOfInput() {
-    std::array<char, kBytes> bytes{};
-    ssize_t read = pread(STDIN_FILENO, bytes.data(), kBytes, 0);  // a file
-    if (read < 0) {
-        int ends[2];
-        if (pipe(ends) != 0) throw Error("cannot read standard input");
-        // A pipe gives what was written at once, of which the first bytes are enough.
-        read = tee(STDIN_FILENO, ends[1], kBytes, 0);
-        if (read > 0) read = ::read(ends[0], bytes.data(), kBytes);
-        close(ends[0]);
-        close(ends[1]);
-    }
-    if (read < 0) throw Error("cannot read standard input: not a pipe or file");
-    if (read == 0) throw Error("standard input is empty");
-    return {bytes.data(), static_cast<std::size_t>(read)};
-}
-
 std::string beginOf(const std::string& path) {
-    if (path == "-") return beginOfInput();
+    if (path == "-") return beginOfInput(STDIN_FILENO);
     std::ifstream in(path, std::ios::binary);
     std::string bytes(kBytes, '\0');
     in.read(bytes.data(), kBytes);

@@ -2,15 +2,19 @@
 
 #include <mrpt/core/format.h>
 
+#include <cmath>
 #include <limits>
 
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/formats/drive_meta.h"
+#include "delio/mrpt/rawlog_writer.h"
 #include "delio/run/doubts.h"
 #include "delio/run/run_folder.h"
 #include "odometry/preprocess.h"
 #include "places/join_maps.h"
+#include "places/tiles.h"
+#include "places/update_map.h"
 #include "run/tables.h"
 #include "slam/georeferencing.h"
 #include "slam/levelling.h"
@@ -32,6 +36,8 @@ Run::Run(const Options& options, const RunSettings& settings)
       graph_(std::make_shared<GraphBuilder>(graphOptions(options, settings))),
       forces_(std::make_unique<SpecificForce>()) {
     options.check();
+    if (settings.update && !options.map.removal.enabled)
+        throw Error("--update needs removal.enabled=true: it looks for what scans saw through");
     record_.profile = settings.profile;
     record_.command = settings.command;
     record_.drive = settings.drive;
@@ -301,7 +307,7 @@ void Run::optimise() {
         record_.cloudOrigin = follower_->map().cloudOrigin();
     }
     if (record_.imu && record_.imu->rotation) level();
-    if (settings_.level) standUpright();
+    if (settings_.level && !record_.isLocalised()) standUpright();
     if (settings_.gnss && !gnssFixes_.empty() && !record_.georeference) georeference();
     record_.optimise_ms = watch.lap_ms();
     record_.final = {record_.graph.poses(), record_.odometry.stamps_s};
@@ -319,11 +325,49 @@ void Run::store() {
                       record_.georeference,
                       {}};
     stored_ = own_;
+    if (!follower_ || !record_.isLocalised()) return;
     try {
-        if (settings_.extend && follower_ && record_.isLocalised()) extend();
+        if (settings_.extend) extend();
     } catch (const std::exception& e) {
         fail("the map was not extended: " + plainMessage(e));
     }
+    try {
+        if (settings_.update) update();
+    } catch (const std::exception& e) {
+        fail("the map was not updated: " + plainMessage(e));
+    }
+}
+
+/** Without times where the recording's own begin at 0. */
+Visit Run::visit() const {
+    constexpr double kFirstUnix_s = 5e8;
+    const auto& stamps = record_.odometry.stamps_s;
+    const double begin_s = record_.epoch_s + stamps.front();
+    const bool isMadeUp = std::abs(record_.epoch_s - io::kDriveEpoch_s) < 1;
+    if (isMadeUp || begin_s < kFirstUnix_s) return {settings_.drive};
+    return {settings_.drive, begin_s, record_.epoch_s + stamps.back()};
+}
+
+void Run::update() {
+    std::vector<bool> measured;
+    VisitScans scans;
+    scans.visit = visit();
+    for (std::size_t i = 0; i < record_.fixes.size(); ++i) {
+        measured.push_back(isAnchor(record_.fixes[i]));
+        if (measured.back()) scans.poses.push_back(record_.final.poses[i]);
+    }
+    const auto level = places::levelFrames(own_->submaps, record_.final.poses);
+    std::vector<Eigen::Matrix3Xf> parts;
+    for (std::size_t i = 0; i < level.size(); ++i)
+        if (measured[own_->submaps[i].key])
+            parts.emplace_back(level[i].cast<float>() * own_->points(i));
+    scans.points = places::together(parts);
+    scans.seenThrough = [&](const Eigen::Matrix3Xf& points) {
+        return map_->builder().seenThrough(points, record_.final.poses, measured);
+    };
+    auto result = updated(follower_->map(), scans);
+    record_.update = result.figures;
+    stored_ = std::move(result.content);
 }
 
 void Run::extend() {

@@ -131,22 +131,42 @@ Fit fitOf(const std::vector<Stretch>& stretches) {
     return fit;
 }
 
-/** How closely successive stretches agree about the tilt: standard deviation of one. What drifts
- *  slowly does not count. */
-double noiseOf(const std::vector<Stretch>& stretches, const Fit& fit) {
-    constexpr double kLeast_rad = 0.05 * M_PI / 180;
-    constexpr double kMedianOf2 = 1.1774;  // of the norm of two standard normal numbers
-    std::vector<double> changes;
-    for (std::size_t i = 1; i < stretches.size(); ++i)
-        changes.push_back(angleOf(
-            Eigen::Quaterniond::FromTwoVectors(fit.upAt(stretches[i - 1]), fit.upAt(stretches[i]))
-                .toRotationMatrix()));
-    if (changes.empty()) return kLeast_rad;
-    return std::max(kLeast_rad, medianOf(changes) / kMedianOf2 / std::sqrt(2));
-}
-
 Matrix3d rotationBetween(const Vector3d& from, const Vector3d& to) {
     return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
+/** Standard deviation of an angle between directions, rad, by its median. */
+double spreadOf(std::vector<double> angles) {
+    constexpr double kMedianOf2 = 1.1774;  // of the norm of two standard normal numbers
+    return angles.empty() ? 0 : medianOf(std::move(angles)) / kMedianOf2;
+}
+
+/** How closely successive stretches agree about the tilt: standard deviation of one, rad. What
+ *  drifts slowly does not count. */
+double noiseOf(const std::vector<Stretch>& stretches, const Fit& fit) {
+    constexpr double kLeast_rad = 0.05 * M_PI / 180;
+    std::vector<double> changes;
+    for (std::size_t i = 1; i < stretches.size(); ++i)
+        changes.push_back(
+            angleOf(rotationBetween(fit.upAt(stretches[i - 1]), fit.upAt(stretches[i]))));
+    return std::max(kLeast_rad, spreadOf(std::move(changes)) / std::sqrt(2));
+}
+
+/** The poses' tilt drifts clearly more than stretches scatter. */
+bool drifts(const std::vector<Stretch>& stretches, const Fit& fit) {
+    constexpr double kClearly = 2;
+    std::vector<double> offsets;
+    for (const auto& stretch : stretches)
+        offsets.push_back(angleOf(rotationBetween(fit.upAt(stretch), fit.gravity)));
+    return spreadOf(std::move(offsets)) > kClearly * noiseOf(stretches, fit);
+}
+
+/** Standard deviation of the tilt by one stretch, rad. The poses of an unusual one are off, and
+ * then the strength of gravity is off by about as much as its direction. */
+double sigmaOf(const Stretch& stretch, const Fit& fit, double usual_rad) {
+    const double strength = fit.upAt(stretch).norm() / fit.gravity.norm();
+    constexpr double kCaution = 3;
+    return std::hypot(usual_rad, kCaution * (strength - 1));
 }
 
 /** The poses with their tilts held: node 0 is a level frame, node i+1 is pose i. */
@@ -155,7 +175,7 @@ Poses tilted(const graph::PoseGraph& drive, const Poses& poses,
              const graph::PoseGraphOptions& options) {
     constexpr double kFree_m = 1e3, kFree_rad = 30, kHeld_m = 0.1, kHeld_rad = 0.01;
     const Matrix3d level = rotationBetween(fit.gravity, Vector3d::UnitZ());
-    const double sigma_rad = noiseOf(stretches, fit);
+    const double usual_rad = noiseOf(stretches, fit);
     graph::PoseGraph graph;
     graph.addNode(Isometry3d::Identity());
     for (const auto& pose : poses) graph.addNode(isometry(level, Vector3d::Zero()) * pose);
@@ -169,6 +189,7 @@ Poses tilted(const graph::PoseGraph& drive, const Poses& poses,
         const Matrix3d tilt = rotationBetween(level * fit.upAt(stretch), Vector3d::UnitZ());
         const double place_m = isFirst ? kHeld_m : kFree_m,
                      yaw_rad = isFirst ? kHeld_rad : kFree_rad;
+        const double sigma_rad = sigmaOf(stretch, fit, usual_rad);
         const Vector3d sigmas(sigma_rad, sigma_rad, yaw_rad);
         Matrix6 information = Matrix6::Zero();
         information.topLeftCorner<3, 3>().diagonal().array() = 1 / (place_m * place_m);
@@ -210,7 +231,7 @@ Levelled levelled(const graph::PoseGraph& graph, const ForcesOnTrack& track,
         found.vertical.sigma_rad = fit.sigma_rad;
         found.vertical.bias_mps2 = fit.bias;
         found.vertical.stretches = stretches.size();
-        if (!options || round == kRounds || stretches.size() < 2) break;
+        if (!options || round == kRounds || (round == 0 && !drifts(stretches, fit))) break;
         poses = tilted(graph, poses, stretches, fit, *options);
         found.vertical.holdsTilt = true;
     }

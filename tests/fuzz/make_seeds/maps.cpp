@@ -87,21 +87,39 @@ void storedMap() {
     content.descriptor = [&](std::size_t) { return places::Descriptor(points); };
     content.points = [&](std::size_t) { return points; };
     std::string file;
-    behind("0", seed("stored_map", "file"), [&](const fs::path& path) {
-        StoredMap::save(content, path.string());
-        file = readText(path);
-    });
-    std::string index = unpackedPart(file, file, 12);
-    const std::string places = index.substr(index.size() - 56);
-    index.resize(index.size() - 56);
-    std::string plain = "1";
-    for (const std::string& part :
-         {index, unpackedPart(file, places, 0), unpackedPart(file, places, 28)}) {
-        plain += static_cast<char>(part.size() % 256);
-        plain += static_cast<char>(part.size() / 256);
-        plain += part;
-    }
-    writeText(seed("stored_map", "plain"), plain);
+    const auto save = [&](const std::string& name) {
+        behind("0", seed("stored_map", name), [&](const fs::path& path) {
+            StoredMap::save(content, path.string());
+            file = readText(path);
+        });
+    };
+    save("file");
+    const std::size_t end = unpackedPart(file, file, 12).size();  // of the places of the parts
+    const auto savePlain = [&](const std::string& name, char version) {
+        const std::string index = unpackedPart(file, file, 12);
+        const std::string places = index.substr(end - 56);
+        std::string plain = "1";
+        plain += version;
+        for (const std::string& part : {index.substr(0, end - 56), unpackedPart(file, places, 0),
+                                        unpackedPart(file, places, 28), index.substr(end)}) {
+            plain += static_cast<char>(part.size() % 256);
+            plain += static_cast<char>(part.size() / 256);
+            plain += part;
+        }
+        writeText(seed("stored_map", name), plain);
+    };
+    savePlain("plain", 0);
+    content.visits = {{"drive", 1.7e9, 1.7e9}, {"again", 1.8e9, 1.8e9}};
+    content.layers = [&](std::size_t) {
+        PointLayer gone, fresh;
+        gone.against = 2;
+        gone.doubted = fresh.first = fresh.last = 1;
+        fresh.confirmed = false;
+        gone.points = fresh.points = points;
+        return std::vector<PointLayer>{gone, fresh};
+    };
+    save("updated");
+    savePlain("visits", 2);
 }
 
 }  // namespace

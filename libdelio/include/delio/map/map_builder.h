@@ -123,6 +123,13 @@ class MapBuilder {
     /** The map at the given poses. Throws Error if a scan's poseIndex is outside `poses`. */
     BuiltMap build(const std::vector<Eigen::Isometry3d>& poses) const;
 
+    /** For each of `points` (metres, world frame) 1 where the scans saw through it, as they do
+     *  through points of dynamic objects; otherwise 0. Only scans whose poses are `usable` count
+     *  (empty: all). 0 without RemovalOptions::enabled. Throws Error as build() does. */
+    std::vector<std::uint8_t> seenThrough(const Eigen::Matrix3Xf& points,
+                                          const std::vector<Eigen::Isometry3d>& poses,
+                                          const std::vector<bool>& usable = {}) const;
+
  private:
     bool isFarFromLastKeyframe(const Eigen::Isometry3d& pose) const;
     bool isFarFromLastView(const Eigen::Isometry3d& pose, mrpt::Clock::time_point stamp) const;

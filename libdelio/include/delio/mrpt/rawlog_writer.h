@@ -64,6 +64,9 @@ class RawlogWriter {
     /** Appends a GNSS fix as a CObservationGPS with GGA; its stamp counts from `epoch_s`, an
      * antenna that is not known is at 0. `quality`: as GGA numbers it. */
     void add(const earth::Fix& fix, int quality, double epoch_s);
+    /** The same with quality and HDOP by its covariance: as GGA has one number for it, no axis
+     * becomes more certain. */
+    void add(const earth::Fix& fix, double epoch_s);
 
     /** Writes one value per point of the next scan into `OUT_Images/NNNNNN` + extension. Throws
      *  Error where that fails. */

@@ -17,6 +17,8 @@ struct Descriptor;
 }  // namespace delio::places
 
 namespace delio {
+class ByteReader;
+
 /** A drive in a map: its scans are consecutive nodes of the map's graph. */
 struct StoredDrive {
     std::string name;              //!< of its recording: io::nameOfDrive()
@@ -32,6 +34,51 @@ struct CloudOrigin {
     std::string wkt;  //!< coordinate system of the cloud, as OGC WKT; empty: unknown
 };
 
+/** A drive that saw a map: one of its own, or one that updated it. */
+struct Visit {
+    std::string name;    //!< of its recording
+    double begin_s = 0;  //!< Unix time of its first scan; 0: not known
+    double end_s = 0;    //!< Unix time of its last scan; 0: not known
+};
+
+/** With times where the stamps of the drive are Unix times. */
+Visit visitOf(const StoredDrive& drive);
+
+/** Points of a submap that have one history. Visits are numbers in StoredMap::visits(). */
+struct PointLayer {
+    /** Visits that have to see through points of the map, with none between that sees them, before
+     *  these are gone. */
+    static constexpr std::uint32_t kContradictions = 2;
+
+    std::uint32_t first = 0;       //!< visit that saw them first
+    std::uint32_t last = 0;        //!< visit that saw them last
+    std::uint32_t against = 0;     //!< visits since that saw through them
+    std::uint32_t doubted = 0;     //!< the first of these
+    bool confirmed = true;         //!< by a second visit, or in the map from its start
+    Eigen::Matrix3Xf points = {};  //!< metres, the submap's level frame
+
+    /** They were seen through too often. */
+    bool isGone() const { return against >= kContradictions; }
+    /** A part of the map, as it is now. */
+    bool isValid() const { return confirmed && !isGone(); }
+    /** A part of the map at that visit, as later visits have it. */
+    bool isValidAt(std::size_t visit) const {
+        return confirmed && first <= visit && (!isGone() || visit < doubted);
+    }
+};
+
+/** Points of the layers that are a part of the map as it is now. */
+Eigen::Matrix3Xf validPoints(const std::vector<PointLayer>& layers);
+
+/** Counts of a map's points after a visit. */
+struct UpdateFigures {
+    std::size_t gone = 0;       //!< seen through in this and an earlier visit: no longer in the map
+    std::size_t doubted = 0;    //!< seen through for the first time: still in the map
+    std::size_t confirmed = 0;  //!< seen for the second time: now in the map
+    std::size_t seenOnce = 0;   //!< new: not in the map yet
+    std::size_t dropped = 0;    //!< seen once before, and now seen through
+};
+
 /** Content of a stored map. Poses are the vehicle's in the map's frame, which is that of
  *  the first scan of its first drive. */
 struct MapContent {
@@ -44,6 +91,9 @@ struct MapContent {
     std::function<Eigen::Matrix3Xf(std::size_t)> points;
     std::optional<earth::Georeference> georeference;  //!< where the map lies on the earth
     std::optional<CloudOrigin> cloud;                 //!< of an imported cloud
+    std::vector<Visit> visits = {};  //!< of a map that was updated; otherwise empty
+    /** Of such a map: points of each submap, instead of `points`. */
+    std::function<std::vector<PointLayer>(std::size_t)> layers = {};
 };
 
 /** A map for localisation: the drives' submaps with their descriptors, and the pose graph. A file,
@@ -51,8 +101,9 @@ struct MapContent {
  * Coordinates are rounded to 5 mm. */
 class StoredMap {
  public:
-    /** Of the file; a map without an imported cloud has version 1. */
-    static constexpr std::uint32_t kVersion = 2;
+    /** Of the file of a map that was updated. Other maps have version 2 if they have an imported
+     *  cloud, and otherwise 1. */
+    static constexpr std::uint32_t kVersion = 3;
 
     /** Throws Error if the file is missing, not a stored map, of another version, or cut off. */
     explicit StoredMap(const std::string& path);
@@ -68,6 +119,14 @@ class StoredMap {
     const std::optional<CloudOrigin>& cloudOrigin() const { return cloud_; }
     /** In the order of their nodes. */
     const std::vector<StoredDrive>& drives() const { return drives_; }
+    /** In the order in which they came. Of a map that was never updated: of its cloud, if there is
+     *  one, and of its drives, with times where their stamps are Unix times. */
+    const std::vector<Visit>& visits() const { return visits_; }
+    bool isUpdated() const { return isUpdated_; }  //!< by visits after those that made it
+    /** The last visit that began by then. `time`: 2026-11-28T06:00:00Z (the Z, the seconds or the
+     *  time of day may be missing), or Unix seconds. Error where it is not a time, no visit has a
+     *  time, or all are later. */
+    std::size_t visitAt(const std::string& time) const;
     /** Without their points. */
     const std::vector<places::Submap>& submaps() const { return submaps_; }
     /** Of each submap: maps its coordinates to the map's. */
@@ -78,14 +137,18 @@ class StoredMap {
 
     /** Descriptor of a submap. Error where that part of the file is damaged. */
     places::Descriptor descriptor(std::size_t submap) const;
-    /** Points of a submap: metres, its level frame. Error likewise. */
+    /** Points of a submap as they are now: metres, its level frame. Error likewise. */
     Eigen::Matrix3Xf points(std::size_t submap) const;
+    /** All points of a submap, with those that are gone or were seen in one visit only. Error
+     *  likewise. */
+    std::vector<PointLayer> layers(std::size_t submap) const;
     /** Points that can be seen from a submap: its own, with those of tiles around a tile; metres,
      *  its level frame. Error likewise. */
     Eigen::Matrix3Xf surroundings(std::size_t submap) const;
 
-    /** All of them in the map's frame, one in `spacing` metres. */
-    Eigen::Matrix3Xf cloud(double spacing) const;
+    /** All of them in the map's frame, one in `spacing` metres; of a `visit`: as the map was
+     *  then. */
+    Eigen::Matrix3Xf cloud(double spacing, std::optional<std::size_t> visit = {}) const;
 
     /** As it would be written once more; refers to this map. */
     MapContent content() const;
@@ -102,6 +165,9 @@ class StoredMap {
     class Writer;
     std::vector<std::uint8_t> read(const Part& part) const;
     void readIndex(const Part& index, std::uint32_t version);
+    void readVisits(ByteReader& reader);
+    std::vector<Visit> visitsOfDrives() const;
+    std::uint32_t visitOf(const places::Submap& submap) const;
     [[noreturn]] void damaged(const std::string& how) const;
 
     std::string path_;
@@ -111,6 +177,8 @@ class StoredMap {
     std::optional<earth::Georeference> georeference_;
     std::optional<CloudOrigin> cloud_;
     std::vector<StoredDrive> drives_;
+    std::vector<Visit> visits_;
+    bool isUpdated_ = false;
     std::vector<places::Submap> submaps_;
     std::vector<Eigen::Isometry3d> level_;
     std::vector<Part> descriptors_, clouds_;

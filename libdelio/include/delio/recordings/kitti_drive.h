@@ -5,6 +5,7 @@
 
 #include "delio/earth/fix.h"
 #include "delio/formats/drive_meta.h"
+#include "delio/odometry/imu.h"
 
 namespace delio::io {
 /** A drive in one of KITTI's two layouts, as it lies on the disk. */
@@ -15,10 +16,11 @@ struct KittiDrive {
     std::vector<std::string> timeRows;  //!< one per scan, as written in times.txt; may be empty
     std::vector<std::string> poseRows;  //!< one per scan, in the cam0 frame; may be empty
     earth::Fixes fixes;                 //!< one per scan, of OXTS; may be empty
-    std::string calibText;              //!< of calib.txt; empty without calibration
-    std::string posesName;              //!< file name of the poses, even if it does not exist
-    std::string calibName;              //!< file of the calibration, likewise
-    bool nominalTimes = false;          //!< no stamps: 0.1 s apart is assumed
+    std::vector<ImuSample> imu;  //!< of OXTS, from 1 s before the first scan to 1 s after the last
+    std::string calibText;       //!< of calib.txt; empty without calibration
+    std::string posesName;       //!< file name of the poses, even if it does not exist
+    std::string calibName;       //!< file of the calibration, likewise
+    bool nominalTimes = false;   //!< no stamps: 0.1 s apart is assumed
     std::vector<std::string> warnings;  //!< missing optional parts
 };
 

@@ -41,6 +41,7 @@ struct RunSettings {
     /** Of the vehicle at the first scan in that map, if it is known to some metres. */
     std::optional<Eigen::Isometry3d> initialPose;
     bool extend = false;  //!< extend that map by this drive
+    bool update = false;  //!< mark what is gone and new in that map; needs `map`
     /** A drive that is not in the map keeps its own frame, which is no fault. */
     bool mayBeElsewhere = false;
     bool gnss = true;    //!< use GNSS fixes
@@ -135,6 +136,8 @@ class Run {
     void anchor();
     void store();
     void extend();
+    void update();
+    Visit visit() const;
     void score();
     evaluation::Comparison compared(const io::Trajectory& vehicle) const;
 

@@ -120,6 +120,7 @@ struct RunRecord {
     std::vector<places::LoopCandidate> joints;  //!< with the map's submaps, where it was extended
     bool extended = false;                      //!< the stored map got what this drive saw
     std::size_t addedSubmaps = 0;               //!< that it got
+    std::optional<UpdateFigures> update;        //!< of the stored map, where it was updated
     bool searchedLoops = false;                 //!< else `loops` says nothing
     std::vector<places::LoopCandidate> loops;   //!< and what became of them
     double loop_search_ms = 0;                  //!< beside the drive, and after it
