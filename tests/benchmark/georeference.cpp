@@ -17,7 +17,7 @@
 #include "delio/core/text.h"
 #include "delio/evaluation/metrics.h"
 #include "delio/formats/drive_meta.h"
-#include "delio/formats/fixes.h"
+#include "delio/formats/georeference.h"
 #include "delio/formats/trajectory.h"
 #include "delio/run/run_folder.h"
 #include "slam/georeferencing.h"

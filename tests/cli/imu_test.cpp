@@ -116,8 +116,10 @@ TEST(Imu, LevellingNeedsAccelerations) {
         "synth2rawlog", {"-o", rawlog, "--scene", "urban", "--sensor", "vlp16", "--scans", "3"});
     ASSERT_EQ(made.exitCode, 0) << made.err;
     const auto summary = slam(rawlog, folder / "out", {"--level"});
-    ASSERT_EQ(summary.warnings.size(), 1U);
-    EXPECT_NE(summary.warnings.front().find("not levelled"), std::string::npos);
+    const auto saysSo = [](const std::string& warning) {
+        return warning.find("not levelled") != std::string::npos;
+    };
+    EXPECT_EQ(std::count_if(summary.warnings.begin(), summary.warnings.end(), saysSo), 1);
     for (const Words& wrong : {Words{"--no-imu"}, Words{"--map", "m.delio"}}) {
         Words words{"-i", rawlog, "-o", folder / "none", "--level"};
         words.insert(words.end(), wrong.begin(), wrong.end());

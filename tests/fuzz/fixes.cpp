@@ -1,4 +1,3 @@
-#include "delio/formats/fixes.h"
 #include "delio/formats/georeference.h"
 #include "target.h"
 

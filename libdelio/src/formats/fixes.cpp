@@ -1,4 +1,4 @@
-#include "delio/formats/fixes.h"
+#include "delio/formats/georeference.h"
 
 #include <charconv>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "delio/core/error.h"
-#include "delio/formats/fixes.h"
+#include "delio/formats/georeference.h"
 #include "files/names.h"
 #include "formats/bin_cloud.h"
 #include "formats/las.h"

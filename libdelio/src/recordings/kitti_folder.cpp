@@ -15,7 +15,7 @@
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/core/text.h"
-#include "delio/formats/fixes.h"
+#include "delio/formats/georeference.h"
 #include "delio/formats/trajectory.h"
 #include "delio/mrpt/rawlog_writer.h"
 #include "delio/recordings/kitti_drive.h"

@@ -6,7 +6,7 @@
 
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
-#include "delio/formats/fixes.h"
+#include "delio/formats/georeference.h"
 
 namespace delio::run {
 Playback::Playback(io::ScanReader& reader, PlaybackSettings settings)

@@ -1,4 +1,3 @@
-#include "delio/formats/fixes.h"
 
 #include <gtest/gtest.h>
 
