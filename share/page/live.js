@@ -3,7 +3,7 @@
 
 const pause_ms = 500, firstRoom = 4096, weak_m = 6;
 let seen = {generation: 0, points: 0, poses: 0}, path = [], vehicle = null, weak = [];
-let tilesByKey = new Map();
+let shownWeak = '', tilesByKey = new Map();
 
 const followed = document.createElement('label');
 followed.className = 'check';
@@ -93,6 +93,9 @@ function moveTo(place) {
 
 /** Lines through the vehicle along the axes on which the scan does not show its motion. */
 function showWeak(axes, place) {
+  const asked = axes.length ? JSON.stringify([axes, place]) : '';
+  if (asked === shownWeak) return;
+  shownWeak = asked;
   for (const line of weak) {
     scene.remove(line);
     line.geometry.dispose();
