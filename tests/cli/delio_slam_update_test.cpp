@@ -92,9 +92,9 @@ TEST_F(Updates, TheMapOfADayIsWritten) {
         return run.err.substr(0, run.err.find('\n'));
     };
     const std::string firstDay = pointsAt("2023-11-15T08:00:00Z");
-    EXPECT_EQ(firstDay, "read " + std::to_string(cloudOf(after(1)).cols()) + " points");
+    EXPECT_EQ(firstDay, "delio-map: read " + std::to_string(cloudOf(after(1)).cols()) + " points");
     EXPECT_EQ(pointsAt("2023-12-01"),
-              "read " + std::to_string(cloudOf(after(3)).cols()) + " points");
+              "delio-map: read " + std::to_string(cloudOf(after(3)).cols()) + " points");
     expectFailure(at("2023-11-14"), 1, {"begins at 2023-11-14T22:13:20Z"});
     expectFailure(at("soon"), 1, {"'soon' is not a time"});
     expectFailure(test::runTool("delio-map",
