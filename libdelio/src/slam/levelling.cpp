@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "core/percentile.h"
@@ -138,18 +139,21 @@ Matrix3d rotationBetween(const Vector3d& from, const Vector3d& to) {
 /** Standard deviation of an angle between directions, rad, by its median. */
 double spreadOf(std::vector<double> angles) {
     constexpr double kMedianOf2 = 1.1774;  // of the norm of two standard normal numbers
-    return angles.empty() ? 0 : medianOf(std::move(angles)) / kMedianOf2;
+    return medianOf(std::move(angles)) / kMedianOf2;
 }
 
-/** How closely successive stretches agree about the tilt: standard deviation of one, rad. What
- *  drifts slowly does not count. */
+/** How closely a stretch agrees with the two about it: standard deviation of its tilt, rad. A drift
+ *  that goes on does not count. Infinite where there are too few. */
 double noiseOf(const std::vector<Stretch>& stretches, const Fit& fit) {
     constexpr double kLeast_rad = 0.05 * M_PI / 180;
-    std::vector<double> changes;
-    for (std::size_t i = 1; i < stretches.size(); ++i)
-        changes.push_back(
-            angleOf(rotationBetween(fit.upAt(stretches[i - 1]), fit.upAt(stretches[i]))));
-    return std::max(kLeast_rad, spreadOf(std::move(changes)) / std::sqrt(2));
+    constexpr std::size_t kFewest = 5;
+    if (stretches.size() < kFewest) return std::numeric_limits<double>::infinity();
+    std::vector<double> bends;
+    for (std::size_t i = 1; i + 1 < stretches.size(); ++i) {
+        const Vector3d around = (fit.upAt(stretches[i - 1]) + fit.upAt(stretches[i + 1])) / 2;
+        bends.push_back(angleOf(rotationBetween(fit.upAt(stretches[i]), around)));
+    }
+    return std::max(kLeast_rad, spreadOf(std::move(bends)) / std::sqrt(1.5));
 }
 
 /** The poses' tilt drifts clearly more than stretches scatter. */

@@ -58,7 +58,7 @@ std::optional<SpecificForce::Reading> SpecificForce::readingAt(double time_s) co
                    before.force + part * (after->force - before.force)};
 }
 
-/** By the trapezoidal rule. */
+/** The force changes evenly from one reading to the next. */
 std::optional<ForceBetween> SpecificForce::between(double from_s, double to_s) const {
     const auto first = readingAt(from_s), last = readingAt(to_s);
     if (!first || !last || !(to_s > from_s)) return {};
@@ -70,9 +70,9 @@ std::optional<ForceBetween> SpecificForce::between(double from_s, double to_s) c
         const double passed_s = next.time_s - before.time_s;
         const Vector3d start = turned * before.force;
         turned = turned * rotationExp(((before.rate + next.rate) / 2 - bias_) * passed_s);
-        const Vector3d mean = (start + turned * next.force) / 2;
-        sum.twice += passed_s * (sum.once + passed_s / 2 * mean);
-        sum.once += passed_s * mean;
+        const Vector3d end = turned * next.force;
+        sum.twice += passed_s * (sum.once + passed_s / 6 * (2 * start + end));
+        sum.once += passed_s / 2 * (start + end);
         before = next;
         return passed_s <= kLongestGap_s;
     };
