@@ -144,7 +144,7 @@ void GyroPrior::observe(double from_s, double to_s, const Matrix3d& rotation) {
     lidarTurned_rad_ += pairs_.back().lidar.norm();
     for (auto r = readings_.rbegin(); r != readings_.rend() && r->time_s > from_s + offset_s_; ++r)
         if (r->time_s <= to_s + offset_s_) imuTurned_rad_ += usual_s_ * r->rate.norm();
-    // The longer the drive, the less a few scans more tell.
+    // The longer the drive, the less a few more scans add.
     const bool isNew = !calibrated_ || pairs_.size() < 100;
     if (++sinceCalibration_ >= (isNew ? kFirst : kLater)) calibrate();
     estimateBias();

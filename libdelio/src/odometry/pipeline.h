@@ -177,7 +177,7 @@ class PlaneOdometry : public Odometry {
                !prediction_.hasMotion();
     }
     /** Until the motion is known, and after a loss, the points that stand above the ground place a
-     *  scan. A hand tilts the sensor so much that they are not told from the ground. */
+     *  scan. A hand tilts the sensor too much to separate them from the ground. */
     bool isPlacedByStanding(bool isGuess) const {
         if (!prediction_.hasMotion()) return true;
         if (isLost(state_)) return !isShaken();
