@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "own_vehicle.h"
 #include "random.h"
 #include "ray_caster.h"
 #include "sensor_model.h"
@@ -16,6 +17,7 @@ struct ScannerOptions {
     double noise_m = 0.01;
     double ringBias_m = 0;  //!< of the lasers' own constant errors, standard deviation
     bool onVehicle = true;  //!< whose roof hides what is below
+    OwnBox own;
     std::uint64_t seed = 1;
     int threads = 1;
 };
