@@ -17,9 +17,9 @@ struct ScannerOptions {
     double noise_m = 0.01;
     double ringBias_m = 0;  //!< of the lasers' own constant errors, standard deviation
     bool onVehicle = true;  //!< whose roof hides what is below
-    OwnBox own;
     std::uint64_t seed = 1;
     int threads = 1;
+    OwnBox own = {};
 };
 
 /** A scan with properties of each point. */

@@ -101,7 +101,9 @@ void Moments::addMoment(const Eigen::Vector3d& up) {
     stride_m_ *= 2;
 }
 
-/** Appends a scan of the other sensor, thinned to the first point of each voxel. */
+/** Appends a scan of the other sensor, thinned to the middle point of each voxel. (In the order of
+ *  the points, which is that of the azimuths: noise decides which one is the first in a voxel, so
+ *  that the first ones are all off towards one side, as if the sensor were turned.) */
 void addPoints(const Scan& scan, const PreprocessOptions& options, double stamp_s,
                CalibrationView& view) {
     constexpr double kSpacing_m = 0.4;
@@ -110,10 +112,11 @@ void addPoints(const Scan& scan, const PreprocessOptions& options, double stamp_
     auto& points = view.points;
     Eigen::Index count = points.cols();
     points.conservativeResize(3, count + numbers.voxels);
-    std::uint32_t voxels = 0;
+    std::vector<std::uint32_t> counts(numbers.voxels), passed(numbers.voxels);
+    for (const auto voxel : numbers.ofPoint) ++counts[voxel];
     for (std::size_t i = 0; i < numbers.ofPoint.size(); ++i) {
-        if (numbers.ofPoint[i] != voxels) continue;
-        ++voxels;
+        const auto voxel = numbers.ofPoint[i];
+        if (passed[voxel]++ != (counts[voxel] - 1 + voxel % 2) / 2) continue;
         points.col(count++) = cloud.points.col(static_cast<Eigen::Index>(i));
         const float time_s = cloud.times_s.empty() ? 0 : cloud.times_s[i];
         view.times_s.push_back(static_cast<float>(scan.stamp_s - stamp_s) + time_s);
