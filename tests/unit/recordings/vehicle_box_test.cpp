@@ -43,7 +43,8 @@ class VehicleBox : public testing::Test {
         for (int i = 0; i < scan; ++i) reader->next();
         std::set<int> gone;
         for (int y = 0; y < 50; ++y) gone.insert(y);
-        for (const float y : reader->next()->points->getPointsBufferRef_y())
+        const auto read = reader->next();
+        for (const float y : read->points->getPointsBufferRef_y())
             gone.erase(static_cast<int>(y));
         return {gone.begin(), gone.end()};
     }

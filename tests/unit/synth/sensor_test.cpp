@@ -104,7 +104,7 @@ TEST(SynthOwnVehicle, ABoxIsHitWhereRaysEnterIt) {
         if (isSecond)
             own.sensor.rotate(Eigen::AngleAxisd(1, Eigen::Vector3d(1, 2, 3).normalized()));
         std::vector<Eigen::Vector3d> rays;
-        for (int i = 0; i < 400; ++i)
+        for (int i = 0; i < 2000; ++i)
             rays.push_back(
                 Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized());
         std::vector<Hit> hits(rays.size());
