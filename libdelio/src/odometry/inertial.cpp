@@ -35,6 +35,7 @@ void GyroPrior::add(const ImuSample& sample) {
 
 void GyroPrior::advance(const ScanClock& scan, const Eigen::Isometry3d& sensorPose) {
     constexpr double kSame_s = 1e-3, kMemory_s = 60;
+    if (isEmpty()) return;
     const double shift_s = scan.clock_s - scan.time_s;
     if (std::abs(shift_s - shift_s_) > kSame_s) ++stretch_;  // a clock was set, or a pause
     shift_s_ = shift_s;
