@@ -44,8 +44,7 @@ class VehicleBox : public testing::Test {
         std::set<int> gone;
         for (int y = 0; y < 50; ++y) gone.insert(y);
         const auto read = reader->next();
-        for (const float y : read->points->getPointsBufferRef_y())
-            gone.erase(static_cast<int>(y));
+        for (const float y : read->points->getPointsBufferRef_y()) gone.erase(static_cast<int>(y));
         return {gone.begin(), gone.end()};
     }
     std::string faultOf(const std::string& text) const {
