@@ -145,10 +145,11 @@ struct LiveSettings {
  *  as a LiDAR sees it from its own origin. */
 struct VehiclePart {
     Eigen::AlignedBox3d box = {};  //!< metres, vehicle's frame; empty: the part is the sector
-    /** Azimuths of the sector, degrees in the sensor's frame, from x towards y; the sector begins
-     * at the first and goes on towards y to the second: 170 and -170 are 20 deg behind. */
-    double azimuthFrom_deg = 0, azimuthTo_deg = 0;
-    double elevationFrom_deg = 0, elevationTo_deg = 0;         //!< above the sensor's xy plane
+    /** Azimuth at which the sector begins, degrees in the sensor's frame, from x towards y. */
+    double azimuthFrom_deg = 0;
+    double azimuthTo_deg = 0;      //!< where it ends, on towards y: 170 and -170 are 20 deg behind
+    double elevationFrom_deg = 0;  //!< the lowest, above the sensor's xy plane
+    double elevationTo_deg = 0;    //!< the highest
     double range_m = std::numeric_limits<double>::infinity();  //!< where the sector ends
     std::string sensor = {};  //!< label of the sector's LiDAR; empty: each one
     std::string name = {};    //!< in messages
