@@ -210,7 +210,8 @@ void checkFolders(SlamCommandLine& line) {
     if (line.record.isSet()) written.push_back(line.record.getValue());
     if (read.size() > 1) written = filesOfSeveral(read, map, line.output.getValue());
     if (line.saveRawlog.isSet()) checkCopy(line, read, written);
-    for (auto* file : {&line.truth, &line.sensorInfo, &line.extrinsics, &line.gnss})
+    for (auto* file :
+         {&line.truth, &line.sensorInfo, &line.extrinsics, &line.gnss, &line.vehicleBox})
         read.push_back(file->getValue());
     cli::refuseOverlap(read, written);
     if (map.empty()) return;
@@ -225,7 +226,7 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
         optionsFor(line, {});
         if (line.initialPose.isSet()) initialPoseIn(line.initialPose.getValue());
         if (line.antenna.isSet()) antennaIn(line.antenna.getValue());
-        if (line.vehicleBox.isSet()) cli::vehicleBoxIn(line.vehicleBox.getValue());
+        if (line.vehicleBox.isSet()) io::vehiclePartsIn(line.vehicleBox.getValue());
         const std::string contradiction = contradictionIn(line);
         if (!contradiction.empty()) throw Error(contradiction);
         if (line.printConfig.getValue()) {

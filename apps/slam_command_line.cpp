@@ -128,7 +128,7 @@ io::ScanSource sourceFor(SlamCommandLine& line, const std::string& input) {
     io::ScanSource source{input, line.label.getValue(), line.images.getValue(),
                           line.sensorInfo.getValue()};
     source.extrinsicsFile = line.extrinsics.getValue();
-    if (line.vehicleBox.isSet()) source.vehicleBox = cli::vehicleBoxIn(line.vehicleBox.getValue());
+    if (line.vehicleBox.isSet()) source.vehicle = io::vehiclePartsIn(line.vehicleBox.getValue());
     if (!io::isLive(input)) return source;
     const fs::path folder = line.output.getValue();
     source.live.record =

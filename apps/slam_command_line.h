@@ -80,11 +80,11 @@ struct SlamCommandLine {
         "Several sensors: first refine their poses relative to the first one from the drive", cmd};
     Text vehicleBox{"",
                     "vehicle-box",
-                    "Ignore points in this box of the vehicle frame, metres: parts of the own "
-                    "vehicle beyond scan.min_range",
+                    "Ignore points of the own vehicle beyond scan.min_range: in this box of the "
+                    "vehicle frame, metres, or in the boxes and sectors of a file",
                     false,
                     "",
-                    "XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX",
+                    "XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX|FILE",
                     cmd};
     Text images{"", "images", "Folder with the rawlog's external files", false, "", "DIR", cmd};
     Number threads{"", "threads", "Number of threads; 0: all cores", false, {}, "N", cmd};

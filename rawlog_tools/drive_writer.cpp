@@ -52,6 +52,7 @@ DriveWriter::DriveWriter(const DriveRequest& request, const Scene& scene, const 
     if (request.second) {
         ScannerOptions options = request.scanner;
         options.seed += kSecondKey;  // noise of its own
+        options.own.sensor = *request.second;
         second_.emplace(caster_, &trafficCaster_, request.sensor, options);
     }
     if (request.gnss)

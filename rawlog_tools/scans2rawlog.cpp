@@ -44,7 +44,7 @@ struct Arguments {
                     "Leave out points of the own vehicle: see delio-slam",
                     false,
                     "",
-                    "XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX",
+                    "XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX|FILE",
                     cmd};
     Text images{"", "images", "Folder with a rawlog's external files", false, "", "DIR", cmd};
     Text label{"", "label", "Sensor label in the rawlog", false, "velodyne", "LABEL", cmd};
@@ -191,16 +191,16 @@ void refuseItself(Arguments& args, const io::ScanReader& reader) {
     auto inputs = isRawlog ? cli::filesOfRawlog(input) : std::vector<std::string>{input};
     inputs.insert(inputs.end(),
                   {args.images.getValue(), args.sensorInfo.getValue(), args.extrinsics.getValue(),
-                   reader.calibration().name, reader.truth().name});
+                   args.vehicleBox.getValue(), reader.calibration().name, reader.truth().name});
     cli::refuseOverlap(inputs, io::RawlogWriter::outputsOf(args.output.getValue()));
 }
 
-/** The own vehicle's box, if any; nothing where the command line is wrong, which is said. */
-std::optional<Eigen::AlignedBox3d> boxOf(Arguments& args) {
+/** Parts of the own vehicle; nothing where the command line is wrong, which is said. */
+std::optional<std::vector<io::VehiclePart>> vehicleOf(Arguments& args) {
     try {
         if (args.every.getValue() == 0) throw Error("--every must be at least 1");
-        if (!args.vehicleBox.isSet()) return Eigen::AlignedBox3d();
-        return cli::vehicleBoxIn(args.vehicleBox.getValue());
+        if (!args.vehicleBox.isSet()) return std::vector<io::VehiclePart>();
+        return io::vehiclePartsIn(args.vehicleBox.getValue());
     } catch (const Error& e) {
         cli::inform(e.what());
         return {};
@@ -208,14 +208,14 @@ std::optional<Eigen::AlignedBox3d> boxOf(Arguments& args) {
 }
 
 int convert(Arguments& args) {
-    const auto box = boxOf(args);
-    if (!box) return cli::kExitBadCommandLine;
+    const auto vehicle = vehicleOf(args);
+    if (!vehicle) return cli::kExitBadCommandLine;
     const std::string &input = args.input.getValue(), &output = args.output.getValue();
     if (input == "-") cli::endInputAtInterrupt();
     io::ScanSource source{input, args.sensor.getValue(), args.images.getValue(),
                           args.sensorInfo.getValue()};
     source.extrinsicsFile = args.extrinsics.getValue();
-    source.vehicleBox = *box;
+    source.vehicle = *vehicle;
     const auto reader = io::openScans(source);
     refuseItself(args, *reader);
     cli::inform("reading " + describe(reader->recording()));

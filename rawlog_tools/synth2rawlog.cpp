@@ -155,6 +155,15 @@ struct Arguments {
         "",
         "X,Y,Z,YAW,PITCH,ROLL",
         cmd};
+    TCLAP::ValueArg<std::string> ownBox{
+        "",
+        "own-box",
+        "Part of the own vehicle that the sensor sees: a box in the frame of the upright LiDAR, "
+        "metres",
+        false,
+        "",
+        "XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX",
+        cmd};
     TCLAP::ValueArg<double> imu{
         "",    "imu", "Also record an IMU at so many samples a second (CObservationIMU, label imu)",
         false, 0,     "HZ",
@@ -324,10 +333,19 @@ std::string faultInMotion(Arguments& args) {
     return "";
 }
 
+/** Empty: none. */
+Eigen::AlignedBox3d ownBoxOf(Arguments& args) {
+    const auto box = cli::numbersIn(args.ownBox.getValue(), 6);
+    if (box.empty()) return {};
+    return {Eigen::Vector3d(box.data()), Eigen::Vector3d(box.data() + 3)};
+}
+
 /** The same of sensor and drive. */
 std::string faultInDrive(Arguments& args) {
     if (!findSensor(args.sensor.getValue()))
         return "unknown sensor '" + args.sensor.getValue() + "'; choose one of: " + sensorOptions();
+    if (args.ownBox.isSet() && ownBoxOf(args).isEmpty())
+        return "--own-box needs XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX in metres";
     if (args.scans.getValue() < 1) return "--scans must be at least 1";
     if (args.seed.getValue() < 0) return "--seed must be at least 0";
     if (args.driveSeed.getValue() < 0) return "--drive-seed must be at least 0";
@@ -445,6 +463,7 @@ DriveRequest requestOf(Arguments& args) {
     request.imu = imuOf(args);
     request.wheels = wheelsOf(args);
     request.second = secondOf(args);
+    request.scanner.own.box = ownBoxOf(args);
     request.embed = args.embed.getValue();
     request.force = args.force.getValue();
     return request;

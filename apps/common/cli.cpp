@@ -158,19 +158,6 @@ std::vector<double> numbersIn(std::string text, std::size_t count) {
     return numbers;
 }
 
-Eigen::AlignedBox3d vehicleBoxIn(const std::string& text) {
-    const auto numbers = numbersIn(text, 6);
-    Eigen::AlignedBox3d box;
-    if (!numbers.empty())
-        box = {Eigen::Vector3d(numbers.data()), Eigen::Vector3d(numbers.data() + 3)};
-    if (box.isEmpty())
-        throw Error(
-            "--vehicle-box needs XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX (metres in the vehicle frame), not "
-            "'" +
-            text + "'");
-    return box;
-}
-
 int run(TCLAP::CmdLine& cmd, const HelpText& help, int argc, const char* const* argv,
         TCLAP::SwitchArg& verbose, const std::function<int()>& body) {
     std::set_terminate(endInOneLine);

@@ -1,5 +1,4 @@
 #pragma once
-#include <Eigen/Geometry>
 #include <cstddef>
 #include <functional>
 #include <iosfwd>
@@ -33,10 +32,6 @@ std::istream& operator>>(std::istream& in, Count& count);
 
 /** The numbers in a text of `count` finite numbers with commas between; otherwise empty. */
 std::vector<double> numbersIn(std::string text, std::size_t count);
-
-/** The box that --vehicle-box gives: XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX, metres. Throws Error for
- *  another text. */
-Eigen::AlignedBox3d vehicleBoxIn(const std::string& text);
 
 /** Runs a tool: parses the command line into `cmd` (whose arguments the caller has added; `help`
  *  says the rest of --help), then calls `body`, and turns every ending into the contract's exit

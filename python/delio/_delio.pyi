@@ -11,6 +11,7 @@ _Floats = NDArray[np.floating[Any]]
 _Numbers = Union[NDArray[np.floating[Any]], NDArray[np.integer[Any]]]
 _Option = Union[bool, int, float, str]
 _Trajectory = Union[_Path, _Floats, tuple[_Floats, _Floats]]
+_VehicleBox = Union[_Path, Sequence[Union[Sequence[float], _Floats]]]
 
 __version__: str
 
@@ -147,7 +148,7 @@ def open_scans(
     sensor_file: Optional[_Path] = None,
     images: Optional[_Path] = None,
     extrinsics: Optional[_Path] = None,
-    vehicle_box: Optional[Sequence[Union[Sequence[float], _Floats]]] = None,
+    vehicle_box: Optional[_VehicleBox] = None,
 ) -> Scans: ...
 
 class Step:
@@ -297,6 +298,8 @@ def run(
     gnss: bool = True,
     fixes: Optional[_Path] = None,
     antenna: Union[_Floats, Sequence[float], None] = None,
+    extrinsics: Optional[_Path] = None,
+    vehicle_box: Optional[_VehicleBox] = None,
     progress: Optional[Callable[[int], Any]] = None,
     **options: _Option,
 ) -> RunResult: ...

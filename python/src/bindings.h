@@ -69,6 +69,9 @@ struct ScanArguments {
  *  here. */
 Scan scanOf(const ScanArguments& arguments, std::size_t index);
 
+/** Parts of the own vehicle that `object` gives: None, a file, or two corners of a box, metres. */
+std::vector<io::VehiclePart> vehicleIn(const py::object& object);
+
 /** Options of a profile, for the drive of `recording` (Scans or None), with `assignments`: words
  *  `section__key` or `section.key` and values. */
 Options optionsOf(const std::string& profile, const py::object& recording,

@@ -113,7 +113,7 @@ Files in `output` have the same bytes as those of delio-slam, except for times a
 in scans.csv and summary.yaml. Returns a RunResult.
 
 start, count, every: first scan, number of scans (0: all), every n-th scan.
-sensor_label, sensor_file, images: as of open_scans().
+sensor_label, sensor_file, images, extrinsics, vehicle_box: as of open_scans().
 ground_truth: pose file; empty: that of the recording. ground_truth_frame: 'cam0' or 'vehicle'.
 map: a stored map in which the drive is localised; initial_pose: (4, 4) of the vehicle at the first
     scan in it, if known; extend: add the drive to it.
@@ -158,7 +158,8 @@ void bindRun(py::module_& module) {
            const std::string& truthFrame, const OptionalPath& map, const py::object& initialPose,
            bool extend, bool loops, bool graph, bool buildMap, bool keepDynamic, bool pictures,
            bool force, bool imu, bool odometry, bool gnss, const OptionalPath& fixes,
-           const py::object& antenna, const py::object& progress, const py::kwargs& options) {
+           const py::object& antenna, const OptionalPath& extrinsics, const py::object& vehicleBox,
+           const py::object& progress, const py::kwargs& options) {
             run::PlaybackSettings playback;
             playback.start = start;
             playback.count = count;
@@ -176,10 +177,12 @@ void bindRun(py::module_& module) {
             settings.map = buildMap;
             settings.keepDynamic = keepDynamic;
             settings.gnss = gnss;
+            io::ScanSource source{input.string(), label, textOf(images), textOf(sensorFile)};
+            source.extrinsicsFile = textOf(extrinsics);
+            source.vehicle = vehicleIn(vehicleBox);
             return runOf(
                 {input, output, playback, truthFrame, textOf(truth), pictures, force, progress},
-                profile, {input.string(), label, textOf(images), textOf(sensorFile)}, settings,
-                initialPose, options);
+                profile, source, settings, initialPose, options);
         },
         py::arg("input"), py::arg("output"), py::arg("profile") = "accurate", py::kw_only(),
         py::arg("start") = 0, py::arg("count") = 0, py::arg("every") = 1,
@@ -190,6 +193,7 @@ void bindRun(py::module_& module) {
         py::arg("graph") = true, py::arg("build_map") = true, py::arg("keep_dynamic") = false,
         py::arg("pictures") = true, py::arg("force") = false, py::arg("imu") = true,
         py::arg("odometry") = true, py::arg("gnss") = true, py::arg("fixes") = py::none(),
-        py::arg("antenna") = py::none(), py::arg("progress") = py::none(), kRunText);
+        py::arg("antenna") = py::none(), py::arg("extrinsics") = py::none(),
+        py::arg("vehicle_box") = py::none(), py::arg("progress") = py::none(), kRunText);
 }
 }  // namespace delio::python

@@ -139,18 +139,18 @@ Scan nextOf(Scans& scans) {
 }
 }  // namespace
 
-namespace {
-/** The box with these two corners; empty for None. */
-Eigen::AlignedBox3d boxIn(const py::object& object) {
+std::vector<io::VehiclePart> vehicleIn(const py::object& object) {
     if (object.is_none()) return {};
+    if (py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__"))
+        return io::vehiclePartsIn(object.cast<std::filesystem::path>().string());
     if (!py::isinstance<py::sequence>(object) || py::len(object) != 2)
-        throw Error("'vehicle_box' must be two corners, each of shape (3,)");
+        throw Error("'vehicle_box' must be a file or two corners, each of shape (3,)");
     const py::sequence corners = object;
-    Eigen::AlignedBox3d box;
-    for (const auto& corner : corners) box.extend(vectorIn(corner, "vehicle_box"));
-    return box;
+    io::VehiclePart part;
+    for (const auto& corner : corners) part.box.extend(vectorIn(corner, "vehicle_box"));
+    part.name = "the vehicle box";
+    return {part};
 }
-}  // namespace
 
 void bindScans(py::module_& module) {
     bindScan(module);
@@ -207,7 +207,7 @@ void bindScans(py::module_& module) {
            const OptionalPath& extrinsics, const py::object& vehicleBox) {
             io::ScanSource source{path.string(), label, textOf(images), textOf(sensorFile)};
             source.extrinsicsFile = textOf(extrinsics);
-            source.vehicleBox = boxIn(vehicleBox);
+            source.vehicle = vehicleIn(vehicleBox);
             const py::gil_scoped_release release;
             auto scans = std::make_unique<Scans>();
             scans->path = source.path;
@@ -227,6 +227,7 @@ sensor_file: an Ouster's json or a Velodyne's calibration; empty: the one beside
 images: folder of a rawlog's external files; empty: beside it.
 extrinsics: file with the sensors' poses in the vehicle, lines LABEL x y z yaw pitch roll (metres, degrees).
 vehicle_box: two corners ((x, y, z), (x, y, z)), metres; points in this box of the vehicle's frame are left out.
+    Or a file with boxes and sectors, as of delio-slam --vehicle-box.
 Raises delio.Error if there is nothing to read or the format is unknown.)");
 }
 }  // namespace delio::python

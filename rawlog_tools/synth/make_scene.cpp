@@ -53,6 +53,12 @@ std::vector<Kind> kinds() {
     const auto block = [](std::uint64_t seed, double length_m) {
         return blockPath(seed, length_m, blockProfile().lanes.front().side_m);
     };
+    // Open country, then 500 m of tunnel, then open country.
+    const auto portal = [](std::uint64_t seed, double length_m) {
+        constexpr double kBegin_m = 200, kEnd_m = 700;
+        return std::make_unique<TunnelScene>(Road(straightPath(length_m), seed, tunnelProfile()),
+                                             seed, kBegin_m, kEnd_m);
+    };
     const auto house = [](std::uint64_t seed, double length_m) {
         return std::make_unique<IndoorScene>(seed, length_m);
     };
@@ -61,6 +67,7 @@ std::vector<Kind> kinds() {
             roadKind<HighwayScene>("highway", highwayProfile(), highwayPath),
             withoutTrajectory(roadKind<UrbanScene>("loop", blockProfile(), block)),
             withoutTrajectory(roadKind<TunnelScene>("tunnel", tunnelProfile(), straight)),
+            {"portal", tunnelProfile(), portal, nullptr},
             {"indoor", indoorProfile(), house, nullptr},
             withoutTrajectory(roadKind<ForestScene>("forest", forestProfile(), forestPath))};
 }

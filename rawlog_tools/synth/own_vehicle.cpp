@@ -26,4 +26,22 @@ bool behindOwnVehicle(double azimuth_rad, double elevation_rad) {
     const double hidden = (1 - share) * kHidden_deg[low % 36] + share * kHidden_deg[(low + 1) % 36];
     return elevation_rad < -hidden * kDegree;
 }
+
+void castOwnBox(const OwnBox& own, const std::vector<Eigen::Vector3d>& local,
+                std::vector<Hit>& hits) {
+    constexpr double kReflectivity = 0.3;
+    if (own.box.isEmpty()) return;
+    const Eigen::Array3d origin = own.sensor.translation().array();
+    for (std::size_t i = 0; i < local.size(); ++i) {
+        // Where the ray is between each pair of the box's planes.
+        const Eigen::Array3d direction = (own.sensor.linear() * local[i]).array();
+        const Eigen::Array3d a = (own.box.min().array() - origin) / direction;
+        const Eigen::Array3d b = (own.box.max().array() - origin) / direction;
+        Eigen::Index face = 0;
+        const double enters = a.min(b).maxCoeff(&face), leaves = a.max(b).minCoeff();
+        if (!(enters > 0 && enters <= leaves)) continue;
+        if (hits[i].range > 0 && hits[i].range < enters) continue;
+        hits[i] = {enters, std::abs(direction[face]), kReflectivity, false};
+    }
+}
 }  // namespace delio::synth

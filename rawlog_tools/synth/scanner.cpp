@@ -6,7 +6,6 @@
 #include <future>
 
 #include "echo.h"
-#include "own_vehicle.h"
 
 namespace delio::synth {
 namespace {
@@ -53,6 +52,7 @@ void Scanner::cast(Ring& ring, const Sweep& sweep, const Views& views) const {
     }
     caster_.cast(rays, sensor_.maxRange_m, ring.hits);
     for (const auto& view : views) traffic_->cast(view, local, ring.hits);
+    castOwnBox(options_.own, local, ring.hits);
 }
 
 bool Scanner::isNoticed(const Ring& ring, std::size_t column, std::size_t scan,

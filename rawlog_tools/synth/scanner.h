@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "own_vehicle.h"
 #include "random.h"
 #include "ray_caster.h"
 #include "sensor_model.h"
@@ -18,6 +19,7 @@ struct ScannerOptions {
     bool onVehicle = true;  //!< whose roof hides what is below
     std::uint64_t seed = 1;
     int threads = 1;
+    OwnBox own = {};
 };
 
 /** A scan with properties of each point. */

@@ -26,11 +26,11 @@ std::vector<Eigen::Vector2d> halfSection() {
 
 Mesh TunnelScene::tile(int index) const {
     const double begin_s = index * kTileLength_m, end_s = begin_s + kTileLength_m;
-    if (end_s <= kBegin_m || begin_s >= kEnd_m) return RuralScene::tile(index);
+    if (end_s <= begin_m_ || begin_s >= end_m_) return RuralScene::tile(index);
     Mesh mesh;
     addGround(mesh, road(), begin_s, end_s);
     addLining(mesh, begin_s, end_s);
-    for (const double portal : {kBegin_m, kEnd_m})
+    for (const double portal : {begin_m_, end_m_})
         if (portal >= begin_s && portal <= end_s) addPortal(mesh, portal);
     return mesh;
 }

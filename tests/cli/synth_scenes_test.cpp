@@ -154,7 +154,7 @@ TEST(SynthScenes, ABadCommandLineIsOneLineAndExit2) {
         EXPECT_FALSE(fs::exists(folder / "d.rawlog"));
     };
     expectRefused({"--scene", "moon", "--scans", "3"},
-                  "urban, rural, highway, loop, tunnel, indoor, forest");
+                  "urban, rural, highway, loop, tunnel, portal, indoor, forest");
     expectRefused({"--scene", "", "--scans", "3"}, "urban");
     expectRefused({"--scene", "rural", "--scans", "0"}, "--scans");
     expectRefused({"--scene", "tunnel", "--scans", "3", "--trajectory", given}, "tunnel");

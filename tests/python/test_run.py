@@ -48,6 +48,24 @@ def test_slam_without_a_scan_or_a_map(drive):
         slam.cloud()
 
 
+def test_run_leaves_out_the_own_vehicle(drive, tmp_path):
+    corners = ((-8, -2, -2), (-3, 2, 1))
+    mask = tmp_path / "mask.txt"
+    mask.write_text("box -8 -2 -2 -3 2 1\n")
+    runs = {name: delio.run(drive, tmp_path / name, build_map=False, pictures=False, count=5, vehicle_box=box)
+            for name, box in {"all": None, "box": corners, "file": mask, "text": str(mask)}.items()}
+    assert np.array_equal(runs["box"].poses, runs["file"].poses)
+    assert np.array_equal(runs["box"].poses, runs["text"].poses)
+    assert not np.array_equal(runs["box"].poses, runs["all"].poses)
+    counts = [len(next(delio.open_scans(drive, vehicle_box=box))) for box in (None, corners, mask)]
+    assert counts[0] > counts[1] == counts[2]
+    mask.write_text("box 1 2 3\n")
+    with pytest.raises(delio.Error, match="mask.txt', line 1: expected box"):
+        delio.run(drive, tmp_path / "bad", vehicle_box=mask)
+    with pytest.raises(delio.Error, match="must be a file or two corners"):
+        delio.open_scans(drive, vehicle_box=5)
+
+
 def test_run_takes_some_scans_and_leaves_parts_out(drive, tmp_path):
     result = delio.run(drive, tmp_path / "some", start=2, count=5, every=3, build_map=False,
                        pictures=False, scan__max_range=60)

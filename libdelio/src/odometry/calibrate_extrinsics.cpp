@@ -43,7 +43,8 @@ std::vector<Correspondences> matchesOf(const std::vector<CalibrationView>& views
 
 /** Errors of a map are those of all points that meet it, and views that follow each other share
  *  parts of their maps: so much as the sums of groups of views scatter, so uncertain is the pose.
- *  H^-1 (sum g g') H^-1 over groups of views, with the normal equations H and gradients g. */
+ *  H^-1 (sum g g') H^-1 over groups of views, with the normal equations H and gradients g. For what
+ *  all views share, which does not scatter, comes H^-1: the noise of planes and points. */
 Matrix6 scatterOf(const std::vector<Correspondences>& matches, const Eigen::Isometry3d& pose) {
     constexpr std::size_t kGroups = 24;
     const std::size_t groups = std::min(kGroups, matches.size());
@@ -64,7 +65,7 @@ Matrix6 scatterOf(const std::vector<Correspondences>& matches, const Eigen::Isom
         scatter += (sum.gradient - mean) * (sum.gradient - mean).transpose();
     scatter *= static_cast<double>(groups) / std::max(1.0, static_cast<double>(groups) - 6);
     const Matrix6 inverse = all.information.completeOrthogonalDecomposition().pseudoInverse();
-    return inverse * scatter * inverse.transpose();
+    return inverse * scatter * inverse.transpose() + inverse;
 }
 }  // namespace
 

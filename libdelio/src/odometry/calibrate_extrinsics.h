@@ -19,7 +19,7 @@ struct CalibrationView {
 struct CalibratedPose {
     PlaneEstimate estimate;  //!< of the other sensor's points against the first one's maps
     /** Order [x y z wx wy wz], metres and radians, about the axes of the first sensor: from the
-     *  scatter of the views. */
+     *  scatter of the views, and the noise of planes and points. */
     Matrix6 covariance = Matrix6::Zero();
 };
 

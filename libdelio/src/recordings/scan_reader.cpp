@@ -71,16 +71,20 @@ std::string warningOfOther(const std::string& label) {
 
 std::unique_ptr<ScanReader> openScans(const ScanSource& source) {
     const auto labels = labelsOf(source, openSensor);
+    // A sector is seen from its own sensor, which the points of merged scans no longer say.
+    const OpenSensor open = [&](const ScanSource& one) {
+        return without(sectorsOf(source.vehicle, labels.size() > 1 ? one.label : ""),
+                       openSensor(one));
+    };
     std::unique_ptr<ScanReader> scans;
     if (labels.size() > 1 || !source.extrinsicsFile.empty() || !source.extrinsics.empty()) {
-        scans = openMerged(source, labels, openSensor);
+        scans = openMerged(source, labels, open);
     } else {
         ScanSource one = source;
         one.label = labels.front();
-        scans = openSensor(one);
+        scans = open(one);
     }
-    if (source.vehicleBox.isEmpty()) return scans;
-    return std::make_unique<WithoutVehicle>(std::move(scans), source.vehicleBox);
+    return without(boxesOf(source.vehicle), std::move(scans));
 }
 
 std::unique_ptr<ScanReader> openScans(const std::string& path, const std::string& label,

@@ -1,5 +1,4 @@
 #pragma once
-#include <Eigen/Geometry>
 #include <cstddef>
 #include <memory>
 #include <set>
@@ -10,12 +9,11 @@
 #include "delio/recordings/scan_reader.h"
 
 namespace delio::io {
-/** A reader whose scans lack the points in a box around the own vehicle. */
+/** A reader whose scans lack the points of parts of the own vehicle. */
 class WithoutVehicle : public ScanReader {
  public:
-    /** `box`: in the vehicle's frame, metres. */
-    WithoutVehicle(std::unique_ptr<ScanReader> source, const Eigen::AlignedBox3d& box)
-        : source_(std::move(source)), box_(box) {}
+    WithoutVehicle(std::unique_ptr<ScanReader> source, std::vector<VehiclePart> parts)
+        : source_(std::move(source)), parts_(std::move(parts)), inside_(parts_.size()) {}
 
     std::optional<Scan> next() override;
     bool skip() override { return source_->skip(); }
@@ -29,7 +27,7 @@ class WithoutVehicle : public ScanReader {
     }
     std::optional<double> fraction() const override { return source_->fraction(); }
     const std::optional<DriveMeta>& meta() const override { return source_->meta(); }
-    /** Warns of a box without any point. */
+    /** Warns of parts without any point. */
     Recording recording() const override;
     earth::Fixes takeFixes() override { return source_->takeFixes(); }
     std::optional<LiveReport> live() const override { return source_->live(); }
@@ -39,7 +37,17 @@ class WithoutVehicle : public ScanReader {
 
  private:
     std::unique_ptr<ScanReader> source_;
-    Eigen::AlignedBox3d box_;
-    std::size_t scans_ = 0, inside_ = 0;  //!< points
+    std::vector<VehiclePart> parts_;
+    std::size_t scans_ = 0;
+    std::vector<std::size_t> inside_;  //!< points in each part
 };
+
+/** `source` itself where there are no parts. */
+std::unique_ptr<ScanReader> without(std::vector<VehiclePart> parts,
+                                    std::unique_ptr<ScanReader> source);
+
+std::vector<VehiclePart> boxesOf(const std::vector<VehiclePart>& parts);
+
+/** Sectors of the sensor with this label; empty: of all sensors. */
+std::vector<VehiclePart> sectorsOf(const std::vector<VehiclePart>& parts, const std::string& label);
 }  // namespace delio::io

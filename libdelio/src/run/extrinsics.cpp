@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <random>
 #include <utility>
 
 #include "core/scan_trajectory.h"
@@ -101,23 +102,27 @@ void Moments::addMoment(const Eigen::Vector3d& up) {
     stride_m_ *= 2;
 }
 
-/** Appends a scan of the other sensor, thinned to the first point of each voxel. */
+/** Appends a scan of the other sensor, thinned at random to about kPoints, evenly over surfaces:
+ *  with the square of the range. (Where voxels thin a scan, noise decides which point is kept:
+ * those that are are off towards one side.) */
 void addPoints(const Scan& scan, const PreprocessOptions& options, double stamp_s,
                CalibrationView& view) {
-    constexpr double kSpacing_m = 0.4;
+    constexpr float kPoints = 3000;
     const auto cloud = odometry::preprocess(scan, options);
-    const auto numbers = numberVoxels(cloud.points, kSpacing_m);
+    const Eigen::RowVectorXf squared = cloud.points.colwise().squaredNorm();
+    const float part = kPoints / std::max(squared.sum(), 1.0F);
+    std::mt19937 random(static_cast<unsigned>(scan.index));
     auto& points = view.points;
     Eigen::Index count = points.cols();
-    points.conservativeResize(3, count + numbers.voxels);
-    std::uint32_t voxels = 0;
-    for (std::size_t i = 0; i < numbers.ofPoint.size(); ++i) {
-        if (numbers.ofPoint[i] != voxels) continue;
-        ++voxels;
-        points.col(count++) = cloud.points.col(static_cast<Eigen::Index>(i));
-        const float time_s = cloud.times_s.empty() ? 0 : cloud.times_s[i];
+    points.conservativeResize(3, count + cloud.points.cols());
+    for (Eigen::Index i = 0; i < cloud.points.cols(); ++i) {
+        const auto draw = static_cast<float>(random()) / static_cast<float>(std::mt19937::max());
+        if (draw > part * squared[i]) continue;
+        points.col(count++) = cloud.points.col(i);
+        const float time_s = cloud.times_s.empty() ? 0 : cloud.times_s[static_cast<std::size_t>(i)];
         view.times_s.push_back(static_cast<float>(scan.stamp_s - stamp_s) + time_s);
     }
+    points.conservativeResize(3, count);
 }
 
 io::ScanSource only(io::ScanSource source, const std::string& label) {

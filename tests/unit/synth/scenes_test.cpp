@@ -114,7 +114,7 @@ TEST_P(SceneOf, MovesLikeACar) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Synth, SceneOf,
-                         testing::Values("urban", "rural", "highway", "loop", "tunnel"),
+                         testing::Values("urban", "rural", "highway", "loop", "tunnel", "portal"),
                          [](const auto& param) { return param.param; });
 INSTANTIATE_TEST_SUITE_P(Synth, AnySceneOf, testing::ValuesIn(sceneNames()),
                          [](const auto& param) { return param.param; });

@@ -89,6 +89,41 @@ TEST(SynthOwnVehicle, HidesTheGroundBehindMoreThanBeside) {
     EXPECT_FALSE(behindOwnVehicle(180 * kDegree, -10 * kDegree));
 }
 
+/** By small steps along the ray; 0: it misses the box. */
+double rangeBySteps(const OwnBox& own, const Eigen::Vector3d& direction) {
+    for (double range = 0; range < 12; range += 0.002)
+        if (own.box.contains(own.sensor * (range * direction))) return range;
+    return 0;
+}
+
+TEST(SynthOwnVehicle, ABoxIsHitWhereRaysEnterIt) {
+    OwnBox own{{Eigen::Vector3d(-7, -1.2, -1.5), Eigen::Vector3d(-4, 1.2, 0.8)}};
+    Random random{7};
+    for (const bool isSecond : {false, true}) {
+        if (isSecond) own.sensor.translation() << -0.5, 2, 0.3;
+        if (isSecond)
+            own.sensor.rotate(Eigen::AngleAxisd(1, Eigen::Vector3d(1, 2, 3).normalized()));
+        std::vector<Eigen::Vector3d> rays;
+        for (int i = 0; i < 2000; ++i)
+            rays.push_back(
+                Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized());
+        std::vector<Hit> hits(rays.size());
+        hits[0].range = 0.5;
+        castOwnBox(own, rays, hits);
+        int inside = 0;
+        for (std::size_t i = 1; i < rays.size(); ++i) {
+            EXPECT_NEAR(hits[i].range, rangeBySteps(own, rays[i]), 0.002) << i;
+            inside += hits[i].range > 0;
+        }
+        EXPECT_GT(inside, 10);
+        EXPECT_EQ(hits[0].range, 0.5);
+    }
+    std::vector<Hit> ahead(1);
+    castOwnBox(OwnBox{own.box}, {-Eigen::Vector3d::UnitX()}, ahead);
+    EXPECT_EQ(ahead[0].range, 4);
+    EXPECT_EQ(ahead[0].cosIncidence, 1);
+}
+
 TEST(SynthFaults, ComeAsOftenAsAskedAndNeverFirst) {
     const FaultRates rates{0.2, 0.1, 0.05};
     int dropped = 0, repeated = 0, empty = 0;

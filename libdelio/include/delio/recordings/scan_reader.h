@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -140,6 +141,26 @@ struct LiveSettings {
     std::uint16_t sensorHttpPort = 80;  //!< of an Ouster, which gives away its json there
 };
 
+/** A part of the own vehicle, whose points are left out: a box of the vehicle's frame, or a sector
+ *  as a LiDAR sees it from its own origin. */
+struct VehiclePart {
+    Eigen::AlignedBox3d box = {};  //!< metres, vehicle's frame; empty: the part is the sector
+    /** Azimuth at which the sector begins, degrees in the sensor's frame, from x towards y. */
+    double azimuthFrom_deg = 0;
+    double azimuthTo_deg = 0;      //!< where it ends, on towards y: 170 and -170 are 20 deg behind
+    double elevationFrom_deg = 0;  //!< the lowest, above the sensor's xy plane
+    double elevationTo_deg = 0;    //!< the highest
+    double range_m = std::numeric_limits<double>::infinity();  //!< where the sector ends
+    std::string sensor = {};  //!< label of the sector's LiDAR; empty: each one
+    std::string name = {};    //!< in messages
+};
+
+/** The parts that `text` gives: a box XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX (metres in the vehicle's
+ * frame), or a file with a line for each part, `box xmin ymin zmin xmax ymax zmax` or `sector
+ * azimuth_from azimuth_to elevation_from elevation_to [range_max [sensor]]`; `#` begins a comment.
+ * Throws Error, which names file and line, for something else. */
+std::vector<VehiclePart> vehiclePartsIn(const std::string& text);
+
 /** A recording and the settings to open it. */
 struct ScanSource {
     /** A rawlog (see RawlogReader), KITTI odometry or raw folder, folder of .pcd, .ply, .bin, .txt
@@ -164,8 +185,8 @@ struct ScanSource {
     std::string extrinsicsFile = {};
     /** The same by label, in place of the file's; empty: none. */
     std::map<std::string, Eigen::Isometry3d> extrinsics = {};
-    /** Points in this box of the vehicle's frame, metres, are left out. Empty: none are. */
-    Eigen::AlignedBox3d vehicleBox = {};
+    /** Points of these parts of the own vehicle are left out. */
+    std::vector<VehiclePart> vehicle = {};
 };
 
 /** True for "udp://...". */
