@@ -103,8 +103,8 @@ void Moments::addMoment(const Eigen::Vector3d& up) {
 }
 
 /** Appends a scan of the other sensor, thinned at random to about kPoints, evenly over surfaces:
- *  with the square of the range. (Where voxels thin a scan, noise decides which point is kept:
- * those that are are off towards one side.) */
+ *  with the square of the range. (Where voxels thin a scan, noise decides which point is kept, and
+ *  the kept points are off towards one side.) */
 void addPoints(const Scan& scan, const PreprocessOptions& options, double stamp_s,
                CalibrationView& view) {
     constexpr float kPoints = 3000;
