@@ -97,6 +97,7 @@ TEST_F(Updates, TheMapOfADayIsWritten) {
               "delio-map: read " + std::to_string(cloudOf(after(3)).cols()) + " points");
     expectFailure(at("2023-11-14"), 1, {"begins at 2023-11-14T22:13:20Z"});
     expectFailure(at("soon"), 1, {"'soon' is not a time"});
+    expectFailure(at(""), 2, {"--at needs a time"});
     expectFailure(test::runTool("delio-map",
                                 {"-i", path("at.ply"), "-o", path("x.ply"), "--at", "2023-12-01"}),
                   2, {"--at needs a stored map"});
@@ -119,6 +120,10 @@ TEST_F(Updates, WhatCannotBeUpdatedIsSaid) {
                   {"removal.enabled"});
     expectFailure(slam(1, "again", update), 1, {"the map was not updated", "not after"});
     expectFailure(slam(2, "after2", update), 1, {"overwrite the map"});
+
+    const auto full = test::runToolOnFullDisk(
+        "delio-slam", Words{"-i", drive(2), "-o", path("full")} + update, 100 * 1024);
+    expectFailure(full, 1, {"'map' failed"});
 
     // A drive and a map without times.
     const std::string timeless = path("timeless.rawlog");

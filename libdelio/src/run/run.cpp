@@ -349,6 +349,7 @@ Visit Run::visit() const {
 }
 
 void Run::update() {
+    if (!map_) throw Error("the scans of the drive could not be put aside");
     std::vector<bool> measured;
     VisitScans scans;
     scans.visit = visit();

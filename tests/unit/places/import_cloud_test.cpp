@@ -136,6 +136,14 @@ TEST_F(ImportedTown, RefusesAWallAndNothing) {
     EXPECT_FALSE(fs::exists(path_));
 }
 
+// A point per square, which would take minutes.
+TEST_F(ImportedTown, RefusesMillimetres) {
+    auto cloud = cloudOfTown(Eigen::Isometry3d::Identity());
+    for (auto& point : cloud) point *= 1000;
+    EXPECT_NE(refusalOf(cloud).find("points per square of 30 m"), std::string::npos);
+    EXPECT_FALSE(fs::exists(path_));
+}
+
 // The file of drives stays readable by older versions.
 TEST_F(ImportedTown, OnlyAnImportedMapHasTheNewVersion) {
     const auto versionOf = [](const std::string& path) { return test::readText(path).at(8); };
