@@ -12,7 +12,7 @@ struct Carrier {
     double sensorHeight_m = 1.73;
     /** It tilts with the ground, and its roof hides what is below; a person stays upright. */
     bool isVehicle = true;
-    /** A vehicle's own body is filtered out; what is carried tells what is nearer, too. */
+    /** A vehicle's own body is filtered out; a hand-held sensor sees nearer points, too. */
     double nearest_m = 1e3;
 };
 

@@ -24,7 +24,7 @@ struct Seedling {
 };
 
 /** One seedling in every cell of a lattice over the land; where two are too near to each other, the
- *  stronger one stands. So nothing tells the lattice. */
+ *  stronger one stands. So the lattice cannot be seen. */
 struct Thicket {
     std::uint64_t seed, key;
     double apart_m;

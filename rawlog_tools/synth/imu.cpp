@@ -20,12 +20,12 @@ Vector3d normals(Random& random) {
     return values;
 }
 
-/** In the LiDAR's axes. */
-Vector3d rateAt(const Drive& drive, double time_s) {
-    constexpr double kHalf_s = 5e-4;
-    const Eigen::Matrix3d before = drive.lidarPoseAt(time_s - kHalf_s).linear(),
-                          after = drive.lidarPoseAt(time_s + kHalf_s).linear();
-    return rotationLog(before.transpose() * after) / (2 * kHalf_s);
+/** Mean rate of turn over an interval, in the LiDAR's axes: a gyroscope integrates between its
+ *  samples. */
+Vector3d rateAt(const Drive& drive, double time_s, double interval_s) {
+    const Eigen::Matrix3d before = drive.lidarPoseAt(time_s - interval_s / 2).linear(),
+                          after = drive.lidarPoseAt(time_s + interval_s / 2).linear();
+    return rotationLog(before.transpose() * after) / interval_s;
 }
 
 /** Of what is at the LiDAR, with gravity, likewise. */
@@ -83,8 +83,8 @@ std::optional<ImuSample> Imu::next(double stamp_s) {
     bias_ += model_.rateWalk / bandwidth * normals(random);
     ImuSample sample;
     sample.stamp_s = time_s + model_.offset_s;
-    sample.rate_radps =
-        toImu * rateAt(drive_, time_s) + bias_ + model_.rateNoise * bandwidth * normals(random);
+    sample.rate_radps = toImu * rateAt(drive_, time_s, 1 / model_.rate_hz) + bias_ +
+                        model_.rateNoise * bandwidth * normals(random);
     sample.acceleration_mps2 = toImu * accelerationAt(drive_, time_s) + accelerationBias_ +
                                model_.accelerationNoise * bandwidth * normals(random);
     ++samples_;

@@ -111,7 +111,7 @@ RoadProfile tunnelProfile() {
     p.lanes = {{-1.9, 1, 19}, {1.9, -1, 19}};
     p.section = {{0, 0}, {4, -0.08}, {4.02, 0.08}, {5.4, 0.08}};
     p.bands = {{4, kAsphalt}, {1e3, 0.36}};
-    p.marks = {{3.7, 0.15, 1, 1}};  // no dashes: they would tell where along the tunnel one is
+    p.marks = {{3.7, 0.15, 1, 1}};  // no dashes: they would show the place along the tunnel
     p.half_m = 5.6;
     p.landReach_m = 60;
     p.landStep_m = 1;

@@ -10,7 +10,7 @@ struct SensorModel {
     std::vector<double> elevations_rad;  //!< of its lasers, the top one first
     int columns = 0;                     //!< firings per turn
     double minRange_m = 0, maxRange_m = 0;
-    double encoderStep_rad = 0;  //!< azimuths are told in such steps; 0: as they are
+    double encoderStep_rad = 0;  //!< azimuths are given in such steps; 0: as they are
 };
 
 /** All that exist. */

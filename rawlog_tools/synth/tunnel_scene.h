@@ -2,7 +2,7 @@
 #include "rural_scene.h"
 
 namespace delio::synth {
-/** A straight tunnel with smooth walls on an even grade: inside, scans do not tell how far one has
+/** A straight tunnel with smooth walls on an even grade: inside, scans do not show how far one has
  *  gone. The drive begins in it, already in motion, its mouth out of sight; after 5 km it leads out
  *  into open country. */
 class TunnelScene : public RuralScene {

@@ -51,8 +51,8 @@ class ScanTrajectory {
 /** The trajectory in a frame in which its own frame at rest has this pose. */
 ScanTrajectory placed(const Eigen::Isometry3d& pose, const ScanTrajectory& trajectory);
 
-/** A trajectory, for those who ask often: poses at times so close to each other that what lies
- * between is their weighted mean. */
+/** A trajectory for many lookups: poses at times so close to each other that a pose in between is
+ * their weighted mean. */
 class PoseTable {
  public:
     /** From `first_s` to `last_s`. */

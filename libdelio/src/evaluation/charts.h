@@ -43,8 +43,8 @@ class Chart {
  *  Throws Error where gnuplot is not installed (it names the package) or fails. */
 void drawCharts(const std::vector<Chart>& charts, const std::string& folder);
 
-/** The colour of an estimate in every plot and table, "#rrggbb": colours that people who do not
- *  tell red from green tell apart. They come again after the eighth estimate. Red is left to the
+/** The colour of an estimate in every plot and table, "#rrggbb": safe for red-green colour
+ *  blindness. They come again after the eighth estimate. Red is left to the
  *  ground truth. */
 std::string colourOf(std::size_t estimate);
 

@@ -84,7 +84,7 @@ bool suits(const Column& column, double value) {
     return column.kind != 'F' || isPlausible(value);
 }
 
-/** Rings and times that are all the same tell nothing. */
+/** Rings and times that are all the same identify no layout. */
 bool columnFits(const Column& column, std::size_t at, const std::vector<std::uint8_t>& bytes,
                 std::size_t step) {
     constexpr double kEnough = 0.98;

@@ -47,7 +47,8 @@ bool isNumber(char kind, std::size_t bytes);
 /** From one record to the next, bytes. */
 std::size_t strideOf(const std::vector<Column>& columns);
 
-/** A file of records that is read: its header first, by who knows its kind, then its records. */
+/** A file of records that is read: its header first, by the reader of its kind, then its records.
+ */
 class RecordFile {
  public:
     /** @param kind names the kind in errors: "PLY". Throws Error where there is no such file. */

@@ -22,7 +22,7 @@ void writePoints(const std::string& path, const std::string& header, const MapPo
                  const Colours& colours, std::size_t colourBytes,
                  void (*packColour)(const mrpt::img::TColor& colour, char* to));
 
-/** A file of points that is read: its header first, by who knows its kind, then its records. */
+/** A file of points that is read: its header first, by the reader of its kind, then its records. */
 class PointFile : public io::RecordFile {
  public:
     using RecordFile::RecordFile;

@@ -25,8 +25,8 @@ class VisibilityVotes {
     void look(const odometry::RangeImage& view, const Eigen::Isometry3d& sensorInWorld,
               float reach_m);
 
-    /** Tells what is dynamic: voxels that were looked through, or hit as a part of what moves; and
-     *  those of which little is known and above or beside which most is dynamic. */
+    /** Marks as dynamic: voxels that were looked through, or hit as a part of a moving object; and
+     *  voxels of which little is known and above or beside which most is dynamic. */
     void decide();
 
     /** After decide(). False where nothing was hit. */

@@ -54,7 +54,7 @@ struct ExternalRanges : CObservation3DRangeScan {
 };
 
 /** The first float of one in 65536 scans of KITTI's format begins like a gzip file, and zlib takes
- *  it for one; the method, the third byte, tells (RFC 1952). */
+ *  it for one; the third byte, the method, differs (RFC 1952). */
 bool isTakenForGzip(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
     std::array<unsigned char, 3> begin{};
@@ -64,7 +64,7 @@ bool isTakenForGzip(const std::string& file) {
 }
 
 /** KITTI's format: x, y, z and intensity of each point, `size` bytes in all. (MRPT adds point by
- *  point, and ends the program where there is no memory even to tell of that.) */
+ *  point, and ends the program where memory for an error message is missing.) */
 mrpt::maps::CPointsMap::Ptr readKittiPoints(const std::string& file, std::uint64_t size) {
     std::vector<float> floats(size / sizeof(float));
     if (isTakenForGzip(file)) {
@@ -120,7 +120,7 @@ mrpt::maps::CPointsMap::Ptr readCloud(const std::string& file) {
 /** Loads it from `file`. */
 void load(CObservationPointCloud& cloud, const fs::path& file) {
     // MRPT does not see that compressed data is damaged or cut off, and KITTI's format has no
-    // header: only its size can tell.
+    // header: only its size can be checked.
     using Format = External::ExternalStorageFormat;
     const bool isKitti = External::formatOf(cloud) == Format::KittiBinFile;
     const auto size = isKitti && isTakenForGzip(file.string()) ? fs::file_size(file)

@@ -8,7 +8,7 @@
 namespace delio::io {
 /** Reads one MRPT object from a file, gzip or plain. Throws Error for a file that is missing, holds
  *  anything else than `what` or more than that, holds a class that no such file needs, is cut off
- *  anywhere, or whose compressed data is damaged (its checksum tells). */
+ *  anywhere, or whose compressed data is damaged (by its checksum). */
 void loadWhole(const std::string& path, const std::string& what, FileOf file,
                mrpt::serialization::CSerializable& object);
 

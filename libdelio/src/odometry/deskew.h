@@ -7,7 +7,7 @@
 #include "odometry/preprocess.h"
 
 namespace delio::odometry {
-/** When each point of a turning LiDAR was measured, told by its azimuth: seconds from the moment at
+/** When each point of a turning LiDAR was measured, from its azimuth: seconds from the moment at
  *  which the sensor looked ahead (x), where the stamp of KITTI's raw scans is. A sweep of `sweep_s`
  *  begins at the back and runs clockwise seen from above, as Velodyne's do. */
 std::vector<float> azimuthTimes(const Eigen::Matrix3Xf& points, double sweep_s);

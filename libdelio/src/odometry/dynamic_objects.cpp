@@ -118,7 +118,7 @@ std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentTun
 bool DynamicObjects::isFree(const Object& object, const View& seen, const View& by,
                             double minKnown) const {
     const Eigen::Isometry3f toSensor = by.toMap.inverse() * seen.toMap;
-    // A part of the points of something large tells as much.
+    // A part of the points of a large object is enough.
     constexpr Eigen::Index kEnough = 64;
     const Eigen::Index stride = std::max<Eigen::Index>(1, object.points.cols() / kEnough);
     const Eigen::Index asked = (object.points.cols() + stride - 1) / stride;
@@ -128,7 +128,7 @@ bool DynamicObjects::isFree(const Object& object, const View& seen, const View& 
                                         static_cast<float>(dynamic_tuning::kMargin_m));
         free += place == Place::kFree;
         taken += place == Place::kTaken;
-        // Mostly few points tell that all those that are left cannot make it free.
+        // Mostly a few points show that the remaining ones cannot make it free.
         const auto most = static_cast<double>(free + left), known = most + double(taken);
         if (most == 0 || most < dynamic_tuning::kMinFreeRatio * known ||
             known < minKnown * double(asked))

@@ -79,8 +79,8 @@ class DynamicObjects {
      *  sensor to map, good to a part of the margin. */
     std::vector<std::uint8_t> detect(Sight sight, const Eigen::Isometry3d& pose, double stamp_s);
 
-    /** Where the objects that detect() told last to move were in earlier scans in which they were
-     *  not told to: metres, the map's frame. */
+    /** The objects that the latest detect() found to move, where they were in earlier scans that
+     * did not show it yet: metres, the map's frame. */
     const Eigen::Matrix3Xf& unmasked() const { return unmasked_; }
 
     /** Keeps the scan that detect() was asked of last, at its final pose, to judge later ones by.

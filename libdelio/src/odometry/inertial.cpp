@@ -35,6 +35,7 @@ void GyroPrior::add(const ImuSample& sample) {
 
 void GyroPrior::advance(const ScanClock& scan, const Eigen::Isometry3d& sensorPose) {
     constexpr double kSame_s = 1e-3, kMemory_s = 60;
+    if (isEmpty()) return;
     const double shift_s = scan.clock_s - scan.time_s;
     if (std::abs(shift_s - shift_s_) > kSame_s) ++stretch_;  // a clock was set, or a pause
     shift_s_ = shift_s;
@@ -143,7 +144,7 @@ void GyroPrior::observe(double from_s, double to_s, const Matrix3d& rotation) {
     lidarTurned_rad_ += pairs_.back().lidar.norm();
     for (auto r = readings_.rbegin(); r != readings_.rend() && r->time_s > from_s + offset_s_; ++r)
         if (r->time_s <= to_s + offset_s_) imuTurned_rad_ += usual_s_ * r->rate.norm();
-    // The longer the drive, the less a few scans more tell.
+    // The longer the drive, the less a few more scans add.
     const bool isNew = !calibrated_ || pairs_.size() < 100;
     if (++sinceCalibration_ >= (isNew ? kFirst : kLater)) calibrate();
     estimateBias();

@@ -34,7 +34,7 @@ PlaneEstimate searchInPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points
                              double radius, const PlaneRegistrationOptions& options) {
     const Eigen::Matrix3d R = centre.linear();
     constexpr std::size_t kBest = 12;
-    // A part tells which starts are good, and where they lead to.
+    // A part shows which starts are good, and where they lead to.
     constexpr Eigen::Index kEnough = 1000;
     const Eigen::Matrix3Xd part = sample(points, kEnough);
     paper::SurfaceNormals few;

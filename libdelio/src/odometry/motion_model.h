@@ -25,7 +25,7 @@ class LinearPrediction {
     /** Back to "no motion": after an interruption. */
     void forget() { latestFirst_.clear(); }
 
-    /** Tells what the increment turned out to be, and how long (more than 0) it took. */
+    /** Takes the registered increment and its duration (more than 0). */
     void observe(const Eigen::Isometry3d& increment, double duration_s = 1);
 
  private:

@@ -25,7 +25,7 @@ CheckPoints checkPointsOf(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f&
 /** What points say of where scan `to` stands in scan `from`, beside what was `predicted` and
  * `found` (both map frame `to` to frame `from`) with other features. A standstill explains the
  * rings on the ground, wherever the sensor went, and so would confirm itself; therefore only those
- * points are asked that a standstill does not explain. Not valid where these cannot tell: too few
+ * points are asked that a standstill does not explain. Not valid where these cannot decide: too few
  * of them, or too few that lie on points of `from` in the best place. `reach`: metres that may have
  * been driven. */
 PointEstimate checkByPoints(const CheckPoints& from, const CheckPoints& to,

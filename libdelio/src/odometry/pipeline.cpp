@@ -1,7 +1,5 @@
 #include "odometry/pipeline.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -13,14 +11,6 @@ namespace delio::odometry {
 namespace {
 Eigen::Isometry3d inverseOf(const Eigen::Matrix3f& rotation) {
     return Eigen::Isometry3d(rotation.transpose().cast<double>());
-}
-
-/** Over a long time a vehicle goes on turning, but not tilting. */
-Eigen::Isometry3d withoutTilt(const Eigen::Isometry3d& increment, const Eigen::Matrix3f& upright) {
-    const Eigen::Vector3d up = upright.row(2).transpose().cast<double>();
-    Vector6 moved = poseLog(increment);
-    moved.tail<3>() = up.dot(moved.tail<3>()) * up;
-    return poseExp(moved);
 }
 
 /** True for a scan that was registered along and about every axis and moved slower than the noise
@@ -51,8 +41,7 @@ std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate&
 }  // namespace
 
 PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
-    : given_(options),
-      options_(atScale(options, 1)),
+    : place_(options),
       arrivals_(needsTimes(options.scan)),
       map_(LocalMapTuning(), options.map, options.registration, options.pointMap, options.points),
       dynamics_(options.dynamics),
@@ -62,53 +51,70 @@ Step PlaneOdometry::process(const Scan& scan) {
     requireConsistent(scan);
     Step step;
     step.times_ms = noTimes();
-    seenScale_ = given_.tracker.scale > 0 ? given_.tracker.scale : scaleOf(scan);
-    const bool isEmpty = std::holds_alternative<Empty>(state_);
-    if (isEmpty) takeScale(seenScale_);
-    PointCloud cloud;
-    {
-        const StageTimer timer(step, "preprocess");
-        cloud = own_.without(preprocess(scan, options_.scan));
-        countFromMiddle(cloud);
-        if (isEmpty) upright_ = uprightOf(scan.sensorPose, cloud.points);
-    }
-    const Arrival arrival = arrivals_.take(scan, scan.stamp_s - cloud.stamp_s);
-    time_s_ = arrivals_.sinceStart_s();
-    const Interval& interval = arrival.interval;
-    unregistered_s_ += interval.elapsed_s;
-    advancePriors(cloud, scan);
-    step.notFinite = cloud.notFinite;
-    step.deskewed = !cloud.times_s.empty();
-    step.interrupted = !isEmpty && interval.kind == IntervalKind::kUnknown;
-    if (step.interrupted) interrupt(interval.elapsed_s);
-    if (!isEmpty) step.reason = reasonToSkip(arrival, prediction_);
+    PointCloud cloud = prepare(scan, step);
+    const Interval interval = arrive(scan, cloud, step);
 
     const bool motionWasKnown = !isLost(state_);
-    if (isEmpty)
+    if (std::holds_alternative<Empty>(state_))
         begin(cloud, step);
     else if (!step.reason.empty())
         skip(cloud, interval, step);
     else
         track(cloud, attemptToTrack(cloud, interval, step), step);
     retraceStart(cloud, step);
-    carryToStamp(cloud.stamp_s, !motionWasKnown && !step.predicted && !step.interrupted, step);
-    settleWindow(step);
-    correctPast(step);
-    learnFromWheels(step);
 
+    const bool hasFoundMotion = !motionWasKnown && !step.predicted && !step.interrupted;
+    extendPath(cloud.stamp_s, hasFoundMotion, step);
     step.standing = isStanding(step, interval.duration_s);
     step.lost = isLostAfter(step);
     step.track = track_;
+    finish(std::move(cloud), step);
+    return step;
+}
+
+/** The scan without the points that no stage uses. The first one says which way is up. */
+PointCloud PlaneOdometry::prepare(const Scan& scan, Step& step) {
+    const StageTimer timer(step, "preprocess");
+    const bool isEmpty = std::holds_alternative<Empty>(state_);
+    place_.see(scan);
+    if (isEmpty) takeScale(place_.seen());
+    PointCloud cloud = own_.without(preprocess(scan, options().scan));
+    countFromMiddle(cloud);
+    if (isEmpty) upright_ = uprightOf(scan.sensorPose, cloud.points);
+    step.notFinite = cloud.notFinite;
+    step.deskewed = !cloud.times_s.empty();
+    return cloud;
+}
+
+/** The time since the scan before, and whether the scan can be used (Step::reason). Gyroscope and
+ *  wheels follow as far. */
+Interval PlaneOdometry::arrive(const Scan& scan, const PointCloud& cloud, Step& step) {
+    const double clock_s = scan.stamp_s - cloud.stamp_s;
+    const Arrival arrival = arrivals_.take(scan, clock_s);
+    time_s_ = arrivals_.sinceStart_s();
+    unregistered_s_ += arrival.interval.elapsed_s;
+    const ScanClock clock{time_s_, clock_s, endsOf(cloud).second};
+    usesGyro_ = false;
+    gyro_.advance(clock, scan.sensorPose);
+    wheels_.advance(clock, scan.sensorPose, path_.latest().time_s);
+    if (std::holds_alternative<Empty>(state_)) return arrival.interval;
+    step.interrupted = arrival.interval.kind == IntervalKind::kUnknown;
+    if (step.interrupted) interrupt(arrival.interval.elapsed_s);
+    step.reason = reasonToSkip(arrival, prediction_);
+    return arrival.interval;
+}
+
+/** Leaves what the next scan needs. */
+void PlaneOdometry::finish(PointCloud cloud, Step& step) {
     if (!step.predicted) unregistered_s_ = 0;
-    if (!isLost(state_) && isOtherScale()) {
-        takeScale(seenScale_);
+    if (!isLost(state_) && place_.isOther()) {
+        takeScale(place_.seen());
         beginMap(cloud, !std::holds_alternative<Degenerate>(state_));
     }
-    step.details.emplace_back("scale", scale_);
+    step.details.emplace_back("scale", place_.scale());
     gyro_.count(usesGyro_);
     step.used.indices = std::move(cloud.indices);
     keep(std::move(cloud), step);
-    return step;
 }
 
 /** After a pause, or a clock that was set. */
@@ -123,22 +129,8 @@ void PlaneOdometry::interrupt(double elapsed_s) {
 bool PlaneOdometry::isLostAfter(const Step& step) const {
     constexpr unsigned kPatience = 3;
     if (const auto* degenerate = std::get_if<Degenerate>(&state_))
-        return !isCarried_ && !prediction_.hasMotion() && degenerate->scans >= kPatience;
+        return !wheels_.haveCarried() && !prediction_.hasMotion() && degenerate->scans >= kPatience;
     return step.predicted && missesOf(state_) > 0;
-}
-
-/** The scan placed by points. */
-PlaneOdometry::Attempt PlaneOdometry::attemptToTrack(const PointCloud& cloud,
-                                                     const Interval& interval, Step& step) {
-    // After scans that were not registered, the motion since the last registered one counts.
-    const double since_s = time_s_ - reference_.time_s;
-    if (step.interrupted && prediction_.hasMotion())
-        return attemptAfterPause(cloud, interval, since_s, step);
-    Attempt attempt =
-        attemptWithGyro(cloud, interval.duration_s, since_s, !reference_.isBeforePause, step);
-    attempt = attemptByWheels(cloud, interval.duration_s, std::move(attempt), step);
-    if (isImplausible(attempt.placement.estimate)) attempt.placement.estimate.valid = false;
-    return attempt;
 }
 
 /** The method: a scan against the map of earlier scans. */
@@ -157,7 +149,7 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
     }
     const auto estimate = registerByPlanes(cloud, placed, predicted, since_s, view, step);
 
-    pose_ = estimate.valid ? estimate.pose() : predictedByWheels(predicted);
+    pose_ = estimate.valid ? estimate.pose() : wheels_.carried(pose_, predicted);
     {
         const StageTimer timer(step, "map_update");
         if (estimate.valid)
@@ -171,145 +163,6 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";
     step.details = detailsOf(estimate, placed);
     report(estimate, view, step);
-}
-
-/** The scan placed by points, after a pause in which the motion went on as before, or in which the
- *  sensor stood: where more points fit. */
-PlaneOdometry::Attempt PlaneOdometry::attemptAfterPause(const PointCloud& cloud,
-                                                        const Interval& interval, double since_s,
-                                                        Step& step) {
-    const LinearPrediction before = prediction_;
-    Attempt wentOn = attemptAsPredicted(cloud, interval.elapsed_s, interval.elapsed_s, true, step);
-    prediction_.forget();
-    Attempt stood = attemptAsPredicted(cloud, interval.duration_s, since_s, false, step);
-    prediction_ = before;
-    for (Attempt* attempt : {&wentOn, &stood})
-        if (isImplausible(attempt->placement.estimate)) attempt->placement.estimate.valid = false;
-    if (!stood.isBetterThan(wentOn)) return wentOn;
-    prediction_.forget();
-    return stood;
-}
-
-/** True where the scan lies nearer to the latest registered one than any braking allows, and
- * clearly fewer points fit than there. On a road that looks the same everywhere, scans fit at a
- * wrong place like that. A scan that fits about as well as before is accepted: the clock may have
- * been set. */
-bool PlaneOdometry::isImplausible(const PointEstimate& placed) const {
-    constexpr double kLong_s = 0.5, kAsBefore = 0.9;
-    const bool isNewMap = std::holds_alternative<FirstScan>(state_);
-    if (unregistered_s_ <= kLong_s || isNewMap || !prediction_.hasMotion()) return false;
-    const double speed_mps = prediction_.predict(1).translation().norm(),
-                 acceleration = options_.spacing.braking,
-                 braking_s = std::min(speed_mps / acceleration, unregistered_s_),
-                 least_m = (speed_mps - acceleration / 2 * braking_s) * braking_s;
-    const Eigen::Vector3d moved = placed.pose.translation() - reference_.pose.translation();
-    return moved.norm() < least_m && placed.inlierRatio < kAsBefore * latestInlierRatio_;
-}
-
-/** The scan placed by points, `duration_s` after the one before. */
-PlaneOdometry::Attempt PlaneOdometry::attemptAsPredicted(const PointCloud& cloud, double duration_s,
-                                                         double since_s, bool timeIsKnown,
-                                                         Step& step) {
-    const Extrapolation extrapolation = predictMotion(duration_s);
-    const Eigen::Isometry3d extrapolated = pose_ * extrapolation.at(duration_s);
-    const auto attempt = [&](bool isGuess) {
-        return attemptBy(cloud, expectation(extrapolated, isGuess, since_s, timeIsKnown),
-                         extrapolation.motion(), step);
-    };
-    const bool isTogether = timeIsKnown && !cloud.times_s.empty();
-    if (!isTogether) endWindow();
-    const bool wasTogether = !window_.isEmpty();
-    Attempt best;
-    if (!wasTogether) {
-        best = attempt(isGuessing());
-        if (best.placement.isLikely && !isShaken() && !isSecondScan()) return best;
-        if (!best.placement.isLikely && !isGuessing()) best = attempt(true);
-    }
-    const bool isExtended = isTogether && extendWindow(cloud, since_s, best.placement, step);
-    if (!isExtended) return wasTogether ? attempt(true) : best;
-    Attempt together = attemptInWindow(cloud, since_s, step);
-    if (wasTogether && !together.placement.isLikely)
-        together = attemptAgain(cloud, since_s, std::move(together), step);
-    together.extrapolated = pose_ * extrapolation.at(duration_s);
-    if (wasTogether && !together.placement.isLikely) best = attempt(true);
-    if (together.placement.estimate.valid && !best.isBetterThan(together)) return together;
-    endWindow();
-    return best;
-}
-
-/** The scan placed by points near where it is expected, de-skewed by a motion. */
-PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
-                                                const Expectation& expected,
-                                                const ScanTrajectory& motion, Step& step) {
-    Attempt attempt;
-    attempt.predicted = attempt.extrapolated = expected.pose;
-    attempt.motion = motion;
-    {
-        const StageTimer timer(step, "undistort");
-        attempt.view = undistorted(cloud, attempt.motion);
-    }
-    {
-        const StageTimer timer(step, "thinning");
-        attempt.voxels = thin(attempt.view, expected.isPlacedByStanding);
-    }
-    attempt.placement = registerByPoints(attempt.view, expected, attempt.sight, step);
-    auto& estimate = attempt.placement.estimate;
-    estimate = map_.levelled(attempt.view, estimate);
-    attempt.placement.isLikely =
-        estimate.valid && estimate.inlierRatio >= expected.likelyInlierRatio();
-    return attempt;
-}
-
-Motion PlaneOdometry::motion() const {
-    constexpr double kSlow_mps = 0.5;
-    if (!prediction_.hasMotion()) return Motion::kUnknown;
-    const bool isSlow = prediction_.predict(1).translation().norm() < kSlow_mps;
-    return isSlow ? Motion::kSlow : Motion::kFast;
-}
-
-/** The motion after the latest scan. Its end twist, where that is known, is used once. */
-Extrapolation PlaneOdometry::predictMotion(double duration_s) {
-    constexpr double kLong_s = 0.5;
-    Eigen::Isometry3d increment = prediction_.predict(duration_s);
-    if (duration_s > kLong_s) increment = withoutTilt(increment, upright_);
-    if (std::holds_alternative<Degenerate>(state_)) increment = withWheels(increment);
-    Extrapolation extrapolation(increment, duration_s);
-    const bool isKnown = !isLost(state_) && !std::holds_alternative<Degenerate>(state_);
-    if (extrapolation_ && isKnown) extrapolation = *extrapolation_;
-    // Only a hand turns so fast, and back again.
-    const bool isSwing = extrapolation.motion().turning.norm() > options_.spacing.first_turn_radps;
-    if (isSwing && missesOf(state_) > 0)
-        extrapolation = Extrapolation(
-            isometry(Eigen::Matrix3d::Identity(), increment.translation()), duration_s);
-    extrapolation_.reset();
-    return extrapolation;
-}
-
-/** Thins the scan, while the one before it enters the map; says which points became which. */
-VoxelNumbers PlaneOdometry::thin(ScanView& view, bool byStanding) {
-    const auto& spacings = options_.spacing;
-    VoxelNumbers voxels;
-    tbb::parallel_invoke([&] { insertWaiting(); },
-                         [&] {
-                             voxels = numberVoxels(view.points, spacings.map_spacing);
-                             view.fine = centroidsOf(view.points, voxels);
-                             thinForPoints(view, upright_, spacings.point_spacing, byStanding);
-                         });
-    return voxels;
-}
-
-/** Meanwhile segments and free space of the scan are found, where these are needed (`sight`). */
-Placement PlaneOdometry::registerByPoints(const ScanView& view, const Expectation& expected,
-                                          std::optional<DynamicObjects::Sight>& sight,
-                                          Step& step) const {
-    const StageTimer timer(step, "points");
-    Placement placement;
-    tbb::parallel_invoke([&] { placement = placeScan(map_, view, expected, options_); },
-                         [&] {
-                             if (options_.dynamics.enabled && !isLost(state_))
-                                 sight = dynamics_.see(view.fine, view.points, upright_);
-                         });
-    return placement;
 }
 
 /** From the thinned scan, whose pose is known by points. */
@@ -327,12 +180,12 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
                                               ScanView& view, Step& step) {
     const StageTimer timer(step, "planes");
     if (!placed.valid) return predictedEstimate(predicted);
-    view.thinned = voxelCentroids(view.fine, options_.spacing.scan_spacing).cast<double>();
+    view.thinned = voxelCentroids(view.fine, options().spacing.scan_spacing).cast<double>();
     auto found = map_.registerPlanes(view, placed, predicted, motion());
-    carryByWheels(found);
+    wheels_.carry(pose_, found);
     if (step.deskewed && !step.interrupted && window_.isEmpty()) {
         deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
-        carryByWheels(found);
+        wheels_.carry(pose_, found);
     }
     return found;
 }
@@ -341,7 +194,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
 bool PlaneOdometry::isBeyondReach(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
                                   double since_s) const {
     const double most_m =
-        options_.points.first_kernel + options_.spacing.acceleration / 2 * since_s * since_s;
+        options().points.first_kernel + options().spacing.acceleration / 2 * since_s * since_s;
     return placed.valid && prediction_.hasMotion() &&
            (placed.pose.translation() - predicted.translation()).norm() > most_m;
 }
@@ -363,7 +216,7 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
     // A degenerate scan may be at a wrong pose, and the next ones would confirm it: few of them
     // enter the map.
     const double moved_m = (pose_.translation() - reference_.pose.translation()).norm();
-    if (isDegenerate && moved_m <= options_.spacing.doubt_spacing) return;
+    if (isDegenerate && moved_m <= options().spacing.doubt_spacing) return;
     if (isTimeKnown) learn(placed, predicted, since_s);
     if (hasSight) dynamics_.remember(pose_ * inverseOf(upright_));
     insertLater(view);
@@ -374,7 +227,7 @@ void PlaneOdometry::update(const PlaneEstimate& estimate, const PointEstimate& p
 bool PlaneOdometry::hasDrifted(const PlaneEstimate& estimate, double inlierRatio) const {
     constexpr double kDrifted = 0.6, kHorizontal = 0.7;  // of the unit axis, along the vertical
     const auto* degenerate = std::get_if<Degenerate>(&state_);
-    if (!degenerate || isCarried_ || prediction_.hasMotion()) return false;
+    if (!degenerate || wheels_.haveCarried() || prediction_.hasMotion()) return false;
     const Eigen::VectorXd along = estimate.translation.unobservedAxes.transpose() * upAt(pose_);
     const bool isHorizontal = (along.array().abs() < kHorizontal).any();
     return isHorizontal && inlierRatio < kDrifted * degenerate->inlierRatio;
@@ -393,57 +246,30 @@ void PlaneOdometry::miss(const PointCloud& cloud) {
     state_ = lostFrom(std::move(state_), misses);
     if (misses < kPatience) return;
     leaveMap();
-    takeScale(seenScale_);  // the map may have begun with the vehicle's own body
+    takeScale(place_.seen());  // the map may have begun with the vehicle's own body
     beginAnew(cloud);
 }
 
 /** Learns the motion, how well it is predicted, and the usual inlier ratio. */
 void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
                           double since_s) {
-    latestInlierRatio_ = placed.inlierRatio;
+    inlierRatios_.latest = placed.inlierRatio;
     if (prediction_.hasMotion()) {
         // A scan that fits badly where it was not expected may be at a wrong pose.
         constexpr double kForget = 0.1, kAsUsual = 0.75;
-        const bool isDoubtful = placed.inlierRatio < kAsUsual * usualInlierRatio_ &&
+        const bool isDoubtful = placed.inlierRatio < kAsUsual * inlierRatios_.usual &&
                                 stepBetween(predicted, placed.pose).norm() > kernel_m();
+        double& usual = inlierRatios_.usual;
         if (!isDoubtful)
-            usualInlierRatio_ = usualInlierRatio_ == 0 ? placed.inlierRatio
-                                                       : (1 - kForget) * usualInlierRatio_ +
-                                                             kForget * placed.inlierRatio;
+            usual = usual == 0 ? placed.inlierRatio
+                               : (1 - kForget) * usual + kForget * placed.inlierRatio;
         learnFromGyro(predicted, since_s);
-        kernel_.observe(pose_, usesGyro_ ? atConstantSpeed_ : predicted);
-        unevenness_.observe(reference_.pose.inverse() * pose_, prediction_.predict(since_s));
+        errors_.kernel.observe(pose_, usesGyro_ ? atConstantSpeed_ : predicted);
+        errors_.unevenness.observe(reference_.pose.inverse() * pose_, prediction_.predict(since_s));
     }
     prediction_.observe(reference_.pose.inverse() * pose_, since_s);
     gyro_.observe(reference_.time_s, reference_.time_s + since_s,
                   reference_.pose.linear().transpose() * pose_.linear());
-}
-
-/** What is known of the next scan's pose, `since_s` after the latest registered scan. */
-Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, bool isGuess,
-                                       double since_s, bool timeIsKnown) const {
-    const auto& spacing = options_.spacing;
-    const auto& registration = options_.registration;
-    // A longer way has to be found by surfaces.
-    constexpr double kLongest_s = 0.5;
-    const double unknown_s = std::max(since_s, unregistered_s_);
-    const double acceleration =
-        unknown_s <= kLongest_s ? spacing.acceleration : spacing.pause_acceleration;
-    const double driven_m = spacing.first_speed * std::min(since_s, kLongest_s),
-                 gained_m = acceleration / 2 * unknown_s * unknown_s;
-    Expectation expected{predicted, reference_, upright_};
-    expected.motionIsKnown = prediction_.hasMotion();
-    expected.isGuess = isGuess;
-    expected.start.metres = expected.motionIsKnown ? std::min(gained_m, driven_m) : driven_m;
-    expected.start.turn_rad = std::min(spacing.first_turn_radps * since_s, spacing.most_turn_rad);
-    expected.reach_m =
-        timeIsKnown ? std::min(plane_tuning::kSearchSpeed_mps * since_s, registration.search_radius)
-                    : registration.search_radius;
-    expected.kernel_m = kernel_m();
-    expected.isShaken = isShaken();
-    expected.isPlacedByStanding = isPlacedByStanding(isGuess);
-    expected.usualInlierRatio = usualInlierRatio_;
-    return expected;
 }
 
 /** A map cannot begin before the first usable scan. */
@@ -467,7 +293,7 @@ void PlaneOdometry::begin(const PointCloud& cloud, Step& step) {
  *  the scan before. */
 void PlaneOdometry::skip(const PointCloud& cloud, const Interval& interval, Step& step) {
     const Extrapolation extrapolation = predictMotion(interval.duration_s);
-    pose_ = predictedByWheels(pose_ * extrapolation.at(interval.duration_s));
+    pose_ = wheels_.carried(pose_, pose_ * extrapolation.at(interval.duration_s));
     motion_ = extrapolation.motion();
     ScanView view = undistorted(cloud, motion_);
     step.details = detailsOf({}, {});
@@ -488,18 +314,25 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, ScanView& view, Step& 
 }
 
 /** The step from the stamp of the scan before to this one's, which is `stamp_s` from the scan's
- * time. `hasFoundMotion`: the motion, which was not known before, is that of the scan before, too.
- */
-void PlaneOdometry::carryToStamp(double stamp_s, bool hasFoundMotion, Step& step) {
+ *  time, and corrections of earlier ones. `hasFoundMotion`: the motion, which was not known before,
+ *  is that of the scan before, too. */
+void PlaneOdometry::extendPath(double stamp_s, bool hasFoundMotion, Step& step) {
     const Eigen::Isometry3d moved = atStamp(motion_, stamp_s);
-    Eigen::Isometry3d before = stamped_.pose;
-    if (hasFoundMotion && !start_ && stamped_.stamp_s != 0)
-        before = pose_ * atStamp(motion_, stamped_.time_s + stamped_.stamp_s - time_s_);
-    stamped_ = {pose_ * moved, stamp_s, time_s_};
-    step.increment.pose = normalised(before.inverse() * stamped_.pose);
-    if (stamp_s == 0) return;
-    const Eigen::Isometry3f toStamp = moved.inverse().cast<float>();
-    step.used.points = (toStamp.linear() * step.used.points).colwise() + toStamp.translation();
+    const Stamped latest = path_.latest();
+    Eigen::Isometry3d before = latest.pose;
+    if (hasFoundMotion && !start_ && latest.stamp_s != 0)
+        before = pose_ * atStamp(motion_, latest.sinceStart_s() - time_s_);
+    step.increment.pose = path_.advance({pose_ * moved, stamp_s, time_s_}, before);
+    if (stamp_s != 0) {
+        const Eigen::Isometry3f toStamp = moved.inverse().cast<float>();
+        step.used.points = (toStamp.linear() * step.used.points).colwise() + toStamp.translation();
+    }
+    settleWindow(step);
+    if (start_) path_.correctSince(start_->stamp_s, window_.trajectory());
+    path_.report(step);
+    step.carried = wheels_.haveCarried();
+    wheels_.learn(isObserved(step), latest.sinceStart_s(), path_.latest().sinceStart_s(),
+                  step.increment.pose);
 }
 
 /** A new map of this scan, at pose_. */
@@ -508,7 +341,7 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     constexpr double kDense = 0.2;
     const bool isSkewed = window_.isEmpty() && !cloud.times_s.empty() && !usesGyro_;
     ScanView view = undistorted(cloud, isSkewed ? ScanTrajectory(Twist{}) : motion_);
-    odometry::thin(view, kDense * options_.spacing.map_spacing, options_.spacing.scan_spacing);
+    odometry::thin(view, kDense * options().spacing.map_spacing, options().spacing.scan_spacing);
     map_.clear(upAt(pose_));
     waiting_.reset();
     start_.reset();
@@ -516,7 +349,7 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     if (prediction_.hasMotion() || !isRetraced) beginning_.clear();
     if (isRetraced) beginning_.push_back({{cloud, time_s_, Twist{}}, {}, track_});
     dynamics_.clear();
-    usualInlierRatio_ = 0;
+    inlierRatios_.usual = 0;
     map_.addScan(view.fine, pose_);
     reference_ = {view.points, pose_, time_s_};
     if (!map_.isUsable()) {
@@ -541,22 +374,27 @@ void PlaneOdometry::insertWaiting() {
     waiting_.reset();
 }
 
-void PlaneOdometry::takeScale(double scale) {
-    scale_ = scale;
-    otherScale_ = 0;
-    options_ = atScale(given_, scale);
-    map_ = LocalMap(options_.localMap, options_.map, options_.registration, options_.pointMap,
-                    options_.points);
-    waiting_.reset();
+/** After a scan that was registered, at pose_, before it becomes the reference. */
+void PlaneOdometry::learnFromGyro(const Eigen::Isometry3d& predicted, double since_s) {
+    if (!usesGyro_) return;
+    gyroErrors_.kernel.observe(pose_, predicted);
+    const auto turned = gyro_.rotation(time_s_ - since_s, time_s_);
+    if (!turned) return;
+    const Eigen::Isometry3d even = isometry(*turned, prediction_.predict(since_s).translation());
+    gyroErrors_.unevenness.observe(reference_.pose.inverse() * pose_, even);
 }
 
-/** True where scans in a row show a place of another size than the map was made for: out of a house
- *  into the street. */
-bool PlaneOdometry::isOtherScale() {
-    constexpr double kOther = 2;
-    constexpr unsigned kPatience = 10;
-    const double ratio = seenScale_ / scale_;
-    otherScale_ = ratio >= kOther || ratio <= 1 / kOther ? otherScale_ + 1 : 0;
-    return otherScale_ >= kPatience;
+/** True where the scan showed every axis, and no earlier one was corrected. */
+bool PlaneOdometry::isObserved(const Step& step) const {
+    return std::holds_alternative<Tracking>(state_) && !step.predicted && !step.interrupted &&
+           step.corrected.empty() && step.quality.unobservedTranslation.cols() == 0;
+}
+
+/** Before a map of that scale begins. */
+void PlaneOdometry::takeScale(double scale) {
+    place_.use(scale);
+    map_ = LocalMap(options().localMap, options().map, options().registration, options().pointMap,
+                    options().points);
+    waiting_.reset();
 }
 }  // namespace delio::odometry

@@ -1,5 +1,4 @@
 #pragma once
-#include <deque>
 #include <optional>
 
 #include "core/voxel_grid.h"
@@ -11,10 +10,12 @@
 #include "odometry/initial_guess.h"
 #include "odometry/motion_model.h"
 #include "odometry/own_vehicle.h"
+#include "odometry/place_scale.h"
 #include "odometry/register_together.h"
 #include "odometry/register_trajectory.h"
+#include "odometry/reported_path.h"
 #include "odometry/tracking_state.h"
-#include "odometry/wheel_prior.h"
+#include "odometry/wheels.h"
 
 namespace delio::odometry {
 /** Points that wait to enter the map. */
@@ -23,11 +24,16 @@ struct PlacedPoints {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
 };
 
-/** A scan at its stamp. */
-struct Stamped {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor to map
-    double stamp_s = 0;                                      //!< from the scan's time
-    double time_s = 0;                                       //!< of the scan, since the start
+/** How far the predictions of the pose were off lately. */
+struct PredictionErrors {
+    AdaptiveKernel kernel;
+    Unevenness unevenness;
+};
+
+/** Inlier ratios of scans that were registered to points; 0: not known. */
+struct InlierRatios {
+    double usual = 0;
+    double latest = 0;
 };
 
 /** Scan-to-map odometry, rotation and translation decoupled. A scan is preprocessed, predicted,
@@ -49,6 +55,9 @@ class PlaneOdometry : public Odometry {
     Eigen::AlignedBox3d ownVehicle() const override { return own_.box(); }
 
  private:
+    // The stages of process(), in their order.
+    PointCloud prepare(const Scan& scan, Step& step);
+    Interval arrive(const Scan& scan, const PointCloud& cloud, Step& step);
     void begin(const PointCloud& cloud, Step& step);
     void skip(const PointCloud& cloud, const Interval& interval, Step& step);
     void interrupt(double elapsed_s);
@@ -70,13 +79,30 @@ class PlaneOdometry : public Odometry {
         }
     };
     void track(const PointCloud& cloud, Attempt attempt, Step& step);
+    void extendPath(double stamp_s, bool hasFoundMotion, Step& step);
+    void finish(PointCloud cloud, Step& step);
+
+    // Where a scan may be: from which motions it is placed by points (pipeline_attempts.cpp).
     Attempt attemptToTrack(const PointCloud& cloud, const Interval& interval, Step& step);
-    Attempt attemptBy(const PointCloud& cloud, const Expectation& expected,
-                      const ScanTrajectory& motion, Step& step);
+    Attempt attemptWithGyro(const PointCloud& cloud, double duration_s, double since_s,
+                            bool timeIsKnown, Step& step);
+    std::optional<Attempt> attemptByGyro(const PointCloud& cloud, double duration_s, double since_s,
+                                         Step& step);
     Attempt attemptAsPredicted(const PointCloud& cloud, double duration_s, double since_s,
                                bool timeIsKnown, Step& step);
     Attempt attemptAfterPause(const PointCloud& cloud, const Interval& interval, double since_s,
                               Step& step);
+    Attempt attemptByWheels(const PointCloud& cloud, double duration_s, Attempt alone, Step& step);
+    Attempt attemptBy(const PointCloud& cloud, const Expectation& expected,
+                      const ScanTrajectory& motion, Step& step);
+    bool isImplausible(const PointEstimate& placed) const;
+    Motion motion() const;
+    Extrapolation predictMotion(double duration_s);
+    Expectation expectation(const Eigen::Isometry3d& predicted, bool isGuess, double since_s,
+                            bool timeIsKnown) const;
+    VoxelNumbers thin(ScanView& view, bool byStanding);
+    Placement registerByPoints(const ScanView& view, const Expectation& expected,
+                               std::optional<DynamicObjects::Sight>& sight, Step& step) const;
 
     // Scans that are registered together (pipeline_window.cpp).
     bool extendWindow(const PointCloud& cloud, double since_s, const Placement& found, Step& step);
@@ -98,34 +124,7 @@ class PlaneOdometry : public Odometry {
     void turnBack(const PlaneOdometry& ahead, std::size_t first);
     std::optional<ScanTrajectory> stepBack(const Latest& scan);
 
-    void advancePriors(const PointCloud& cloud, const Scan& scan) {
-        advanceGyro(cloud, scan);
-        advanceWheels(cloud, scan);
-    }
-
-    // The rotation by a gyroscope (pipeline_gyro.cpp).
-    void advanceGyro(const PointCloud& cloud, const Scan& scan);
-    std::optional<Attempt> attemptByGyro(const PointCloud& cloud, double duration_s, double since_s,
-                                         Step& step);
-    Attempt attemptWithGyro(const PointCloud& cloud, double duration_s, double since_s,
-                            bool timeIsKnown, Step& step);
-    std::optional<ScanTrajectory> trajectoryByGyro(const KnownEnds& known,
-                                                   const PointCloud& cloud) const;
-    void learnFromGyro(const Eigen::Isometry3d& predicted, double since_s);
-
-    // The translation by wheels (pipeline_wheels.cpp).
-    void advanceWheels(const PointCloud& cloud, const Scan& scan);
-    Eigen::Isometry3d withWheels(const Eigen::Isometry3d& increment) const;
-    Attempt attemptByWheels(const PointCloud& cloud, double duration_s, Attempt alone, Step& step);
-    Eigen::Isometry3d predictedByWheels(const Eigen::Isometry3d& predicted);
-    void carryByWheels(PlaneEstimate& estimate);
-    void learnFromWheels(Step& step);
-
     // The stages of track(), in their order.
-    Extrapolation predictMotion(double duration_s);
-    VoxelNumbers thin(ScanView& view, bool byStanding);
-    Placement registerByPoints(const ScanView& view, const Expectation& expected,
-                               std::optional<DynamicObjects::Sight>& sight, Step& step) const;
     void removeDynamicObjects(const VoxelNumbers& voxels, DynamicObjects::Sight sight,
                               const Eigen::Isometry3d& pose, ScanView& view);
     PlaneEstimate registerByPlanes(const PointCloud& cloud, const PointEstimate& placed,
@@ -134,22 +133,21 @@ class PlaneOdometry : public Odometry {
     void update(const PlaneEstimate& estimate, const PointEstimate& placed,
                 const Eigen::Isometry3d& predicted, double since_s, bool hasSight, ScanView& view,
                 const Step& step);
-    bool isImplausible(const PointEstimate& placed) const;
     bool isBeyondReach(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
                        double since_s) const;
     bool hasDrifted(const PlaneEstimate& estimate, double inlierRatio) const;
     void miss(const PointCloud& cloud);
     bool isLostAfter(const Step& step) const;
     void report(const PlaneEstimate& estimate, ScanView& view, Step& step) const;
-    void carryToStamp(double stamp_s, bool hasFoundMotion, Step& step);
-
-    Expectation expectation(const Eigen::Isometry3d& predicted, bool isGuess, double since_s,
-                            bool timeIsKnown) const;
     void learn(const PointEstimate& placed, const Eigen::Isometry3d& predicted, double since_s);
+    void learnFromGyro(const Eigen::Isometry3d& predicted, double since_s);
+    bool isObserved(const Step& step) const;
 
     // De-skewing by the motion that was found (pipeline_deskew.cpp).
     void deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio, ScanView& view,
                      PlaneEstimate& estimate);
+    std::optional<ScanTrajectory> trajectoryByGyro(const KnownEnds& known,
+                                                   const PointCloud& cloud) const;
     ScanTrajectory refined(const ScanTrajectory& start, const KnownEnds& known,
                            const PointCloud& cloud, const ScanView& view) const;
     std::optional<ScanOnTrajectory> deskewByMotion(const KnownEnds& known, double inlierRatio,
@@ -165,12 +163,10 @@ class PlaneOdometry : public Odometry {
     void insertLater(ScanView& view);
     void insertWaiting();
     void takeScale(double scale);
-    bool isOtherScale();
     // The map that the sensor left when it was lost (pipeline_rejoin.cpp).
     void leaveMap();
     void rejoin(const ScanView& view);
     void moveToLeftMap(const Eigen::Isometry3d& toLeft);
-    void correctPast(Step& step);
     /** The vertical in the map's frame, of a sensor at `pose`. */
     Eigen::Vector3d upAt(const Eigen::Isometry3d& pose) const {
         return pose.linear() * upright_.row(2).transpose().cast<double>();
@@ -181,33 +177,29 @@ class PlaneOdometry : public Odometry {
                !prediction_.hasMotion();
     }
     /** Until the motion is known, and after a loss, the points that stand above the ground place a
-     *  scan. A hand tilts the sensor so much that they are not told from the ground. */
+     *  scan. A hand tilts the sensor too much to separate them from the ground. */
     bool isPlacedByStanding(bool isGuess) const {
         if (!prediction_.hasMotion()) return true;
         if (isLost(state_)) return !isShaken();
-        const bool isSteady = kernel_m() < options_.points.first_kernel;
+        const bool isSteady = kernel_m() < options().points.first_kernel;
         return isGuess && isSteady && !std::holds_alternative<Degenerate>(state_);
     }
     /** Predictions are off by more than any kernel. */
     bool isShaken() const {
-        return kernel().isKnown() && kernel_m() >= options_.points.first_kernel;
+        return errors().kernel.isKnown() && kernel_m() >= options().points.first_kernel;
     }
-    Motion motion() const;
     double kernel_m() const {
-        return kernel().width(options_.points.least_kernel, options_.points.first_kernel);
+        return errors().kernel.width(options().points.least_kernel, options().points.first_kernel);
     }
-    const AdaptiveKernel& kernel() const { return usesGyro_ ? gyroKernel_ : kernel_; }
+    const PredictionErrors& errors() const { return usesGyro_ ? gyroErrors_ : errors_; }
+    const ScaledOptions& options() const { return place_.options(); }
     PlaneEstimate predictedEstimate(const Eigen::Isometry3d& pose) const {
-        return odometry::predictedEstimate(pose, options_.registration,
+        return odometry::predictedEstimate(pose, options().registration,
                                            errorGrowth(unregistered_s_));
     }
 
-    const PlaneOdometryOptions given_;
-    ScaledOptions options_;                                  //!< at the scale of the place
+    PlaceScale place_;
     Eigen::Matrix3f upright_ = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
-    double scale_ = 1;
-    double seenScale_ = 1;     //!< that the latest scan shows
-    unsigned otherScale_ = 0;  //!< scans in a row that show a place of another size
 
     TrackingState state_;
     std::size_t track_ = 0, latestTrack_ = 0;  //!< Step::track, and its greatest value
@@ -219,9 +211,7 @@ class PlaneOdometry : public Odometry {
     ReferenceScan reference_;
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
     ScanTrajectory motion_{Twist{}};  //!< during the latest scan, seen from pose_
-    Stamped stamped_;                 //!< the latest scan at its stamp
-    /** Sensor at the latest stamp to that at the first one, as the steps said. */
-    Eigen::Isometry3d said_ = Eigen::Isometry3d::Identity();
+    ReportedPath path_;
     double unregistered_s_ = 0;  //!< since the latest scan that was registered
     /** The latest scan as it came, where its points have times, and its trajectory (sensor to map,
      *  times from the scan's). */
@@ -246,15 +236,14 @@ class PlaneOdometry : public Odometry {
     /** The window holds all scans of the map: each scan more corrects the earlier ones. */
     struct Start {
         double stamp_s = 0;  //!< of the first scan, since the start of the drive
-        /** Sensor at the latest stamp to that at the first one, as the steps said. */
-        Eigen::Isometry3d reported = Eigen::Isometry3d::Identity();
+        Eigen::Isometry3d reported = Eigen::Isometry3d::Identity();  //!< of that scan (Anchor)
     };
     std::optional<Start> start_;
     /** The map before the sensor was lost: the new map began at a prediction. */
     struct LeftMap {
         LocalMap map;
         ReferenceScan reference;
-        Eigen::Isometry3d toSaid = Eigen::Isometry3d::Identity();  //!< its frame to that of said_
+        Anchor anchor;
         double usualInlierRatio = 0;
         std::size_t track = 0;  //!< of its scans
         double left_s = 0;      //!< time of the first scan in the new map
@@ -263,37 +252,19 @@ class PlaneOdometry : public Odometry {
         std::optional<Eigen::Isometry3d> toThis;
     };
     std::optional<LeftMap> left_;
-    /** An earlier scan, whose pose later scans may correct. */
-    struct PastScan {
-        double time_s = 0;                                       //!< of the scan, since the start
-        double stamp_s = 0;                                      //!< its stamp, likewise
-        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< at the stamp, sensor to map
-        Eigen::Isometry3d said = Eigen::Isometry3d::Identity();  //!< the same as the steps said
-        bool isCorrected = false;                                //!< by the latest scan
-    };
-    std::deque<PastScan> past_;  //!< the latest ones, oldest first
     /** The latest scan, until it enters the map: the next scan is thinned meanwhile. */
     std::optional<PlacedPoints> waiting_;
 
     // The motion model, learnt while tracking.
     LinearPrediction prediction_;
-    AdaptiveKernel kernel_;
-    Unevenness unevenness_;
     std::optional<Extrapolation> extrapolation_;  //!< where the points have times
-    double usualInlierRatio_ = 0;                 //!< 0: not known
-    double latestInlierRatio_ = 0;                //!< of the latest scan that was registered
+    PredictionErrors errors_;
+    InlierRatios inlierRatios_;
 
-    // The rotation by a gyroscope, and how far predictions by it are off.
     GyroPrior gyro_;
-    bool usesGyro_ = false;  //!< for this scan
-    AdaptiveKernel gyroKernel_;
-    Unevenness gyroUnevenness_;
+    bool usesGyro_ = false;        //!< it predicts the rotation of this scan
+    PredictionErrors gyroErrors_;  //!< of these predictions
     Eigen::Isometry3d atConstantSpeed_ = Eigen::Isometry3d::Identity();  //!< predicted without it
-
-    // The translation by wheels.
-    WheelPrior wheels_;
-    std::optional<WheelStep> wheelStep_;  //!< since the latest scan
-    bool isCarried_ = false;              //!< this scan, along an axis that it does not show
-    bool wasObserved_ = false;            //!< the latest scan, along every axis
+    Wheels wheels_;
 };
 }  // namespace delio::odometry

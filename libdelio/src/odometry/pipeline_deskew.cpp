@@ -5,8 +5,18 @@
 namespace delio::odometry {
 ScanTrajectory PlaneOdometry::refined(const ScanTrajectory& start, const KnownEnds& known,
                                       const PointCloud& cloud, const ScanView& view) const {
-    return refinedTrajectory(map_.planes(), start, known.since_s, cloud, view,
-                             usesGyro_ ? gyroUnevenness_ : unevenness_, kernel_m(), options_);
+    return refinedTrajectory(map_.planes(), start, known.since_s, cloud, view, errors().unevenness,
+                             kernel_m(), options());
+}
+
+/** From the one pose to the other and on, until the last point of `cloud`, turned as the gyroscope
+ *  says. As constantTwist(). */
+std::optional<ScanTrajectory> PlaneOdometry::trajectoryByGyro(const KnownEnds& known,
+                                                              const PointCloud& cloud) const {
+    if (!usesGyro_) return {};
+    const Eigen::Vector3d velocity =
+        (known.pose.translation() - known.reference.translation()) / known.since_s;
+    return gyro_.trajectory(known.pose, velocity, time_s_, -known.since_s, endsOf(cloud).second);
 }
 
 /** The scan that the map began with, which is all there is in it, as seen on this trajectory. */
@@ -14,7 +24,7 @@ void PlaneOdometry::deskewFirst(const PointCloud& first, const ScanTrajectory& t
     for (auto& [scan, points, track] : beginning_)
         if (scan.time_s == reference_.time_s) scan.trajectory = placed(reference_.pose, trajectory);
     ScanView view = undistorted(first, trajectory);
-    odometry::thin(view, options_.spacing.map_spacing, options_.spacing.scan_spacing);
+    odometry::thin(view, options().spacing.map_spacing, options().spacing.scan_spacing);
     map_.clear(upAt(reference_.pose));
     map_.addScan(view.fine, reference_.pose);
     reference_.points = std::move(view.points);
@@ -33,7 +43,7 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewPair(const PointCloud& firs
             round == 0 ? constantTwist(known, cloud)
                        : refined(constantTwist(known, cloud), known, cloud, view);
         deskewFirst(first, trajectory.seenFrom(-known.since_s));
-        auto next = registerAlong(trajectory, known, map_, cloud, view, options_);
+        auto next = registerAlong(trajectory, known, map_, cloud, view, options());
         if (!next) break;
         known.pose = next->estimate.pose();
         const bool better = !best || next->inlierRatio > best->inlierRatio;
@@ -52,7 +62,7 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewByMotion(const KnownEnds& k
                                                               const ScanView& view) const {
     const unsigned mostRounds = isShaken() ? 6 : 1;
     const auto along = [&](const ScanTrajectory& trajectory) {
-        return registerAlong(trajectory, known, map_, cloud, view, options_);
+        return registerAlong(trajectory, known, map_, cloud, view, options());
     };
     const ScanTrajectory constant =
         trajectoryByGyro(known, cloud).value_or(constantTwist(known, cloud));

@@ -61,11 +61,12 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
 /** Registers the first `count` scans of beginning_ again, the last of them first, as far as they
  *  are found; those before move along. Nothing is corrected where fewer than `least` are found. */
 void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
-    const std::size_t known = past_.size() + 1 - beginning_.size();
+    auto& past = path_.scans();
+    const std::size_t known = past.size() + 1 - beginning_.size();
     const bool isInStep =
-        known < past_.size() && past_[known].time_s == beginning_.front().scan.time_s;
+        known < past.size() && past[known].time_s == beginning_.front().scan.time_s;
     if (!isInStep) return;  // stamps were the same
-    PlaneOdometry back(given_);
+    PlaneOdometry back(place_.given());
     back.turnBack(*this, count);
     std::vector<ScanTrajectory> trajectories(count + 1, beginning_[count].scan.trajectory);
     std::size_t first = count;
@@ -75,38 +76,39 @@ void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
         trajectories[--first] = *found;
     }
     if (count - first < least) return;
-    const PastScan held = past_[known];
+    const Anchor held = past[known].at;
     // The trajectory of a scan is known best between its time and that of the scan after it.
     for (std::size_t i = first, k = first; i < count; ++i) {
-        PastScan& scan = past_[known + i];
+        ReportedPath::Scan& scan = past[known + i];
         while (k < count && beginning_[k + 1].scan.time_s <= scan.stamp_s) ++k;
-        scan.pose = atStamp(trajectories[k], scan.stamp_s - beginning_[k].scan.time_s);
+        scan.at.pose = atStamp(trajectories[k], scan.stamp_s - beginning_[k].scan.time_s);
     }
     const Eigen::Isometry3d moved =
         trajectories[first].at(0) * beginning_[first].scan.trajectory.at(0).inverse();
-    for (std::size_t i = 0; i < first; ++i) past_[known + i].pose = moved * past_[known + i].pose;
+    for (std::size_t i = 0; i < first; ++i)
+        past[known + i].at.pose = moved * past[known + i].at.pose;
     if (first == 0) track_ = beginning_.front().track;
     back.insertWaiting();
     map_ = std::move(back.map_);
     waiting_.reset();
     // The first of the scans stays where it was said to be: the next step leads to where the sensor
     // is now.
-    const Eigen::Isometry3d toMap = past_[known].pose * held.pose.inverse();
-    for (std::size_t i = 0; i < past_.size(); ++i) {
-        if (i < known) past_[i].pose = toMap * past_[i].pose;
-        past_[i].isCorrected = i >= known;
+    const Eigen::Isometry3d toMap = past[known].at.pose * held.pose.inverse();
+    for (std::size_t i = 0; i < past.size(); ++i) {
+        if (i < known) past[i].at.pose = toMap * past[i].at.pose;
+        past[i].isCorrected = i >= known;
     }
-    stamped_.pose = past_[known].pose * held.said.inverse() * said_;
+    path_.moveTo({past[known].at.pose, held.reported});
 }
 
 /** Begins with the scans from number `first` on that follow a start, in reverse order. */
 void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
     upright_ = ahead.upright_;
-    takeScale(ahead.scale_);
-    kernel_ = ahead.kernel_;
+    takeScale(ahead.place_.scale());
+    errors_.kernel = ahead.errors_.kernel;
     constexpr std::size_t kSettled = 5;  // scans since the motion is known well
-    unevenness_ = ahead.unevenness_.ofLatest(kSettled);
-    usualInlierRatio_ = ahead.usualInlierRatio_;
+    errors_.unevenness = ahead.errors_.unevenness.ofLatest(kSettled);
+    inlierRatios_.usual = ahead.inlierRatios_.usual;
     const auto& scans = ahead.beginning_;
     map_.clear(ahead.upAt(scans[first].points->pose));
     for (std::size_t i = scans.size(); i-- > first;) {

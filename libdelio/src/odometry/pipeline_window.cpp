@@ -24,7 +24,7 @@ bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const 
         if (found.isLikely && guess.velocity.norm() > kFastestHand_mps) return false;
         window_.begin(*first->skewed, reference_.time_s, ScanTrajectory({0, 1}, {at, at}));
         if (window_.addSecond(cloud, time_s_, guess, found.isLikely))
-            start_ = Start{stamped_.time_s + stamped_.stamp_s};
+            start_ = Start{path_.latest().sinceStart_s(), path_.anchor().reported};
         else
             window_.clear();
     } else if (latest_ && prediction_.predict(1).translation().norm() < kFastestHand_mps) {
@@ -41,7 +41,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptInWindow(const PointCloud& cloud, d
     const Eigen::Isometry3d pose = window_.trajectory().at(time_s_);
     Expectation expected = expectation(pose, false, since_s, true);
     expected.isShaken = expected.isPlacedByStanding = false;
-    expected.kernel_m = options_.points.least_kernel;
+    expected.kernel_m = options().points.least_kernel;
     return attemptBy(cloud, expected, window_.trajectory().seenFrom(time_s_), step);
 }
 
@@ -66,21 +66,20 @@ void PlaneOdometry::beginMapAgain() {
     for (std::size_t i = 0; i + 1 < scans.size(); ++i) {
         pose_ = trajectory.at(scans[i].time_s);
         ScanView view = undistorted(scans[i].cloud, trajectory.seenFrom(scans[i].time_s));
-        odometry::thin(view, options_.spacing.map_spacing, options_.spacing.scan_spacing);
+        odometry::thin(view, options().spacing.map_spacing, options().spacing.scan_spacing);
         map_.addScan(view.fine, pose_);
         reference_ = {view.points, pose_, scans[i].time_s};
     }
     if (auto* first = std::get_if<FirstScan>(&state_)) first->skewed.reset();
     // The next step leads from where the latest one ended to where the sensor is now.
-    stamped_.pose = trajectory.at(start_->stamp_s) * start_->reported;
+    path_.moveTo({trajectory.at(start_->stamp_s), start_->reported});
 }
 
 /** After a scan, at pose_. */
 void PlaneOdometry::settleWindow(const Step& step) {
     if (window_.isEmpty()) return;
-    if (start_) start_->reported = start_->reported * step.increment.pose;
     if (!step.predicted) window_.moveTo(pose_);
-    if (kernel_.isKnown() && !isShaken()) endWindow();
+    if (errors_.kernel.isKnown() && !isShaken()) endWindow();
 }
 
 void PlaneOdometry::endWindow() {
@@ -91,7 +90,7 @@ void PlaneOdometry::endWindow() {
 /** The scan as it came, for a window that may begin with it, and to find the own vehicle in it. */
 void PlaneOdometry::keep(PointCloud cloud, const Step& step) {
     latest_.reset();
-    if (options_.dynamics.enabled && std::holds_alternative<Tracking>(state_))
+    if (options().dynamics.enabled && std::holds_alternative<Tracking>(state_))
         own_.add(cloud.points, upright_, pose_);
     if (cloud.times_s.empty() || step.predicted || step.interrupted || !window_.isEmpty()) return;
     latest_ = Latest{std::move(cloud), time_s_, trajectoryOfLatest()};

@@ -80,7 +80,7 @@ PlaneMap::State PlaneMap::fit(const Level& level, std::uint32_t number) const {
                  most = options_.max_thickness * options_.max_thickness;
     const Eigen::Vector3d mean = share * cell.sum;
     const Eigen::Matrix3d scatter = share * cell.scatter() - mean * mean.transpose();
-    // Most cells have no plane, and most of these are told so before their axes are known. The
+    // Most cells have no plane, and most of these are ruled out before their axes are known. The
     // smallest variance is no less than the determinant over the minors; the middle one no more
     // than the minors over the largest, and that no less than any on the diagonal.
     const CharacteristicPolynomial roots(scatter);

@@ -37,7 +37,7 @@ std::pair<double, double> endsOf(const PointCloud& cloud);
 std::string whyNoneIsLeft(const Scan& scan, const PreprocessOptions& options);
 
 /** Ring of each point, from 0, neighbours with consecutive numbers: the source's, sorted from the
- *  top, or where it does not say, told by ringsOf(). `upright` turns the cloud's frame such that
+ *  top, or, where it has none, those of ringsOf(). `upright` turns the cloud's frame such that
  * the sensor spins about z. */
 std::vector<std::uint16_t> neighbouringRings(
     const PointCloud& cloud, const Eigen::Matrix3f& upright = Eigen::Matrix3f::Identity());

@@ -186,7 +186,7 @@ Place RangeImage::at(const Eigen::Vector3f& point, float margin) const {
     const int row = directions_.rowOf(x, y, z), column = directions_.columnOf(x, y);
     const int r = row - firstRow_;
     if (r < 0 || r >= static_cast<int>(rows())) return lookAbout(row, column, range, margin);
-    // Mostly the least of the neighbourhood tells all.
+    // Mostly the minimum of the neighbourhood decides.
     const float about = leastAbout_[cellOf(row, column)];
     if (about == 0) return Place::kUnknown;
     const float farther = std::abs(about) - range;

@@ -22,7 +22,7 @@ class RangeImage {
  public:
     /** Of no scan: knows nothing. */
     RangeImage() : RangeImage(Eigen::Matrix3Xf(3, 0), 180) {}
-    /** `points`: metres, of which `turn` leads to the sensor's frame. Directions are told apart by
+    /** `points`: metres, of which `turn` leads to the sensor's frame. Directions differ by
      *  `cell_deg` (degrees of azimuth and of elevation). */
     RangeImage(const Eigen::Matrix3Xf& points, double cell_deg,
                const Eigen::Matrix3f& turn = Eigen::Matrix3f::Identity());

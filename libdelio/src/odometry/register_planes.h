@@ -57,8 +57,8 @@ Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions
 /** Rotation from translation-free residuals, then translation alone, with new correspondences each
  *  time, while the kernel narrows from `kernel` (metres) to last_kernel: from the prior's pose to
  *  convergence. Planes and prior are fused by their information. An axis is unobserved where the
- *  planes, which have to find the rotation, too, tell no more than the prior, what errors of the
- *  normals alone would give taken away. */
+ *  planes, which have to find the rotation, too, have no more information than the prior, after
+ *  that of errors of the normals is subtracted. */
 PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
                                const Prior& prior, double kernel,
                                const PlaneRegistrationOptions& options);

@@ -17,8 +17,8 @@ std::vector<std::uint16_t> ringsOf(const Eigen::Matrix3Xf& points);
 std::vector<std::uint16_t> ringsFromTop(const Eigen::Matrix3Xf& points,
                                         const std::vector<std::uint16_t>& rings);
 
-/** The beams (lasers) of a spinning LiDAR as the elevations of its points tell of them, whatever
- *  the points' order: cones about the z axis with a common tip there. */
+/** The beams (lasers) of a spinning LiDAR from the elevations of its points in any
+ *  order: cones about the z axis with a common tip there. */
 struct Beams {
     float height = 0;               //!< of the tip, m
     std::vector<float> elevations;  //!< rad, from the top

@@ -97,7 +97,7 @@ LevelCounts countsFrom(const LevelSquare& square, const PointMap& map,
 }
 
 namespace {
-/** So many points tell where a start leads to. */
+/** So many points show where a start leads to. */
 constexpr Eigen::Index kEnough = 1000;
 /** Of sparse scans all are needed: with half of a VLP-16's points a road was taken for a tunnel. */
 constexpr Eigen::Index kDense = 2000;
@@ -237,12 +237,12 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     if (isWithin(wide) && wide.inlierRatio >= leastOfAll &&
         shareOf(wide, width) > shareOf(best, width))
         best = wide;
-    // Another start has to explain clearly more; which of them does is told within half the width:
-    // in the whole, the ground of a road fits metres beside, too.
+    // Another start has to explain clearly more. Half the width decides which one does: in the
+    // whole width, the ground of a road fits metres beside, too.
     constexpr double kClearly = 0.1;
     const double least = shareOf(best, width) + kClearly;
     double most = 0;
-    // Where a start leads to, a part of the points tells: they are judged by all, each place once.
+    // A part of the points shows where a start leads to; all of them judge it, each place once.
     const Eigen::Matrix3Xd part = sample(off, kEnough);
     Starts judged;
     // No start leads where more of them lie on the map than come near it from there.

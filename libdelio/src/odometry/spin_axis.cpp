@@ -30,7 +30,7 @@ Eigen::Matrix3Xf partOf(const Eigen::Matrix3Xf& rays) {
     return part.leftCols(kept);
 }
 
-/** Directions from rays to the two next to them, which are enough to tell: unit vectors. */
+/** Directions from rays to the two next to them, which are enough: unit vectors. */
 std::vector<Eigen::Vector3d> stepsToNeighbours(const Eigen::Matrix3Xf& rays) {
     constexpr Eigen::Index kAsked = 3000;
     constexpr float kSame = 1e-5F, kFar = 0.05F;  // rad

@@ -119,7 +119,7 @@ std::optional<WheelStep> WheelPrior::between(double from_s, double to_s) const {
     return step;
 }
 
-/** A part of the way is that of the scans' noise: short stretches tell nothing. */
+/** A part of the way is that of the scans' noise: short stretches show nothing. */
 void WheelPrior::observe(double from_s, double to_s, const Isometry3d& increment) {
     constexpr double kLeast_m = 2, kSame_s = 1e-6;
     const auto step = unscaled(from_s, to_s);

@@ -41,7 +41,7 @@ class WheelPrior {
 
     /** The motions before this time agree with the registered ones. */
     bool isTrustedAt(double time_s) const { return trusted_ && time_s > suspended_s_; }
-    /** They do, or there are too few to tell. */
+    /** They do, or there are too few to decide. */
     bool isPossibleAt(double time_s) const {
         const bool isNew = compared_ < kFewest && contradicting_ == 0;
         return isTrustedAt(time_s) || (isNew && isScalePlausible());

@@ -208,7 +208,7 @@ double meanLineDistance(LineMatcher& matcher, const LineCloud& to, const Eigen::
     return weights > 0 ? sum / weights : kFar;
 }
 
-/** The search looks at every fourth line: enough to tell where the basin is. */
+/** The search looks at every fourth line: enough to find the basin. */
 constexpr unsigned kCoarseStep = 4;
 
 LineCloud everyNth(const LineCloud& lines, Eigen::Index n) {

@@ -399,7 +399,7 @@ void savePng(const mrpt::img::CImage& image, const std::string& path) {
     png.height = static_cast<png_uint_32>(image.getHeight());
     png.format = PNG_FORMAT_BGR;
     png.flags = PNG_IMAGE_FLAG_FAST;
-    // Not MRPT's writer: it tells stderr of a full disk by itself, or nobody.
+    // Not MRPT's writer: it reports a full disk on stderr by itself, or not at all.
     io::replaceFile(path, [&](const std::string& temporary) {
         std::FILE* const file = std::fopen(temporary.c_str(), "wb");
         if (!file) return false;

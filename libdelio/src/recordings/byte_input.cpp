@@ -34,7 +34,7 @@ void unpackBy(const std::string& name, const Buffer& packed, std::uint64_t size,
     constexpr std::uint64_t kFirst = 1 << 20, kCopied = 16 << 20;
     std::size_t taken = 0, given = 0;
     for (bool ended = false; !ended;) {
-        // One byte of room more than announced tells a chunk that is longer.
+        // One byte of room more than announced reveals a chunk that is longer.
         if (given == out.size() || out.empty()) {
             if (given >= kCopied) out.reserve(size + 1);
             out.resize(std::min(size + 1, std::max<std::uint64_t>(kFirst, 2 * given)));

@@ -68,7 +68,7 @@ Value quantile(std::vector<Value> values, double share) {
     return *at;
 }
 
-/** Radians a second from points that follow each other; 0 where they do not tell. */
+/** Radians a second from points that follow each other; 0 where they do not show it. */
 double rateOf(const std::vector<Beam>& beams) {
     constexpr double kSoon_s = 0.005;
     std::vector<double> rates;

@@ -31,7 +31,7 @@ struct HesaiModel {
     std::size_t modeAt = 0;             //!< of the return mode
     std::size_t dateAt = 0;             //!< of year, month, day, hour, minute, second
     std::size_t clockAt = 0;            //!< of the microseconds of the second
-    std::size_t loopAt = 0;             //!< of the bit that tells which lasers fire; 0: all do
+    std::size_t loopAt = 0;             //!< of the bit that selects the lasers that fire; 0: all do
     std::size_t stateAt = 0;            //!< of the operational state, where `firing.fine_ns` is set
     std::uint8_t flags = 0;             //!< of the header: the parts that its packets have
     double minRange = 0, maxRange = 0;  //!< metres

@@ -58,7 +58,7 @@ class LivoxMaker : public ScanMaker {
     Findings findings_;
 };
 
-/** The sensor's own clock tells how messages of a scan follow each other, and the header when they
+/** The sensor's own clock orders the messages of a scan, and the header when they
  *  came. */
 double LivoxMaker::startOf(const LivoxHead& head) {
     constexpr double kApart_s = 0.05;

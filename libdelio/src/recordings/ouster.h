@@ -47,7 +47,7 @@ struct OusterInfo {
     double beamOut_m = 0, beamUp_m = 0;        //!< beam's origin from that of the lidar frame
     Eigen::Matrix4d lidarToSensor = Eigen::Matrix4d::Identity();
     Eigen::Matrix4d imuToSensor = Eigen::Matrix4d::Identity();
-    std::vector<int> pixelShifts;  //!< columns by which images shift each row; empty: not told
+    std::vector<int> pixelShifts;  //!< columns by which images shift each row; empty: not known
     OusterLayout layout;
 
     /** e.g. "Ouster OS-1-128". */

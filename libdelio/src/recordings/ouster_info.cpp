@@ -200,8 +200,8 @@ void readBeams(const Reader& reader, OusterInfo& info) {
 
 void readColumns(const Reader& reader, OusterInfo& info) {
     constexpr double kMost = 4096;
-    const bool told = reader.find<Json>("columns_per_frame").has_value();
-    info.columns = told ? countOf(reader, "columns_per_frame", kMost) : columnsOf(reader);
+    const bool isGiven = reader.find<Json>("columns_per_frame").has_value();
+    info.columns = isGiven ? countOf(reader, "columns_per_frame", kMost) : columnsOf(reader);
     if (reader.find<Json>("columns_per_packet"))
         info.columnsPerPacket = countOf(reader, "columns_per_packet", kMost);
     info.columnsUsed = info.columns;

@@ -1,10 +1,10 @@
 #pragma once
 
 namespace delio::io {
-/** Unix times of a sensor's packets. The sensor's clock, in seconds, tells them, and the recorder's
- *  what that clock counts from. Where the two are more than half a minute apart, the sensor's was
- *  never set and counts from the first packet's recording; where it stands or leaps while the
- *  recorder's does not, the recorder's goes on. */
+/** Unix times of a sensor's packets. They are those of the sensor's clock, in seconds; the
+ *  recorder's shows what that clock counts from. Where the two are more than half a minute apart,
+ * the sensor's was never set and counts from the first packet's recording; where it stands or leaps
+ * while the recorder's does not, the recorder's goes on. */
 class PacketClock {
  public:
     /** `period_s`: after so long the sensor's clock starts at zero again; 0: never. */

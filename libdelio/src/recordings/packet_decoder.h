@@ -61,7 +61,7 @@ std::unique_ptr<PacketDecoder> hesaiDecoder(const std::string& anglesFile);
 std::unique_ptr<PacketDecoder> robosenseDecoder(const std::string& anglesFile);
 
 /** Maker of the sensor that sent a packet: "velodyne", "hesai" or "robosense"; empty: another one.
- *  Ouster's packets do not tell. */
+ *  Ouster's packets have no mark. */
 std::string makerOf(const std::uint8_t* packet, std::size_t bytes);
 
 /** A decoder for a maker that makerOf() names. */

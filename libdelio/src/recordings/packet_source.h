@@ -31,7 +31,7 @@ class PacketSource {
     /** The packets come from a sensor now, not from a recording. */
     virtual bool isLive() const { return false; }
 
-    /** Is told that the last packet of this scan came at `last_s` (Unix). */
+    /** Takes note that the last packet of this scan came at `last_s` (Unix). */
     virtual void endScan(std::size_t /*index*/, double /*last_s*/) {}
 };
 }  // namespace delio::io

@@ -137,7 +137,7 @@ bool PointClock::accepts(const Range& range, std::size_t scan) {
     return true;
 }
 
-/** Unix times tell when scans are missing, or are in another order than they were measured in. */
+/** Unix times show missing scans, and scans that are not in the order of measurement. */
 void PointClock::watch(double first, const Range& range, std::size_t scan) {
     constexpr double kFirstUnix_s = 5e8, kMany = 3, kUsual_s = 0.1;
     const double first_s = first * clock_->unit_s;

@@ -22,7 +22,7 @@ struct RecordedTimes {
  *  drive. */
 class PointClock {
  public:
-    /** Looks at one of the first scans; several tell more than one. False: enough were seen. */
+    /** Looks at one of the first scans; several show more than one. False: enough were seen. */
     bool look(RecordedTimes times);
 
     /** Time of each point in seconds from the stamp; NaN where it has none or an impossible one.

@@ -36,7 +36,7 @@ void RecognisedReader::dropUnfitTimes(Scan& scan) {
     findings_.add("point times contradict the azimuths: not used", scan.index);
 }
 
-/** Empty scans tell nothing. */
+/** Empty scans identify nothing. */
 void RecognisedReader::readAhead() {
     constexpr std::size_t kScans = 3, kMost = 20;
     std::size_t withPoints = 0;

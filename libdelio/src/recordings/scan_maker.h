@@ -23,7 +23,7 @@ class ScanMaker {
     ScanMaker(const ScanMaker&) = delete;
     ScanMaker& operator=(const ScanMaker&) = delete;
 
-    /** Looks at one of the first messages, before add(); several tell more than one. False: no
+    /** Looks at one of the first messages, before add(); several show more than one. False: no
      *  more are needed. Throws as add(). */
     virtual bool look(const Message& /*message*/) { return false; }
     /** `scan`: the index of the scan that is being made. Throws Error, which does not name the

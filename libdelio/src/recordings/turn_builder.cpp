@@ -63,7 +63,7 @@ void TurnBuilder::finish(const std::string& sensor) {
 }
 
 std::vector<double> TurnBuilder::startsOfBlocks() {
-    constexpr double kTolerance = 0.25;  // a recorder's clock may tell the times
+    constexpr double kTolerance = 0.25;  // the times may be those of a recorder's clock
     std::vector<double> starts_s, places;
     for (const Block& block : blocks_) {
         starts_s.push_back(block.time_s - blocks_.front().time_s);

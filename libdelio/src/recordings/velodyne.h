@@ -53,7 +53,7 @@ struct VelodyneLayout {
     double maxRange = 300;
 };
 
-/** As above, with the times told by the caller: `starts_s`, one a packet, from the scan's stamp.
+/** As above, with the times of the caller: `starts_s`, one a packet, from the scan's stamp.
  *  `times_s` are those of each point's laser; blocks that share an azimuth were measured at once.
  */
 void decodeVelodynePackets(

@@ -125,7 +125,7 @@ void VelodyneDecoder::keep(const std::uint8_t* payload, std::size_t from, std::s
 }
 
 std::vector<double> VelodyneDecoder::startsOfPackets() {
-    constexpr double kTolerance = 0.25;  // a recorder's clock may tell the times
+    constexpr double kTolerance = 0.25;  // the times may be those of a recorder's clock
     std::vector<double> starts_s;
     for (const double time_s : times_s_) starts_s.push_back(time_s - times_s_.front());
     const auto mended = mendTurnTimes(places_, kTolerance, starts_s);

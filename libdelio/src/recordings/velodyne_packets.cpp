@@ -22,7 +22,7 @@ constexpr std::size_t kReturns = Velodyne::SCANS_PER_BLOCK;
 constexpr int kTurn = Velodyne::ROTATION_MAX_UNITS;
 
 /** MRPT keeps the angles of an XML file in degrees and those of a YAML file in radians; the sines
- *  beside them tell which. */
+ *  beside them show which. */
 double radiansPerUnit(const std::vector<LaserCalibration>& lasers) {
     const auto fits = [&](double unit) {
         return std::all_of(lasers.begin(), lasers.end(), [&](const LaserCalibration& laser) {
@@ -57,7 +57,7 @@ double microsecondsBetween(const Packet& earlier, const Packet& later) {
         kHour_us);
 }
 
-/** The usual time from one packet to the next in microseconds; 0 where their clocks do not tell. */
+/** The usual time from one packet to the next in microseconds; 0 where no clock shows it. */
 double packetPeriod_us(const std::vector<Packet>& packets) {
     if (packets.size() < 2) return 0;
     std::vector<double> periods;
@@ -238,7 +238,7 @@ void decodeVelodynePackets(const std::vector<Packet>& packets,
                      minRange, maxRange});
     const double period_s = 1e-6 * packetPeriod_us(packets);
     for (std::size_t i = 0; i < packets.size(); ++i) {
-        // A clock that was set in between does not tell: then packets are taken as evenly spaced.
+        // After a clock that was set in between, packets are taken as evenly spaced.
         constexpr double kOff_s = 0.05;
         const double even_s = static_cast<double>(i) * period_s;
         const double told_s = 1e-6 * microsecondsBetween(packets.front(), packets[i]);

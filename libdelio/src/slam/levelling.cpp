@@ -103,21 +103,24 @@ Fit fitOf(const std::vector<Stretch>& stretches) {
         for (std::size_t i = 0; i < stretches.size(); ++i) {
             Eigen::Matrix<double, 3, 6> J;
             J << Matrix3d::Identity(), stretches[i].turned;
-            information += weights[i] * J.transpose() * J;
-            right += weights[i] * J.transpose() * stretches[i].up;
+            const Eigen::Matrix<double, 6, 3> weighted = weights[i] * J.transpose();
+            information += weighted * J;
+            right += weighted * stretches[i].up;
         }
         std::vector<double> errors;
         const auto solve = [&](double noise_mps2) {
             Matrix6 held = information;
             held.diagonal().tail<3>().array() += std::pow(noise_mps2 / kBias_mps2, 2);
-            const Vector6 x = held.ldlt().solve(right);
+            const Eigen::LDLT<Matrix6> factors(held);
+            const Vector6 x = factors.solve(right);
             fit.gravity = x.head<3>();
             fit.bias = x.tail<3>();
             errors.clear();
             for (const auto& stretch : stretches)
                 errors.push_back((fit.upAt(stretch) - fit.gravity).norm());
             const Matrix3d covariance =
-                noise_mps2 * noise_mps2 * held.inverse().topLeftCorner<3, 3>();
+                noise_mps2 * noise_mps2 *
+                factors.solve(Matrix6::Identity().eval()).topLeftCorner<3, 3>();
             const Vector3d up = fit.gravity.normalized();
             const Matrix3d level = Matrix3d::Identity() - up * up.transpose();
             const Eigen::SelfAdjointEigenSolver<Matrix3d> spread(level * covariance * level);

@@ -35,7 +35,7 @@ enum class FrameMismatch {
     none,
     lidarAgainstCamera,  //!< estimate's axes are a LiDAR's, the reference's a camera's
     cameraAgainstLidar,  //!< the reverse, or an estimate turned from LiDAR to camera twice
-    unknown              //!< the path is too short to tell
+    unknown              //!< the path is too short to decide
 };
 
 /** Compares the directions in which the moving frames travel, metre by metre (of paths below 6 m a
@@ -81,14 +81,14 @@ struct Comparison {
     std::vector<Eigen::Isometry3d> reference;  //!< true poses
     std::vector<Eigen::Isometry3d> estimate;   //!< the counterparts
     std::vector<double> times_s;               //!< since the first pose
-    bool timesAreAssumed = false;   //!< no file has times: ten poses a second, as KITTI has it
-    std::vector<bool> predicted;    //!< scans that were not registered; empty where not known
-    RelativeError perScan;          //!< of the motion from each pose to the next
-    bool framesAreUnknown = false;  //!< the path is too short to tell whether both are of one frame
-    std::string referenceFault;     //!< a warning that true poses are known to be wrong, or empty
-    std::string mapPage;            //!< path of a page with the estimate's map; may be empty
-    double end_error_m = 0;         //!< between the last poses, relative to the first ones
-    std::size_t unusedReference = 0;     //!< reference rows of unused scans
+    bool timesAreAssumed = false;     //!< no file has times: ten poses a second, as KITTI has it
+    std::vector<bool> predicted;      //!< scans that were not registered; empty where not known
+    RelativeError perScan;            //!< of the motion from each pose to the next
+    bool framesAreUnknown = false;    //!< the path is too short to see if both are of one frame
+    std::string referenceFault;       //!< a warning that true poses are known to be wrong, or empty
+    std::string mapPage;              //!< path of a page with the estimate's map; may be empty
+    double end_error_m = 0;           //!< between the last poses, relative to the first ones
+    std::size_t unusedReference = 0;  //!< reference rows of unused scans
     std::size_t unmatchedReference = 0;  //!< poses of the reference (unused ones apart) and of the
     std::size_t unmatchedEstimate = 0;   //!< estimate without a partner in time
 

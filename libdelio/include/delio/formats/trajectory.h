@@ -13,7 +13,7 @@ struct Trajectory {
 };
 
 /** Reads a pose file: KITTI (12 numbers per line, row-major 3x4) or TUM (t x y z qx qy qz qw; lines
- *  that start with '#' are skipped), told apart by the count of numbers. Rotations are
+ *  that start with '#' are skipped), distinguished by the count of numbers. Rotations are
  *  orthonormalised. Trailing spaces, empty lines and CR are accepted. Throws Error with file and
  *  line for anything else: missing or empty file, wrong count of numbers, text, NaN, a 3x3 part
  *  that is not a rotation (off by more than 1e-2), stamps that do not increase. */

@@ -62,7 +62,7 @@ class RawlogReader : public ScanReader {
     };
 
     mrpt::obs::CObservation::Ptr nextObservation();
-    /** The sensor's label; of those without one the first's is empty, the others, told apart by
+    /** The sensor's label; of those without one the first's is empty, the others, one for each
      *  class and pose on the vehicle, are `unlabelled-2` and so on. */
     std::string nameOf(const mrpt::obs::CObservation& observation);
     bool readEntry();
