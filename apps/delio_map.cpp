@@ -196,6 +196,7 @@ std::string Arguments::fault() {
     if (import.isSet()) return importFault();
     if (at.isSet() && !isStored())
         return "--at needs a stored map as input: a .delio or the folder of a run";
+    if (at.isSet() && at.getValue().empty()) return "--at needs a time";
     if (isGraph()) return clean.isSet() ? "--clean writes no graph" : graphFault();
     if (georeference.isSet() && control.isSet()) return "give either --georeference or --control";
     if (georeference.isSet() && frame.isSet() && frame.getValue() != "utm")

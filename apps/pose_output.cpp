@@ -4,8 +4,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <iostream>
+#include <vector>
 
 #include "cli.h"
 #include "delio/core/error.h"
@@ -52,8 +55,10 @@ PoseOutput::~PoseOutput() {
 void PoseOutput::connect(const std::string& target) {
     const std::string rest = io::isLive(target) ? target.substr(6) : "";
     const auto colon = rest.rfind(':');
-    if (colon == rest.npos || colon == 0 || colon + 1 == rest.size())
-        throw Error("'" + target + "' is not udp://HOST:PORT");
+    const auto port =
+        colon == rest.npos ? std::vector<double>() : cli::numbersIn(rest.substr(colon + 1), 1);
+    if (colon == 0 || port.empty() || !(port[0] >= 1 && port[0] <= 65535))
+        throw Error("'" + target + "' is not udp://HOST:PORT with a port up to 65535");
     addrinfo wanted{};
     wanted.ai_socktype = SOCK_DGRAM;
     addrinfo* found = nullptr;
@@ -73,10 +78,14 @@ void PoseOutput::connect(const std::string& target) {
 
 void PoseOutput::print(const std::string& line) {
     if (!hasReader_) return;
+    errno = 0;
     std::cout << line << std::flush;
     if (std::cout) return;
     hasReader_ = false;
-    cli::warn("nobody reads the poses on stdout; the drive goes on");
+    const std::string cause =
+        errno == EPIPE ? "nobody reads the poses on stdout"
+                       : std::string("cannot write the poses to stdout: ") + std::strerror(errno);
+    cli::warn(cause + "; the drive goes on");
 }
 
 void PoseOutput::add(const run::Run& run, const run::RunRow& row,

@@ -134,7 +134,7 @@ void DriveWriter::addSecond(std::size_t scan) {
         cloud->setPointIntensity(i, p[3]);
     }
     own.points = cloud;
-    writer_.addOther(kSecondLabel, own, io::kDriveEpoch_s);
+    writer_.addOther(kSecondLabel, own, request_.secondZero());
 }
 
 /** Of IMU and wheels, up to this stamp. */

@@ -97,6 +97,7 @@ TEST_F(Updates, TheMapOfADayIsWritten) {
               "delio-map: read " + std::to_string(cloudOf(after(3)).cols()) + " points");
     expectFailure(at("2023-11-14"), 1, {"begins at 2023-11-14T22:13:20Z"});
     expectFailure(at("soon"), 1, {"'soon' is not a time"});
+    expectFailure(at(""), 2, {"--at needs a time"});
     expectFailure(test::runTool("delio-map",
                                 {"-i", path("at.ply"), "-o", path("x.ply"), "--at", "2023-12-01"}),
                   2, {"--at needs a stored map"});
@@ -118,7 +119,14 @@ TEST_F(Updates, WhatCannotBeUpdatedIsSaid) {
     expectFailure(slam(2, "no", update + Words{"--set", "removal.enabled=false"}), 1,
                   {"removal.enabled"});
     expectFailure(slam(1, "again", update), 1, {"the map was not updated", "not after"});
+    EXPECT_TRUE(fs::exists(path("again") + "/trajectory_kitti.txt"));
+    EXPECT_FALSE(fs::exists(path("again") + "/map.delio"));
     expectFailure(slam(2, "after2", update), 1, {"overwrite the map"});
+
+    const auto full = test::runToolOnFullDisk(
+        "delio-slam", Words{"-i", drive(2), "-o", path("full")} + update, 100 * 1024);
+    EXPECT_EQ(full.exitCode, 1) << full.err;
+    EXPECT_NE(full.err.find("'map' failed"), std::string::npos) << full.err;
 
     // A drive and a map without times.
     const std::string timeless = path("timeless.rawlog");

@@ -284,8 +284,9 @@ TEST_F(Live, OptionsThatNeedALiveSensor) {
     expectRefused(test::runTool("delio-slam", words({"--queue", "0"})), 2, {"--queue"});
     expectRefused(test::runTool("delio-slam", {"-i", rawlog_, "-i", "udp://:2368", "-o", out_}), 2,
                   {"only input"});
-    expectRefused(test::runTool("delio-slam", words({"--publish", "127.0.0.1:9"})), 1,
-                  {"udp://HOST:PORT"});
+    for (const char* target : {"127.0.0.1:9", "udp://127.0.0.1:99999", "udp://127.0.0.1:0"})
+        expectRefused(test::runTool("delio-slam", words({"--publish", target})), 1,
+                      {"udp://HOST:PORT"});
     expectRefused(test::runTool("delio-slam", {"-i", "udp://localhost", "-o", out_}), 1,
                   {"udp://localhost", "PORT"});
 }
@@ -295,5 +296,11 @@ TEST_F(Live, PosesOfARecording) {
     const auto run = slam({"--poses", "tum"});
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(run.out, readText(out_ / "trajectory_tum.txt"));
+    const auto full =
+        test::runTool("sh", {"-c", "exec \"$0\" \"$@\" > /dev/full", test::toolPath("delio-slam"),
+                             "-i", rawlog_, "-o", out_, "--force", "--no-map", "--poses", "tum"});
+    EXPECT_EQ(full.exitCode, 0) << full.err;
+    EXPECT_NE(full.err.find("cannot write the poses to stdout: No space"), std::string::npos)
+        << full.err;
 }
 }  // namespace

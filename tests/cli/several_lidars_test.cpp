@@ -90,10 +90,10 @@ TEST_F(SeveralLidars, OneRawlogOfBoth) {
 class SecondLidar : public SeveralLidars {
  protected:
     void SetUp() override {
-        const auto made =
-            test::runTool("synth2rawlog", {"-o", rawlog_, "--scene", "urban", "--sensor", "vlp16",
-                                           "--scans", "90", "--seed", "4", "--start", "moving",
-                                           "--distort", "--second", "-0.8,0.3,0.1,170,3,0"});
+        const auto made = test::runTool(
+            "synth2rawlog", {"-o", rawlog_, "--scene", "urban", "--sensor", "vlp16", "--scans",
+                             "90", "--seed", "4", "--start", "moving", "--distort", "--second",
+                             "-0.8,0.3,0.1,170,3,0", "--epoch", "1700000000"});
         ASSERT_EQ(made.exitCode, 0) << made.err;
         test::writeText(given_,
                         "velodyne 0 0 0 0 0 0\nsecond -0.77 0.27 0.13 170.57735 3.57735 0.57735\n");

@@ -1,5 +1,6 @@
 #include "delio/formats/georeference.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -71,17 +72,23 @@ earth::Fix fixOfCells(const CsvColumns& columns, const std::vector<std::string>&
         if (!number) throw Error(where + ": '" + cell + "' is not a number");
         return number;
     };
+    // Not a number: not known, as in a NavSatFix.
+    const auto knownOf = [&](int column) {
+        const auto number = numberOf(column);
+        return number && std::isfinite(*number) ? number : std::nullopt;
+    };
     earth::Fix fix;
     const auto time = numberOf(columns.time), lat = numberOf(columns.latitude),
-               lon = numberOf(columns.longitude), height = numberOf(columns.height);
+               lon = numberOf(columns.longitude), height = knownOf(columns.height);
     if (!time || !lat || !lon) throw Error(where + ": time, latitude or longitude is missing");
     fix.stamp_s = secondsOf(*time);
     fix.place = {*lat, *lon, height.value_or(0)};
-    fix.covariance = earth::covarianceOf(static_cast<int>(numberOf(columns.quality).value_or(1)),
-                                         numberOf(columns.hdop).value_or(0));
+    const double quality = std::clamp(knownOf(columns.quality).value_or(1), 0.0, 9.0);
+    fix.covariance =
+        earth::covarianceOf(static_cast<int>(quality), knownOf(columns.hdop).value_or(0));
     const int sigmas[] = {columns.east, columns.north, columns.up};
     for (int axis = 0; axis < 3; ++axis)
-        if (const auto sigma = numberOf(sigmas[axis]); sigma && *sigma > 0)
+        if (const auto sigma = knownOf(sigmas[axis]); sigma && *sigma > 0)
             fix.covariance(axis, axis) = *sigma * *sigma;
     constexpr double kUnknown_m = 1e3;
     if (!height) fix.covariance(2, 2) = kUnknown_m * kUnknown_m;

@@ -382,7 +382,7 @@ void GyroPrior::count(bool used) {
 }
 
 std::optional<ImuReport> GyroPrior::report() const {
-    if (samples_ + dropped_ == 0) return {};
+    if (samples_ + dropped_ == 0 && waiting_.isEmpty()) return {};
     ImuReport report;
     report.samples = samples_;
     report.dropped = dropped_;
@@ -409,6 +409,12 @@ void GyroPrior::explain(ImuReport& report) const {
         say(std::to_string(dropped_) +
             " IMU samples are ignored: without angular velocity, not finite, or with a stamp that "
             "does not increase");
+    const bool isNever =
+        samples_ == 0 ? !waiting_.isEmpty() : without_ == scans_ && scans_ >= kFewestPairs;
+    if (isNever && frozen_s_ == 0)
+        return say(
+            "the IMU is not used: none of its samples lies between two scans; have its "
+            "stamps another clock?");
     if (static_cast<double>(without_) > kFew * static_cast<double>(scans_))
         say("no IMU samples for " + of(without_) + ": their rotation is predicted without them");
     if (frozen_s_ > 0)

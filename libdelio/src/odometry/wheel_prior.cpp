@@ -209,7 +209,7 @@ void WheelPrior::count(double time_s, bool carried) {
 }
 
 std::optional<OdometryReport> WheelPrior::report() const {
-    if (samples_ + dropped_ == 0) return {};
+    if (samples_ + dropped_ == 0 && waiting_.isEmpty()) return {};
     OdometryReport report;
     report.samples = samples_;
     report.dropped = dropped_;
@@ -237,6 +237,10 @@ void WheelPrior::explain(OdometryReport& report) const {
     if (jumps_ > 0)
         say("the odometry jumps " + std::to_string(jumps_) +
             " times faster than a vehicle moves: these intervals are not used");
+    if (samples_ == 0 ? !waiting_.isEmpty() : without_ == scans_ && scans_ >= kFewest)
+        return say(
+            "the odometry is not used: none of its samples lies between two scans; have "
+            "its stamps another clock?");
     if (static_cast<double>(without_) > kFew * static_cast<double>(scans_))
         say("no odometry samples for " + of(without_));
     if (distrusted_ > 0)

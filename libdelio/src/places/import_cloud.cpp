@@ -75,6 +75,18 @@ std::vector<Eigen::Vector3f> thinned(const std::string& cloud, double spacing_m,
     return kept;
 }
 
+/** A cloud in millimetres has a point or two per tile, and as many tiles as points. */
+void checkDensity(const std::vector<Eigen::Vector3f>& points, const std::string& cloud) {
+    constexpr std::size_t kFewest = 20;  // per tile; a point every 2 m on the ground is 225
+    VoxelIndex tiles;
+    for (const auto& point : points)
+        tiles.insert(voxelKey(floorOf(point.x() / kTile_m), floorOf(point.y() / kTile_m), 0));
+    if (points.size() < kFewest * tiles.size())
+        throw Error("'" + cloud + "' has " + std::to_string(points.size() / tiles.size()) +
+                    " points per square of 30 m: coordinates must be metres, and the ground must "
+                    "have a point every 0.2 m");
+}
+
 /** A square of the cloud. */
 struct Tile {
     std::vector<std::uint32_t> members;  //!< numbers of its points
@@ -250,6 +262,7 @@ ImportFigures importCloud(const std::string& path, double spacing_m, const std::
     ImportFigures figures;
     auto points = thinned(path, spacing_m, figures);
     figures.kept = points.size();
+    checkDensity(points, path);
     CutCloud cloud(std::move(points));
     figures.submaps = figures.origin.tiles = cloud.size();
     figures.tilt_deg = std::acos(std::min(1.0, cloud.up().z())) / kDeg;

@@ -324,7 +324,8 @@ void Run::store() {
                       [&](std::size_t i) { return submaps.points(i); },
                       record_.georeference,
                       {}};
-    stored_ = own_;
+    // A map.delio with this drive alone would look like the updated map.
+    if (!settings_.update) stored_ = own_;
     if (!follower_ || !record_.isLocalised()) return;
     try {
         if (settings_.extend) extend();
@@ -349,6 +350,7 @@ Visit Run::visit() const {
 }
 
 void Run::update() {
+    if (!map_) throw Error("the scans of the drive could not be put aside");
     std::vector<bool> measured;
     VisitScans scans;
     scans.visit = visit();

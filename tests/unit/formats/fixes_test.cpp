@@ -38,6 +38,12 @@ TEST(Fixes, OfACsv) {
     EXPECT_EQ(fixes[1].place.longitude_deg, -8.4);
     EXPECT_EQ(fixes[1].covariance(2, 2), 1e6);  // no height
     EXPECT_FALSE(fixes[1].antenna);
+    const auto unknown =
+        read("gnss.csv", "time,lat,lon,height,quality,sigma_up\n1,49,8,nan,nan,nan\n");
+    ASSERT_EQ(unknown.size(), 1U);
+    EXPECT_TRUE(earth::isUsable(unknown[0]));
+    EXPECT_EQ(unknown[0].place.height_m, 0);
+    EXPECT_EQ(unknown[0].covariance(2, 2), 1e6);
     EXPECT_NE(faultIn("gnss.csv", "1,2,3\n").find("line 1"), std::string::npos);
     EXPECT_NE(faultIn("gnss.csv", "time,lat,lon\n1,2,x\n").find("line 2"), std::string::npos);
     EXPECT_NE(faultIn("gnss.csv", "time,lat,lon\n1,2\n").find("line 2"), std::string::npos);

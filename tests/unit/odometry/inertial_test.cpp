@@ -153,6 +153,17 @@ TEST(Gyro, IsNotTrustedWhileNothingTurns) {
     EXPECT_TRUE(says(rig.report(), "turned too little"));
 }
 
+TEST(Gyro, SamplesOfAnotherClockAreNamed) {
+    for (const double offset_s : {-5000.0, 5000.0}) {
+        Rig rig;
+        rig.recorded = Matrix3d::Identity();
+        rig.offset_s = offset_s;
+        rig.drive(60);
+        EXPECT_FALSE(rig.gyro.isTrusted());
+        EXPECT_TRUE(says(rig.report(), "none of its samples lies between two scans")) << offset_s;
+    }
+}
+
 TEST(Gyro, FindsABiasOfTwoDegreesASecond) {
     Rig rig;
     rig.recorded = Matrix3d::Identity();

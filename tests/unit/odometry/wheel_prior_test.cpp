@@ -102,6 +102,23 @@ TEST(WheelPrior, GivesTheLidarsMotionAcrossALeverArm) {
     EXPECT_FALSE(car.wheels.isTrustedAt(1));
 }
 
+TEST(WheelPrior, SamplesOfAnotherClockAreNamed) {
+    for (const double offset_s : {-5000.0, 5000.0}) {
+        Car car;
+        car.spoil = [&](double, OdometrySample& sample) {
+            sample.stamp_s += offset_s;
+            return true;
+        };
+        car.drive(5);
+        const auto report = car.wheels.report();
+        ASSERT_TRUE(report) << offset_s;
+        ASSERT_EQ(report->findings.size(), 1U) << offset_s;
+        EXPECT_NE(report->findings.front().find("none of its samples lies between two scans"),
+                  std::string::npos)
+            << report->findings.front();
+    }
+}
+
 TEST(WheelPrior, LearnsTheScaleAndHowWellItAgrees) {
     Car car;
     car.scale = 1.04;

@@ -136,6 +136,15 @@ TEST_F(ImportedTown, RefusesAWallAndNothing) {
     EXPECT_FALSE(fs::exists(path_));
 }
 
+// A point per square, which would take minutes.
+TEST_F(ImportedTown, RefusesMillimetres) {
+    Cloud cloud;
+    for (int i = 0; i < 40; ++i)
+        for (int k = 0; k < 40; ++k) cloud.emplace_back(200 * i, 200 * k, 0);
+    EXPECT_NE(refusalOf(cloud).find("points per square of 30 m"), std::string::npos);
+    EXPECT_FALSE(fs::exists(path_));
+}
+
 // The file of drives stays readable by older versions.
 TEST_F(ImportedTown, OnlyAnImportedMapHasTheNewVersion) {
     const auto versionOf = [](const std::string& path) { return test::readText(path).at(8); };
