@@ -413,8 +413,8 @@ void GyroPrior::explain(ImuReport& report) const {
         samples_ == 0 ? !waiting_.isEmpty() : without_ == scans_ && scans_ >= kFewestPairs;
     if (isNever && frozen_s_ == 0)
         return say(
-            "the IMU is not used: none of its samples lies between two scans; have its "
-            "stamps another clock?");
+            "the IMU is not used: none of its samples lies between two scans; its "
+            "stamps seem to come from another clock");
     if (static_cast<double>(without_) > kFew * static_cast<double>(scans_))
         say("no IMU samples for " + of(without_) + ": their rotation is predicted without them");
     if (frozen_s_ > 0)

@@ -239,8 +239,8 @@ void WheelPrior::explain(OdometryReport& report) const {
             " times faster than a vehicle moves: these intervals are not used");
     if (samples_ == 0 ? !waiting_.isEmpty() : without_ == scans_ && scans_ >= kFewest)
         return say(
-            "the odometry is not used: none of its samples lies between two scans; have "
-            "its stamps another clock?");
+            "the odometry is not used: none of its samples lies between two scans; "
+            "its stamps seem to come from another clock");
     if (static_cast<double>(without_) > kFew * static_cast<double>(scans_))
         say("no odometry samples for " + of(without_));
     if (distrusted_ > 0)
