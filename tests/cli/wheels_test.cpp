@@ -60,22 +60,14 @@ TEST(Wheels, CarryThePoseThroughASmoothTunnel) {
     EXPECT_TRUE(trajectoryOf(folder / "with") == trajectoryOf(folder / "one"));
 }
 
-// Slip in the tunnel (from 16 to 17 s, by 20 %) is not seen: the pose is off by as much.
 TEST(Wheels, AreLearntOnTheRoadBeforeATunnel) {
     const test::TemporaryFolder folder;
-    const Words noSlip = {"--odometry", "0.05"},
-                slip = {"--odometry", "0.05", "--slip", "16,1,0.2"};
-    const auto with = slam(drive(folder / "d.rawlog", "portal", "180", noSlip), folder / "with");
+    const auto with =
+        slam(drive(folder / "d.rawlog", "portal", "180", {"--odometry", "0.05"}), folder / "with");
     EXPECT_GT(figure(with.odometry, "scans_carried"), 20);
     EXPECT_LT(figure(with.odometry, "scans_carried"), 100);
     EXPECT_NEAR(figure(with.odometry, "scale"), 1 / 1.05, 0.005);
     EXPECT_LT(figure(with.metrics, "end_error_percent"), 0.3);
-    const auto off = slam(drive(folder / "s.rawlog", "portal", "180", slip), folder / "slip");
-    EXPECT_EQ(figure(off.odometry, "scans_carried"), figure(with.odometry, "scans_carried"));
-    EXPECT_EQ(figure(off.odometry, "stretches_off"), 0);
-    const double tenth_m = 0.2 * with.path_m / 180;  // of a scan at the mean speed, by slip
-    EXPECT_GT(figure(off.metrics, "end_error_m"), 5 * tenth_m);
-    EXPECT_LT(figure(off.metrics, "end_error_m"), 20 * tenth_m);
 }
 
 TEST(Wheels, ThatSlipDoNotDisturbScansThatShowAllAxes) {
