@@ -29,7 +29,9 @@ std::string degrees(double rad, int digits) { return rounded(rad / kDeg, digits)
 }  // namespace
 
 void GyroPrior::add(const ImuSample& sample) {
-    const bool isUsable = std::isfinite(sample.stamp_s) && sample.rate_radps.allFinite();
+    constexpr double kDamaged = 1e4;  // rad/s; no gyroscope has so much in deg/s either
+    const bool isUsable = std::isfinite(sample.stamp_s) && sample.rate_radps.allFinite() &&
+                          sample.rate_radps.cwiseAbs().maxCoeff() < kDamaged;
     if (!isUsable || !waiting_.add(sample)) ++dropped_;
 }
 

@@ -350,6 +350,7 @@ TEST(Gyro, IgnoresSamplesThatSayNothing) {
         if (at_s > 1 && at_s < 1.1) sample.rate_radps.x() = std::nan("");
         if (at_s > 1.5 && at_s < 1.6) rig.gyro.add(sample);  // twice
         if (at_s > 2 && at_s < 2.02) sample.stamp_s = std::nan("");
+        if (at_s > 3 && at_s < 3.02) sample.rate_radps.y() = 1e300;
         return true;
     };
     rig.drive(60);
