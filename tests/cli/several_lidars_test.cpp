@@ -125,7 +125,7 @@ TEST_F(SecondLidar, ItsPoseIsRefinedFromTheDrive) {
         EXPECT_GT(found["second sigma_" + std::string(axis) + "_m"], 0);
         EXPECT_LT(found["second sigma_" + std::string(axis) + "_m"], 0.01);
     }
-    // The precision is honest, but along the direction of travel, as the car speeds up all the time.
+    // The precision is honest, but along the direction of travel, as the car brakes for long.
     EXPECT_NEAR(found["second y_m"], 0.3, 3 * found["second sigma_y_m"]);
     EXPECT_NEAR(found["second z_m"], 0.1, 3 * found["second sigma_z_m"]);
     EXPECT_NEAR(found["second yaw_deg"], 170, 3 * found["second sigma_about_z_deg"]);
