@@ -50,7 +50,6 @@ class ReportedPath {
 
     /** The scans, oldest first; the latest one comes in with report(). */
     std::deque<Scan>& scans() { return scans_; }
-    const std::deque<Scan>& scans() const { return scans_; }
 
     /** Corrects the scans since the stamp `from_s`, which lie on `trajectory` (sensor to map, since
      *  the start). */
