@@ -56,10 +56,14 @@ std::unique_ptr<ScanReader> openSensor(const ScanSource& source) {
     if (source.path != "-" && !fs::is_directory(source.path) && !fs::is_regular_file(source.path))
         throw Error("'" + source.path +
                     "' is neither a file nor a folder; read a pipe from standard input with -i -");
-    auto scans = fs::is_directory(source.path) ? openFolder(source) : openFile(source);
-    // What comes through a pipe may be measured now.
+    const bool isFolder = fs::is_directory(source.path),
+               isPackets = !isFolder && kindOf(source.path) == FileKind::kPcap;
+    auto scans = isFolder ? openFolder(source) : openFile(source);
+    const Delivery delivery = isPackets            ? Delivery::kPackets
+                              : source.path == "-" ? Delivery::kPipe
+                                                   : Delivery::kFile;
     return std::make_unique<RecognisedReader>(std::make_unique<TurnAssembler>(std::move(scans)),
-                                              source.path == "-");
+                                              delivery);
 }
 }  // namespace
 
