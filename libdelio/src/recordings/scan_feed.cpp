@@ -45,6 +45,7 @@ std::size_t ScanFeed::leastMissed() const {
 /** Its samples go to the next scan. */
 void ScanFeed::drop(std::size_t item) {
     Item& next = waiting_[item + 1];
+    next.scan.dropped += waiting_[item].scan.dropped + 1;
     passOn(std::move(waiting_[item].imu), next.imu);
     passOn(std::move(waiting_[item].odometry), next.odometry);
     waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(item));

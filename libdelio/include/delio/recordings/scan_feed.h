@@ -22,7 +22,7 @@ class ScanFeed {
  public:
     /** A scan, and the samples that were added before it and after the scan before. */
     struct Item {
-        Scan scan;                             //!< as it was added
+        Scan scan;                             //!< as it was added, but Scan::dropped
         std::vector<ImuSample> imu;            //!< in the order in which they were added
         std::vector<OdometrySample> odometry;  //!< likewise
         std::optional<double> received_s;      //!< Unix time at which the sensor's last packet came
