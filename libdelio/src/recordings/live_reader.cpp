@@ -7,7 +7,6 @@
 #include "live_source.h"
 #include "recognised_reader.h"
 #include "sources.h"
-#include "turn_assembler.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -129,8 +128,8 @@ void keepJson(const ScanSource& source) {
 
 std::unique_ptr<ScanReader> openLive(const ScanSource& source) {
     auto packets = std::make_shared<LiveSource>(source.path, source.live);
-    auto scans = std::make_unique<RecognisedReader>(
-        std::make_unique<TurnAssembler>(openPackets(source, packets)), Delivery::kSensor);
+    auto scans =
+        std::make_unique<RecognisedReader>(openPackets(source, packets), Delivery::kSensor);
     keepJson(source);
     return std::make_unique<LiveReader>(std::move(packets), std::move(scans), source.live);
 }
