@@ -169,13 +169,13 @@ void At128Decoder::addGroup(const std::uint8_t* block, std::size_t returns, doub
             if (distance == earlier || range < kNear || range > kFar) continue;
             earlier = distance;
             if (!beam) beam = angles_.direction(field, mirror_deg, laser);
-            const double up = mrpt::DEG2RAD(beam->elevation), across = mrpt::DEG2RAD(beam->azimuth);
-            const double flat = range * portable::cos(up);
-            turns_.add({static_cast<float>(flat * portable::sin(across)),
-                        static_cast<float>(flat * portable::cos(across)),
-                        static_cast<float>(range * portable::sin(up)),
-                        static_cast<float>(measured[2]) / 255.0F, static_cast<std::uint16_t>(laser),
-                        1e-9F * static_cast<float>(kFiring_ns[laser])});
+            const auto up = portable::sineAndCosine(mrpt::DEG2RAD(beam->elevation)),
+                       across = portable::sineAndCosine(mrpt::DEG2RAD(beam->azimuth));
+            const double flat = range * up.cosine;
+            turns_.add(
+                {static_cast<float>(flat * across.sine), static_cast<float>(flat * across.cosine),
+                 static_cast<float>(range * up.sine), static_cast<float>(measured[2]) / 255.0F,
+                 static_cast<std::uint16_t>(laser), 1e-9F * static_cast<float>(kFiring_ns[laser])});
         }
     }
 }
