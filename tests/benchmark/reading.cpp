@@ -2,6 +2,7 @@
 // RECORDING] [--scans N] [RECORDING...]. The first scans of RECORDING (of a toy drive, where there
 // is none), over and over, are written into DIR in every format that tests have a writer for, and
 // read; RECORDINGs named at the end are read as they are.
+#include <malloc.h>
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -271,7 +272,7 @@ class Sources {
             toy.next_us = 27.778;
             test::PcapWriter pcap;
             for (const auto& packet :
-                 test::hesaiDrive(toy, std::min(20.0, static_cast<double>(count_))))
+                 test::hesaiDrive(toy, std::min(100.0, static_cast<double>(count_))))
                 pcap.add(packet.bytes, packet.time_s);
             pcap.write(file.string());
         });
@@ -290,6 +291,9 @@ class Sources {
 }  // namespace
 
 int main(int argc, char** argv) {
+    // As delio-slam keeps memory for the next scan.
+    mallopt(M_MMAP_THRESHOLD, 8 << 20);
+    mallopt(M_TRIM_THRESHOLD, 384 << 20);
     try {
         TCLAP::CmdLine cmd("Measures how fast recordings are read");
         TCLAP::ValueArg<std::string> work("", "work", "Folder to write recordings into", false, "",
