@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 
 #include "delio/core/error.h"
 #include "delio/recordings/scan_reader.h"
@@ -274,6 +275,42 @@ TEST(Peers, OsfAndPcapOfOustersSdkAgree) {
     }
     EXPECT_EQ(scans, 3U);
     EXPECT_FALSE(osf->next());
+}
+
+/** The sensor stands, at whatever angle. */
+void expectAtRest(const Eigen::Vector3d& acceleration, const Eigen::Vector3d& rate) {
+    EXPECT_NEAR(acceleration.norm(), 9.8, 0.5);
+    EXPECT_LT(rate.norm(), 0.05);
+}
+
+TEST(Peers, ImuInAnOsfOfOustersSdk) {
+    if (!std::filesystem::exists(ousterSdk("osfs")))
+        GTEST_SKIP() << "DELIO_PEER_DATA has no ouster-sdk";
+    const auto reader = io::openScans(ousterSdk("osfs/pose_delta_1_128.osf"));
+    const auto scan = reader->next();
+    ASSERT_TRUE(scan);
+    const auto samples = reader->takeImu();
+    ASSERT_EQ(samples.size(), 64U);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        expectAtRest(samples[i].acceleration_mps2, samples[i].rate_radps);
+        EXPECT_NEAR(samples[i].stamp_s - scan->stamp_s, 0.0016 * (static_cast<double>(i) + 1),
+                    0.002);
+    }
+}
+
+TEST(Peers, ImuPacketsOfOustersSdk) {
+    if (!std::filesystem::exists(ousterSdk("pcaps")))
+        GTEST_SKIP() << "DELIO_PEER_DATA has no ouster-sdk";
+    std::ifstream json(ousterSdk("pcaps/imu_zm_no_lidar_0.json"));
+    const auto info = io::readOusterInfo({std::istreambuf_iterator<char>(json), {}}, "json");
+    io::UdpStream packets(ousterSdk("pcaps/imu_zm_no_lidar.pcap"));
+    std::vector<io::OusterImu> samples;
+    std::size_t taken = 0;
+    while (const auto packet = packets.next())
+        taken += io::addOusterImu(info, packet->payload, packet->bytes, samples);
+    EXPECT_EQ(taken, 8U);
+    EXPECT_EQ(samples.size(), 64U);
+    for (const auto& sample : samples) expectAtRest(sample.acceleration, sample.rate);
 }
 
 TEST(Peers, EveryOsfOfOustersSdk) {
