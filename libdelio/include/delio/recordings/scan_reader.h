@@ -181,7 +181,8 @@ struct ScanSource {
     std::string sensorFile;
     LiveSettings live = {};  //!< of "udp://..."
     /** Poses of the sensors in the vehicle, instead of the recording's: lines `LABEL x y z yaw
-     * pitch roll`, metres and degrees. Empty: none. */
+     * pitch roll`, metres and degrees, and of an IMU `imu x y z yaw pitch roll [OFFSET]`, see
+     * ImuSample::offset_s. Empty: none. */
     std::string extrinsicsFile = {};
     /** The same by label, in place of the file's; empty: none. */
     std::map<std::string, Eigen::Isometry3d> extrinsics = {};
