@@ -11,6 +11,7 @@ inline int readScans(const io::ScanSource& source) {
         reader->calibration();
         reader->truth();
         while (reader->next()) reader->fraction();
+        reader->takeImu();
         io::describe(reader->recording());
     });
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 
 #include "delio/core/error.h"
 #include "delio/recordings/scan_reader.h"
@@ -274,6 +275,52 @@ TEST(Peers, OsfAndPcapOfOustersSdkAgree) {
     }
     EXPECT_EQ(scans, 3U);
     EXPECT_FALSE(osf->next());
+}
+
+Eigen::Vector3d meanOf(const std::vector<Eigen::Vector3d>& vectors) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& vector : vectors) sum += vector;
+    return sum / static_cast<double>(vectors.size());
+}
+
+TEST(Peers, ImuInAnOsfOfOustersSdk) {
+    if (!std::filesystem::exists(ousterSdk("osfs")))
+        GTEST_SKIP() << "DELIO_PEER_DATA has no ouster-sdk";
+    const auto reader = io::openScans(ousterSdk("osfs/pose_delta_1_128.osf"));
+    const auto scan = reader->next();
+    ASSERT_TRUE(scan);
+    std::vector<Eigen::Vector3d> accelerations, rates;
+    double before_s = scan->stamp_s;
+    for (const auto& sample : reader->takeImu()) {
+        accelerations.push_back(sample.acceleration_mps2);
+        rates.push_back(sample.rate_radps);
+        EXPECT_NEAR(sample.stamp_s - before_s, 0.1 / 64, 1e-4);
+        before_s = sample.stamp_s;
+    }
+    EXPECT_EQ(rates.size(), 64U);
+    EXPECT_NEAR(meanOf(accelerations).norm(), 9.8, 0.5);
+    EXPECT_LT(meanOf(rates).norm(), 0.1);
+}
+
+TEST(Peers, ImuPacketsOfOustersSdk) {
+    if (!std::filesystem::exists(ousterSdk("pcaps")))
+        GTEST_SKIP() << "DELIO_PEER_DATA has no ouster-sdk";
+    std::ifstream json(ousterSdk("pcaps/imu_zm_no_lidar_0.json"));
+    const auto info = io::readOusterInfo({std::istreambuf_iterator<char>(json), {}}, "json");
+    io::UdpStream packets(ousterSdk("pcaps/imu_zm_no_lidar.pcap"));
+    std::vector<io::OusterImu> samples;
+    std::size_t taken = 0;
+    while (const auto packet = packets.next())
+        taken += io::addOusterImu(info, packet->payload, packet->bytes, samples);
+    EXPECT_EQ(taken, 8U);
+    std::vector<Eigen::Vector3d> accelerations, rates;
+    for (const auto& sample : samples) {
+        accelerations.push_back(sample.acceleration);
+        rates.push_back(sample.rate);
+    }
+    EXPECT_EQ(rates.size(), 64U);
+    EXPECT_NEAR(meanOf(accelerations).norm(), 9.8, 0.5);
+    EXPECT_LT(meanOf(rates).norm(), 0.1);
 }
 
 TEST(Peers, EveryOsfOfOustersSdk) {

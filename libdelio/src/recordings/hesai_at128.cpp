@@ -90,22 +90,20 @@ double At128Angles::withinField(double mirror_deg, std::size_t& field) const {
     return -1;
 }
 
-double At128Angles::more(const std::vector<std::int8_t>& table, std::size_t laser,
-                         double mirror_deg) const {
-    constexpr double kStep_deg = 2;
-    const double steps = mirror_deg / kStep_deg, before = std::floor(steps);
-    const auto i = static_cast<std::size_t>(before) % kTableSteps;
-    const std::int8_t* const row = &table[laser * kTableSteps];
-    const double part = steps - before;
-    return unit_deg_ * ((1 - part) * row[i] + part * row[(i + 1) % kTableSteps]);
-}
-
 At128Angles::Direction At128Angles::direction(std::size_t field, double mirror_deg,
                                               std::size_t laser) const {
+    constexpr double kStep_deg = 2;
+    const double steps = mirror_deg / kStep_deg;
+    const auto before = static_cast<std::size_t>(steps);
+    const double part = steps - static_cast<double>(before);
+    const std::size_t row = laser * kTableSteps, i = row + before % kTableSteps,
+                      next = row + (before + 1) % kTableSteps;
+    const auto more = [&](const std::vector<std::int8_t>& table) {
+        return unit_deg_ * ((1 - part) * table[i] + part * table[next]);
+    };
     // The mirror turns the beam by twice its own angle.
-    return {2 * (mirror_deg - starts_[field]) - lasers_[laser].azimuth +
-                more(moreAzimuth_, laser, mirror_deg),
-            lasers_[laser].elevation + more(moreElevation_, laser, mirror_deg)};
+    return {2 * (mirror_deg - starts_[field]) - lasers_[laser].azimuth + more(moreAzimuth_),
+            lasers_[laser].elevation + more(moreElevation_)};
 }
 
 namespace {
@@ -169,13 +167,13 @@ void At128Decoder::addGroup(const std::uint8_t* block, std::size_t returns, doub
             if (distance == earlier || range < kNear || range > kFar) continue;
             earlier = distance;
             if (!beam) beam = angles_.direction(field, mirror_deg, laser);
-            const double up = mrpt::DEG2RAD(beam->elevation), across = mrpt::DEG2RAD(beam->azimuth);
-            const double flat = range * portable::cos(up);
-            turns_.add({static_cast<float>(flat * portable::sin(across)),
-                        static_cast<float>(flat * portable::cos(across)),
-                        static_cast<float>(range * portable::sin(up)),
-                        static_cast<float>(measured[2]) / 255.0F, static_cast<std::uint16_t>(laser),
-                        1e-9F * static_cast<float>(kFiring_ns[laser])});
+            const auto up = portable::sineAndCosine(mrpt::DEG2RAD(beam->elevation)),
+                       across = portable::sineAndCosine(mrpt::DEG2RAD(beam->azimuth));
+            const double flat = range * up.cosine;
+            turns_.add(
+                {static_cast<float>(flat * across.sine), static_cast<float>(flat * across.cosine),
+                 static_cast<float>(range * up.sine), static_cast<float>(measured[2]) / 255.0F,
+                 static_cast<std::uint16_t>(laser), 1e-9F * static_cast<float>(kFiring_ns[laser])});
         }
     }
 }

@@ -21,15 +21,13 @@ class At128Angles {
         double azimuth = 0;  //!< clockwise from y
         double elevation = 0;
     };
-    /** By the mirror's angle, degrees. The field has to be that of the angle. */
+    /** By the mirror's angle, degrees, 0 or more. The field has to be that of the angle. */
     Direction direction(std::size_t field, double mirror_deg, std::size_t laser) const;
     /** By how far the mirror has turned within its field, degrees; the field in `field`. Negative:
      *  the angle lies in no field. */
     double withinField(double mirror_deg, std::size_t& field) const;
 
  private:
-    double more(const std::vector<std::int8_t>& table, std::size_t laser, double mirror_deg) const;
-
     std::vector<double> starts_, ends_;  //!< of the fields, degrees
     std::array<Direction, kAt128Lasers> lasers_;
     /** 0.01 deg, every 2 deg of the mirror. */

@@ -71,8 +71,8 @@ class HesaiDecoder : public PacketDecoder {
     void start(const HesaiModel& model);
     /** The blocks from `b` on, one a return, that share an azimuth. */
     void addGroup(const std::uint8_t* packet, std::size_t b, std::size_t returns, double time_s);
-    const std::vector<int>& firing(const std::uint8_t* packet, std::size_t b,
-                                   std::size_t returns) const;
+    const std::vector<float>& firing(const std::uint8_t* packet, std::size_t b, std::size_t returns,
+                                     bool isFine) const;
     double unitOf(const std::uint8_t* packet) const;
     std::size_t blockBytes() const {
         return model_->azimuthAt + 2 + model_->lasers * model_->returnBytes;
@@ -81,6 +81,9 @@ class HesaiDecoder : public PacketDecoder {
     std::string anglesFile_;
     const HesaiModel* model_ = nullptr;
     std::vector<BeamDirection> beams_;
+    /** From a block's time to its lasers': of the two times that `other_ns` tells apart, each as it
+     *  is and of the state with `fine_ns`. */
+    std::array<std::vector<float>, 4> after_s_;
     PacketClock clock_;
     TurnBuilder turns_;
 };
@@ -93,6 +96,12 @@ void HesaiDecoder::start(const HesaiModel& model) {
     beams_ = directionsOf(anglesFile_.empty() ? model.angles
                                               : readBeamAngles(anglesFile_, model.lasers));
     model_ = &model;
+    const HesaiFiring& firing = model.firing;
+    for (std::size_t i = 0; i < after_s_.size(); ++i)
+        for (const int ns : i < 2 || firing.other_ns.empty() ? firing.laser_ns : firing.other_ns)
+            after_s_[i].push_back(1e-9F * static_cast<float>(i % 2 == 1 && firing.fine_ns > 0
+                                                                 ? ns % firing.fine_ns
+                                                                 : ns));
 }
 
 bool HesaiDecoder::add(const std::uint8_t* payload, std::size_t bytes, double received_s) {
@@ -106,12 +115,10 @@ bool HesaiDecoder::add(const std::uint8_t* payload, std::size_t bytes, double re
     return true;
 }
 
-const std::vector<int>& HesaiDecoder::firing(const std::uint8_t* packet, std::size_t b,
-                                             std::size_t returns) const {
-    const HesaiFiring& firing = model_->firing;
-    if (firing.other_ns.empty()) return firing.laser_ns;
+const std::vector<float>& HesaiDecoder::firing(const std::uint8_t* packet, std::size_t b,
+                                               std::size_t returns, bool isFine) const {
     const bool isOther = returns == 1 ? b % 2 == 1 : (packet[model_->loopAt] & 1U) == 0;
-    return isOther ? firing.other_ns : firing.laser_ns;
+    return after_s_[(isOther ? 2 : 0) + (isFine ? 1 : 0)];
 }
 
 double HesaiDecoder::unitOf(const std::uint8_t* packet) const {
@@ -135,8 +142,8 @@ void HesaiDecoder::addGroup(const std::uint8_t* packet, std::size_t b, std::size
     const int block_ns = times.block_ns + next_ns * (times.ofLast ? -behind : before);
     turns_.block(azimuth / kTurn, time_s + 1e-9 * block_ns);
     const double angle = mrpt::DEG2RAD(0.01 * azimuth), unit_m = unitOf(packet);
-    const double sine = portable::sin(angle), cosine = portable::cos(angle);
-    const auto& laser_ns = firing(packet, b, returns);
+    const auto [sine, cosine] = portable::sineAndCosine(angle);
+    const auto& after_s = firing(packet, b, returns, isFine);
     for (std::size_t laser = 0; laser < model_->lasers; ++laser) {
         const BeamDirection& beam = beams_[laser];
         std::uint32_t earlier = 0;
@@ -155,8 +162,7 @@ void HesaiDecoder::addGroup(const std::uint8_t* packet, std::size_t b, std::size
                         static_cast<float>(flat * (cosine * beam.cosine - sine * beam.sine)),
                         static_cast<float>(range * beam.sineUp),
                         static_cast<float>(measured[2]) / 255.0F, static_cast<std::uint16_t>(laser),
-                        1e-9F * static_cast<float>(isFine ? laser_ns[laser] % times.fine_ns
-                                                          : laser_ns[laser])});
+                        after_s[laser]});
         }
     }
 }

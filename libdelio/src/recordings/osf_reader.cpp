@@ -1,12 +1,14 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 
 #include "byte_input.h"
 #include "delio/core/error.h"
 #include "field_image.h"
 #include "files/flat_table.h"
+#include "imu_samples.h"
 #include "ouster.h"
 #include "sources.h"
 
@@ -26,7 +28,8 @@ enum Field : std::uint8_t { kMessages };
 enum MessageField : std::uint8_t { kTime, kStream, kBuffer };
 }  // namespace chunk
 namespace turn {
-enum Field : std::uint8_t { kImages, kKinds, kTimes, kStatuses = 4, kNumber, kReceived = 7 };
+enum Field : std::uint8_t { kImages, kKinds, kTimes, kStatuses = 4, kNumber, kReceived = 7, kMore };
+enum FieldOfMore : std::uint8_t { kName, kData = 4 };
 enum Kind : std::uint8_t { kRange = 1, kReflectivity = 5 };
 }  // namespace turn
 
@@ -41,12 +44,30 @@ std::string_view textOf(const std::vector<std::uint8_t>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+template <typename Number>
+std::vector<Number> numbersOf(std::string_view bytes) {
+    std::vector<Number> numbers(bytes.size() / sizeof(Number));
+    if (!numbers.empty())
+        std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));
+    return numbers;
+}
+
+/** Floats that are coded as an image of their bits, three in a row. */
+std::vector<Eigen::Vector3f> vectorsOf(std::string_view coded, std::size_t rows) {
+    const auto bits = fieldImageOf(coded, rows, 3).pixels;
+    std::vector<Eigen::Vector3f> vectors(rows);
+    for (std::size_t i = 0; i < rows; ++i)
+        std::memcpy(vectors[i].data(), &bits[3 * i], 3 * sizeof(float));
+    return vectors;
+}
+
 class OsfReader : public ScanReader {
  public:
     explicit OsfReader(const ScanSource& source);
 
     std::optional<Scan> next() override;
     bool skip() override { return next().has_value(); }
+    std::vector<ImuSample> takeImu() override { return maker_->takeImu(imu_); }
     const std::string& label() const override { return label_; }
     const std::set<std::string>& otherLabels() const override { return others_; }
     std::optional<double> fraction() const override {
@@ -65,6 +86,8 @@ class OsfReader : public ScanReader {
     /** Reads on until there are messages of the stream; false at the end. */
     bool readMessages();
     OusterFrame frameOf(std::string_view message) const;
+    /** Samples of firmware 3.2 and later, in m/s^2 and rad/s. */
+    void readImu(const FlatTable& turn);
     void readImages(const FlatTable& turn, OusterFrame& frame) const;
     void place(const FieldImage& image, std::uint8_t kind, OusterFrame& frame) const;
 
@@ -79,8 +102,9 @@ class OsfReader : public ScanReader {
     std::optional<OusterInfo> info_;
     std::optional<OusterScans> maker_;
     std::optional<DriveMeta> meta_;
-    std::size_t turns_ = 0;  //!< met so far, scans or not
-    bool pointTimes_ = false, ended_ = false;
+    std::size_t turns_ = 0;       //!< met so far, scans or not
+    std::vector<OusterImu> imu_;  //!< that nobody took yet
+    bool pointTimes_ = false, hasImu_ = false, ended_ = false;
 };
 
 OsfReader::OsfReader(const ScanSource& source) : source_(source), file_(source.path) {
@@ -231,13 +255,33 @@ OusterFrame OsfReader::frameOf(std::string_view message) const {
     return frame;
 }
 
+void OsfReader::readImu(const FlatTable& turn) {
+    std::map<std::string_view, std::string_view> fields;
+    for (const FlatTable& field : turn.tables(turn::kMore))
+        fields[field.bytes(turn::kName)] = field.bytes(turn::kData);
+    const std::string_view rate = fields["IMU_GYRO"], acceleration = fields["IMU_ACC"];
+    const auto times_ns = numbersOf<std::uint64_t>(fields["IMU_TIMESTAMP"]);
+    const auto statuses = numbersOf<std::uint16_t>(fields["IMU_STATUS"]);
+    if (rate.empty() || acceleration.empty() || statuses.size() != times_ns.size()) return;
+    const auto rates = vectorsOf(rate, times_ns.size()),
+               accelerations = vectorsOf(acceleration, times_ns.size());
+    for (std::size_t i = 0; i < times_ns.size(); ++i) {
+        if ((statuses[i] & 1U) == 0) continue;  // it was not received
+        addSample(OusterImu{times_ns[i], accelerations[i].cast<double>(), rates[i].cast<double>()},
+                  imu_);
+        hasImu_ = true;
+    }
+}
+
 std::optional<Scan> OsfReader::next() {
     try {
         while (!ended_ && readMessages()) {
             const FlatTable message = messages_.back();
             messages_.pop_back();
             ++turns_;
-            OusterFrame frame = frameOf(message.bytes(chunk::kBuffer));
+            const std::string_view turn = message.bytes(chunk::kBuffer);
+            readImu(FlatTable::root(turn));
+            OusterFrame frame = frameOf(turn);
             if (frame.received_s == 0)
                 frame.received_s =
                     1e-9 * static_cast<double>(message.number<std::uint64_t>(chunk::kTime));
@@ -265,6 +309,7 @@ Recording OsfReader::recording() const {
     recording.sensor = info_->sensor();
     recording.pointTimes = pointTimes_;
     recording.motionCompensated = false;
+    if (hasImu_) recording.imu = "with the turns";
     recording.findings = maker_->findings();
     return recording;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "delio/odometry/imu.h"
 #include "delio/odometry/scan.h"
 #include "delio/recordings/scan_reader.h"
 #include "findings.h"
@@ -47,6 +48,7 @@ struct OusterInfo {
     double beamOut_m = 0, beamUp_m = 0;        //!< beam's origin from that of the lidar frame
     Eigen::Matrix4d lidarToSensor = Eigen::Matrix4d::Identity();
     Eigen::Matrix4d imuToSensor = Eigen::Matrix4d::Identity();
+    std::size_t imuSamples = 0;    //!< in a packet; 0: there is one, in a packet of 48 bytes
     std::vector<int> pixelShifts;  //!< columns by which images shift each row; empty: not known
     OusterLayout layout;
 
@@ -66,14 +68,16 @@ struct OusterInfo {
  *  names `name` and the key, where one is missing or not what it should be. */
 OusterInfo readOusterInfo(const std::string& json, const std::string& name);
 
-/** A sample of an Ouster's IMU as it was sent. */
+/** A sample of an Ouster's IMU. */
 struct OusterImu {
     std::uint64_t time_ns = 0;     //!< of the angular velocity, by the sensor's clock
     Eigen::Vector3d acceleration;  //!< m/s^2
     Eigen::Vector3d rate;          //!< rad/s
 };
-/** Nothing where the packet is not one of an IMU (48 bytes). */
-std::optional<OusterImu> ousterImuOf(const std::uint8_t* payload, std::size_t bytes);
+/** Appends the samples of a packet of the sensor's IMU: one in 48 bytes, or several of firmware 3.2
+ *  and later. False where it is another packet. */
+bool addOusterImu(const OusterInfo& info, const std::uint8_t* payload, std::size_t bytes,
+                  std::vector<OusterImu>& samples);
 
 /** True if packets of this size can come from an Ouster. */
 bool isOusterPacketSize(std::size_t bytes);
@@ -163,8 +167,8 @@ class OusterScans {
 
     Scan scanOf(const OusterFrame& frame);
     std::size_t made() const { return made_; }
-    /** From the sensor's clock to Unix time, seconds. */
-    double clockOffset_s() const { return clockOffset_s_.value_or(0); }
+    /** Stamps as those of scans: nothing, and `waiting` stays, before the first one is made. */
+    std::vector<ImuSample> takeImu(std::vector<OusterImu>& waiting) const;
     std::vector<std::string> findings() const;
 
  private:

@@ -6,6 +6,7 @@
 
 #include "delio/core/error.h"
 #include "findings.h"
+#include "imu_samples.h"
 #include "ouster.h"
 #include "packet_decoder.h"
 
@@ -24,8 +25,10 @@ class OusterDecoder : public PacketDecoder {
     bool add(const std::uint8_t* payload, std::size_t bytes, double received_s) override;
     void finish() override;
     std::optional<Scan> take() override;
-    bool addImu(const std::uint8_t* payload, std::size_t bytes) override;
-    std::vector<ImuSample> takeImu() override;
+    bool addImu(const std::uint8_t* payload, std::size_t bytes) override {
+        return addOusterImu(info_, payload, bytes, imu_);
+    }
+    std::vector<ImuSample> takeImu() override { return maker_.takeImu(imu_); }
     std::string sensor() const override { return info_.sensor(); }
     std::vector<std::string> findings() const override;
 
@@ -117,25 +120,6 @@ bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double r
     return true;
 }
 
-bool OusterDecoder::addImu(const std::uint8_t* payload, std::size_t bytes) {
-    const auto sample = ousterImuOf(payload, bytes);
-    if (sample) imu_.push_back(*sample);
-    return sample.has_value();
-}
-
-/** The first scan shows how the sensor's clock is to be read. */
-std::vector<ImuSample> OusterDecoder::takeImu() {
-    std::vector<ImuSample> samples;
-    if (maker_.made() == 0) return samples;
-    Eigen::Isometry3d pose;
-    pose.matrix() = info_.imuToSensor;
-    for (const OusterImu& own : imu_)
-        samples.push_back({1e-9 * static_cast<double>(own.time_ns) + maker_.clockOffset_s(),
-                           own.rate, own.acceleration, pose});
-    imu_.clear();
-    return samples;
-}
-
 void OusterDecoder::finish() {
     endFrame(true);
     if (packets_ == 0 && foreign_.count > 0) throw foreign();
@@ -182,15 +166,29 @@ Eigen::Vector3d vectorAt(const std::uint8_t* bytes) {
 }
 }  // namespace
 
-/** Times of the system, the accelerometer and the gyroscope (ns); acceleration (g); angular
- * velocity (deg/s). */
-std::optional<OusterImu> ousterImuOf(const std::uint8_t* payload, std::size_t bytes) {
-    constexpr std::size_t kBytes = 48, kGyroscopeTime = 16, kAcceleration = 24, kRate = 36;
+bool addOusterImu(const OusterInfo& info, const std::uint8_t* payload, std::size_t bytes,
+                  std::vector<OusterImu>& samples) {
+    // One sample: times of the system, the accelerometer and the gyroscope; g; deg/s.
+    constexpr std::size_t kOne = 48, kGyroscopeTime = 16, kAcceleration = 24, kRate = 36;
     constexpr double kG_mps2 = 9.80665;
-    if (bytes != kBytes) return {};
-    return OusterImu{numberAt<std::uint64_t>(payload + kGyroscopeTime),
-                     kG_mps2 * vectorAt(payload + kAcceleration),
-                     M_PI / 180 * vectorAt(payload + kRate)};
+    if (bytes == kOne) {
+        addSample(OusterImu{numberAt<std::uint64_t>(payload + kGyroscopeTime),
+                            kG_mps2 * vectorAt(payload + kAcceleration),
+                            M_PI / 180 * vectorAt(payload + kRate)},
+                  samples);
+        return true;
+    }
+    // Several: header, a sentence of a GNSS receiver; time, number, status, m/s^2, rad/s of each.
+    constexpr std::size_t kHead = 132, kSample = 36, kTail = 32, kStatus = 10, kInside = 12;
+    if (info.imuSamples == 0 || bytes != kHead + info.imuSamples * kSample + kTail) return false;
+    for (std::size_t i = 0; i < info.imuSamples; ++i) {
+        const std::uint8_t* const at = payload + kHead + i * kSample;
+        if ((at[kStatus] & 1U) == 0) continue;  // it was not measured
+        addSample(OusterImu{numberAt<std::uint64_t>(at), vectorAt(at + kInside),
+                            vectorAt(at + 2 * kInside)},
+                  samples);
+    }
+    return true;
 }
 
 OusterIds OusterPacket::ids() const {

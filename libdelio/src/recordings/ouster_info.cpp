@@ -113,8 +113,9 @@ class Reader {
  private:
     const Json* lookUp(const std::string& key) const {
         if (root_.contains(key)) return &root_.at(key);
-        for (const char* const group : {"data_format", "lidar_data_format", "beam_intrinsics",
-                                        "lidar_intrinsics", "sensor_info", "config_params"})
+        for (const char* const group :
+             {"data_format", "lidar_data_format", "beam_intrinsics", "lidar_intrinsics",
+              "sensor_info", "config_params", "imu_intrinsics", "imu_data_format"})
             if (root_.contains(group) && root_.at(group).is_object() &&
                 root_.at(group).contains(key))
                 return &root_.at(group).at(key);
@@ -196,6 +197,10 @@ void readBeams(const Reader& reader, OusterInfo& info) {
     usual = Eigen::Matrix4d::Identity();
     usual.topRightCorner<3, 1>() = kMetresPerMm * Eigen::Vector3d(6.253, -11.775, 7.645);
     info.imuToSensor = matrixOf(reader, "imu_to_sensor_transform").value_or(usual);
+    constexpr double kMostSamples = 1000;  // in a packet
+    const auto samples = reader.find<double>("imu_measurements_per_packet").value_or(0);
+    if (samples >= 1 && samples <= kMostSamples)
+        info.imuSamples = static_cast<std::size_t>(samples);
 }
 
 void readColumns(const Reader& reader, OusterInfo& info) {

@@ -63,6 +63,19 @@ Scan OusterScans::scanOf(const OusterFrame& frame) {
     return scan;
 }
 
+/** The first scan shows how the sensor's clock is to be read. */
+std::vector<ImuSample> OusterScans::takeImu(std::vector<OusterImu>& waiting) const {
+    std::vector<ImuSample> samples;
+    if (made_ == 0) return samples;
+    Eigen::Isometry3d pose;
+    pose.matrix() = info_.imuToSensor;
+    for (const OusterImu& own : waiting)
+        samples.push_back({1e-9 * static_cast<double>(own.time_ns) + clockOffset_s_.value_or(0),
+                           own.rate, own.acceleration, pose});
+    waiting.clear();
+    return samples;
+}
+
 std::optional<OusterTimes> timesOf(const OusterFrame& frame) {
     constexpr double kTolerance = 0.02;  // real columns are within 0.0005 turns of an even course
     std::vector<double> places, times_s;

@@ -314,11 +314,15 @@ double RobosenseDecoder::unitOf(const std::uint8_t* packet) const {
 void RobosenseDecoder::addShot(const std::uint8_t* packet, const Shot& shot, double step) {
     const std::uint8_t* const block = packet + model_->bodyAt + shot.block * model_->blockBytes;
     const double unit_m = unitOf(packet);
+    portable::SineAndCosine turned{};
     for (std::size_t laser = 0; laser < model_->lasers; ++laser) {
         const float after_s = model_->laser_s[laser];
-        const double share = static_cast<double>(after_s) / model_->shot_s;
-        const double angle = sense_ * mrpt::DEG2RAD(0.01 * (shot.azimuth + step * share));
-        const double sine = portable::sin(angle), cosine = portable::cos(angle);
+        if (laser == 0 || after_s != model_->laser_s[laser - 1]) {
+            const double share = static_cast<double>(after_s) / model_->shot_s;
+            turned = portable::sineAndCosine(sense_ *
+                                             mrpt::DEG2RAD(0.01 * (shot.azimuth + step * share)));
+        }
+        const auto [sine, cosine] = turned;
         const BeamDirection& beam = beams_[laser];
         const double side = sense_ * beam.sine;
         std::uint64_t earlier = 0;

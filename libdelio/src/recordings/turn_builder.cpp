@@ -1,7 +1,6 @@
 #include "turn_builder.h"
 
-#include <mrpt/maps/CPointsMapXYZI.h>
-
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -45,14 +44,26 @@ void TurnBuilder::block(double turns, double time_s) {
         turned_ = begin_ = now;
         isFirst_ = isGap;
     }
-    if (blocks_.size() >= kMostBlocks || points_.size() >= kMostPoints) {
+    if (blocks_.size() >= kMostBlocks || count_ >= kMostPoints) {
         endTurn(false);
         begin_ = turned_;
     }
-    blocks_.push_back({std::abs(turned_ - begin_), time_s, points_.size()});
+    blocks_.push_back({std::abs(turned_ - begin_), time_s, count_});
 }
 
-void TurnBuilder::add(const PacketPoint& point) { points_.push_back(point); }
+/** Little at a time, which is in the processor's cache when points come. */
+void TurnBuilder::makeRoom() {
+    constexpr std::size_t kMore = 1024;
+    if (count_ == 0) {
+        const std::size_t expected = most_ + most_ / 16;
+        cloud_->reserve(expected);
+        rings_.reserve(expected);
+        times_s_.reserve(expected);
+    }
+    cloud_->resize(count_ + kMore);
+    rings_.resize(count_ + kMore);
+    times_s_.resize(count_ + kMore);
+}
 
 void TurnBuilder::finish(const std::string& sensor) {
     endTurn(true);
@@ -78,44 +89,40 @@ std::vector<double> TurnBuilder::startsOfBlocks() {
     return starts_s;
 }
 
-Scan TurnBuilder::scanOf(const std::vector<double>& starts_s) const {
-    auto points = mrpt::maps::CPointsMapXYZI::Create();
-    points->resize(points_.size());
-    Scan scan;
-    scan.rings.reserve(points_.size());
-    if (!starts_s.empty()) scan.times_s.reserve(points_.size());
+Scan TurnBuilder::takeScan(const std::vector<double>& starts_s) {
+    cloud_->resize(count_);
+    rings_.resize(count_);
+    times_s_.resize(starts_s.empty() ? 0 : count_);
     double first_s = 0;
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-        const std::size_t end = b + 1 < blocks_.size() ? blocks_[b + 1].first : points_.size();
-        for (std::size_t i = blocks_[b].first; i < end; ++i) {
-            const PacketPoint& point = points_[i];
-            points->setPointFast(i, point.x, point.y, point.z);
-            points->setPointIntensity(i, point.intensity);
-            scan.rings.push_back(point.ring);
-            if (starts_s.empty()) continue;
-            const double time_s = starts_s[b] + static_cast<double>(point.after_s);
-            // The stamp is the first point's time.
-            if (scan.times_s.empty()) first_s = time_s;
-            scan.times_s.push_back(static_cast<float>(time_s - first_s));
-        }
+    for (std::size_t b = 0; b < starts_s.size(); ++b) {
+        const std::size_t end = b + 1 < blocks_.size() ? blocks_[b + 1].first : count_;
+        std::size_t i = blocks_[b].first;
+        // The stamp is the first point's time.
+        if (i == 0 && end > 0) first_s = starts_s[b] + static_cast<double>(times_s_[0]);
+        for (; i < end; ++i)
+            times_s_[i] =
+                static_cast<float>(starts_s[b] + static_cast<double>(times_s_[i]) - first_s);
     }
-    points->mark_as_modified();
-    scan.points = points;
+    Scan scan;
+    scan.points = std::exchange(cloud_, mrpt::maps::CPointsMapXYZI::Create());
+    scan.rings = std::exchange(rings_, {});
+    scan.times_s = std::exchange(times_s_, {});
     scan.stamp_s = blocks_.front().time_s + first_s;
     scan.time = timeOf(scan.stamp_s);
+    most_ = std::max(most_, std::exchange(count_, 0));
     return scan;
 }
 
 void TurnBuilder::endTurn(bool partial) {
     const double turned = std::abs(turned_ - begin_);
     if (!blocks_.empty() && (!partial || turned >= 0.5)) {
-        scans_.push_back(scanOf(startsOfBlocks()));
+        scans_.push_back(takeScan(startsOfBlocks()));
         ++made_;
     } else {
         inAll_ += turned;
     }
     blocks_.clear();
-    points_.clear();
+    count_ = 0;
 }
 
 std::optional<Scan> TurnBuilder::take() {

@@ -1,4 +1,6 @@
 #pragma once
+#include <mrpt/maps/CPointsMapXYZI.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -26,7 +28,13 @@ class TurnBuilder {
     /** What is added from here on belongs to a block that was measured at `time_s` (Unix) at the
      *  azimuth `turns`, of which one is the whole circle, and any more are the same. */
     void block(double turns, double time_s);
-    void add(const PacketPoint& point);
+    void add(const PacketPoint& point) {
+        if (count_ == rings_.size()) makeRoom();
+        cloud_->setPointFast(count_, point.x, point.y, point.z);
+        cloud_->setPointColor_fast(count_, point.intensity, 0, 0);  // where MRPT keeps intensities
+        rings_[count_] = point.ring;
+        times_s_[count_++] = point.after_s;
+    }
     /** There are no more blocks. Throws Error where there were some, but no scan was made of them;
      *  `sensor` is its name. */
     void finish(const std::string& sensor);
@@ -41,13 +49,18 @@ class TurnBuilder {
     };
     bool passes(double turns);
     void endTurn(bool partial);
+    void makeRoom();
     std::vector<double> startsOfBlocks();
-    Scan scanOf(const std::vector<double>& starts_s) const;
+    Scan takeScan(const std::vector<double>& starts_s);
 
     std::vector<Block> blocks_;
-    std::vector<PacketPoint> points_;
-    double azimuth_ = -1;           //!< of the last block; negative: none
-    double turned_ = 0;             //!< since the first block of all
+    /** Points of this turn, with room for more; times count from those of their blocks. */
+    mrpt::maps::CPointsMapXYZI::Ptr cloud_ = mrpt::maps::CPointsMapXYZI::Create();
+    std::vector<std::uint16_t> rings_;
+    std::vector<float> times_s_;
+    std::size_t count_ = 0, most_ = 0;  //!< points of this turn, of the largest turn before
+    double azimuth_ = -1;               //!< of the last block; negative: none
+    double turned_ = 0;                 //!< since the first block of all
     double begin_ = 0, lower_ = 0;  //!< where this turn began, where its circle begins; as turned_
     double inAll_ = 0;              //!< turned in turns that made no scan
     bool isFirst_ = true;           //!< the recording may begin within this turn

@@ -134,24 +134,28 @@ void Vls128Decoder::addBlock(const std::uint8_t* block, const std::uint8_t* firs
                              std::size_t bank) {
     constexpr double kUnit_m = 0.004, kNear = 0.5, kFar = 300;
     constexpr std::size_t kReturn = 3, kReturnsAt = 4;
+    std::array<portable::SineAndCosine, kBankLasers / kGroup> turned{};
+    std::array<double, kBankLasers / kGroup> after_us{};
+    // The sensor turns on from group to group.
+    for (std::size_t g = 0; g < turned.size(); ++g) {
+        after_us[g] = afterBegin_us(bank * kBankLasers + g * kGroup);
+        const double azimuth = azimuthOf(block) + step_ * after_us[g] / kCycle_us;
+        turned[g] = portable::sineAndCosine(mrpt::DEG2RAD(0.01 * azimuth));
+    }
     for (std::size_t k = 0; k < kBankLasers; ++k) {
         const std::size_t at = kReturnsAt + kReturn * k, laser = bank * kBankLasers + k;
         const std::uint32_t distance = littleEndian(block + at, 2);
         const double range = kUnit_m * distance;
         if (range < kNear || range > kFar || (first && littleEndian(first + at, 2) == distance))
             continue;
-        // The sensor turns on from group to group.
-        const double after_us = afterBegin_us(laser);
-        const double turned = azimuthOf(block) + step_ * after_us / kCycle_us;
-        const double angle = mrpt::DEG2RAD(0.01 * turned);
-        const double sine = portable::sin(angle), cosine = portable::cos(angle);
+        const auto [sine, cosine] = turned[k / kGroup];
         const BeamDirection& beam = beams_[laser];
         const double flat = range * beam.cosineUp;
         turns_.add({static_cast<float>(flat * (cosine * beam.cosine - sine * beam.sine)),
                     static_cast<float>(-flat * (sine * beam.cosine + cosine * beam.sine)),
                     static_cast<float>(range * beam.sineUp),
                     static_cast<float>(block[at + 2]) / 255.0F, static_cast<std::uint16_t>(laser),
-                    static_cast<float>(1e-6 * after_us)});
+                    static_cast<float>(1e-6 * after_us[k / kGroup])});
     }
 }
 

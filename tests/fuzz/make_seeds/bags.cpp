@@ -188,6 +188,19 @@ void packets() {
            [&](const fs::path& file) { fragments.write(file.string()); });
 }
 
+/** Three samples of an IMU, as fields of a turn. */
+std::vector<test::FlatTree> imuFields(test::FieldCoding coding) {
+    constexpr std::uint32_t kHalf = 0x3F000000;  // 0.5 as a float
+    const std::string vectors =
+        test::codedField(coding, 3, 3, 4, std::vector<std::uint32_t>(9, kHalf));
+    const auto field = [](const std::string& name, const std::string& data) {
+        return test::FlatTree().bytes(0, name).bytes(4, data);
+    };
+    return {field("IMU_ACC", vectors), field("IMU_GYRO", vectors),
+            field("IMU_STATUS", std::string("\1\0\0\0\1\0", 6)),
+            field("IMU_TIMESTAMP", std::string(24, '\1'))};
+}
+
 /** Two turns of it in Ouster's own format. */
 void osf() {
     const std::string profile = "RNG19_RFL8_SIG16_NIR16";
@@ -205,7 +218,8 @@ void osf() {
                 const io::OusterPacket packet(info, bytes.data());
                 for (std::size_t c = 0; c < 4; ++c) packet.copyTo(frame, c);
             }
-            sensor.turns.push_back(test::osfTurn(info, frame, coding, 1'000'000'000));
+            sensor.turns.push_back(
+                test::osfTurn(info, frame, coding, 1'000'000'000).tables(8, imuFields(coding)));
         }
         writeText(seed("osf", name), test::osfFile({sensor}));
     }

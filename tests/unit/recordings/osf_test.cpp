@@ -3,6 +3,7 @@
 #include <mrpt/maps/CPointsMapXYZI.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "delio/core/error.h"
 #include "osf_writer.h"
@@ -190,6 +191,75 @@ TEST_F(Osf, WhatIsNotATurnIsRefused) {
               std::string::npos);
     sensor.json = "{}";
     EXPECT_NE(faultWith(turn).find("its metadata"), std::string::npos);
+}
+
+constexpr std::size_t kSamples = 5;
+
+/** Five samples of an IMU, the third of which was not measured; the first number is `first`. */
+Bytes imuPacket(float first) {
+    Bytes packet(132 + kSamples * 36 + 32);
+    for (std::size_t i = 0; i < kSamples; ++i) {
+        const std::size_t at = 132 + 36 * i;
+        putAt(packet, at, static_cast<std::uint64_t>(1e6 * first) + 10'000'000 * i);
+        packet[at + 10] = i == 2 ? 0 : 1;
+        for (std::size_t k = 0; k < 6; ++k)
+            putAt(packet, at + 12 + 4 * k, first / static_cast<float>(6 * i + k + 1));
+    }
+    return packet;
+}
+
+/** The fields of a turn that hold the same. */
+std::vector<FlatTree> imuFields(const Bytes& packet, FieldCoding coding) {
+    std::string times, statuses;
+    std::vector<std::uint32_t> accelerations(3 * kSamples), rates(3 * kSamples);
+    for (std::size_t i = 0; i < kSamples; ++i) {
+        const auto* const sample = reinterpret_cast<const char*>(&packet[132 + 36 * i]);
+        times.append(sample, 8);
+        statuses.append(sample + 10, 2);
+        std::memcpy(&accelerations[3 * i], sample + 12, 12);
+        std::memcpy(&rates[3 * i], sample + 24, 12);
+    }
+    const auto field = [](const std::string& name, const std::string& data) {
+        return FlatTree().bytes(0, name).bytes(4, data);
+    };
+    return {field("IMU_ACC", test::codedField(coding, kSamples, 3, 4, accelerations)),
+            field("IMU_GYRO", test::codedField(coding, kSamples, 3, 4, rates)),
+            field("IMU_STATUS", statuses), field("IMU_TIMESTAMP", times), field("NMEA", "")};
+}
+
+TEST_F(Osf, ImuSamplesAreThoseOfThePackets) {
+    const OusterToy toy;
+    auto json = nlohmann::json::parse(jsonOf(toy));
+    json["imu_data_format"] = {{"imu_measurements_per_packet", kSamples}};
+    for (const FieldCoding coding : {FieldCoding::kPng, FieldCoding::kZpng}) {
+        const auto decoder = io::ousterDecoder(json.dump(), "toy.json");
+        auto sensor = sensorOf(toy, coding, 2);
+        for (std::uint16_t number = 0; number < 2; ++number) {
+            const Bytes imu = imuPacket(100.25F * static_cast<float>(number + 1));
+            EXPECT_TRUE(decoder->addImu(imu.data(), imu.size()));
+            sensor.turns[number].tables(8, imuFields(imu, coding));
+            for (std::size_t i = 0; i < kPackets; ++i) {
+                const Bytes packet = packetOf(toy, number, i);
+                decoder->add(packet.data(), packet.size(), kNow_s + 0.1 * number);
+            }
+        }
+        decoder->finish();
+        const auto expected = decoder->takeImu();
+        const auto reader = io::openOsf({write(test::osfFile({sensor})), "", "", ""});
+        EXPECT_TRUE(reader->takeImu().empty());
+        while (reader->next()) continue;
+        EXPECT_EQ(reader->recording().imu, "with the turns");
+        const auto read = reader->takeImu();
+        ASSERT_EQ(read.size(), 8U);
+        ASSERT_EQ(expected.size(), 8U);
+        for (std::size_t i = 0; i < 8; ++i) {
+            EXPECT_NEAR(read[i].stamp_s, expected[i].stamp_s, 1e-6);
+            EXPECT_EQ(read[i].rate_radps, expected[i].rate_radps);
+            EXPECT_EQ(read[i].acceleration_mps2, expected[i].acceleration_mps2);
+            EXPECT_EQ(read[i].sensorPose.value().matrix(), expected[i].sensorPose.value().matrix());
+        }
+        EXPECT_TRUE(reader->takeImu().empty());
+    }
 }
 
 TEST(FieldImage, EveryPixelOfEveryCoding) {

@@ -413,4 +413,36 @@ TEST(PacketsOuster, SamplesOfItsImuHaveTheClockOfTheScans) {
     EXPECT_TRUE(second[0].sensorPose->translation().isApprox(
         Eigen::Vector3d(6.253e-3, -11.775e-3, 7.645e-3)));
 }
+
+TEST(PacketsOuster, SeveralSamplesOfItsImuInAPacket) {
+    constexpr std::size_t kSamples = 8, kFirst = 132, kEach = 36;
+    const OusterToy toy;
+    auto json = toy.json();
+    json["imu_data_format"] = {{"imu_measurements_per_packet", kSamples}};
+    json["imu_intrinsics"] = {
+        {"imu_to_sensor_transform", {1, 0, 0, 4, 0, 1, 0, 5, 0, 0, 1, 6, 0, 0, 0, 1}}};
+    const auto decoder = io::ousterDecoder(json.dump(), "toy.json");
+    Bytes packet(kFirst + kSamples * kEach + 32);
+    for (std::size_t i = 0; i < kSamples; ++i) {
+        const std::size_t at = kFirst + i * kEach;
+        putAt<std::uint64_t>(packet, at, 10'000'000 * i);
+        putAt<std::uint16_t>(packet, at + 10, i == 3 ? 0 : 1);  // the fourth was not measured
+        putAt<float>(packet, at + 16, static_cast<float>(i));
+        putAt<float>(packet, at + 32, 0.5F);
+    }
+    EXPECT_FALSE(decoder->addImu(packet.data(), packet.size() - kEach));
+    EXPECT_TRUE(decoder->addImu(packet.data(), packet.size()));
+    addTurn(*decoder, toy, 1);
+    finish(*decoder);
+    const auto samples = decoder->takeImu();
+    ASSERT_EQ(samples.size(), 7U);
+    for (std::size_t k = 0; k < 7; ++k) {
+        const auto i = static_cast<double>(k < 3 ? k : k + 1);
+        EXPECT_NEAR(samples[k].stamp_s - samples[0].stamp_s, 0.01 * i, 1e-6);
+        EXPECT_EQ(samples[k].acceleration_mps2, Eigen::Vector3d(0, i, 0));
+        EXPECT_EQ(samples[k].rate_radps, Eigen::Vector3d(0, 0, 0.5));
+        EXPECT_TRUE(samples[k].sensorPose.value().translation().isApprox(
+            Eigen::Vector3d(0.004, 0.005, 0.006)));
+    }
+}
 }  // namespace
