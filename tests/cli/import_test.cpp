@@ -86,6 +86,11 @@ TEST_F(ImportedMap, RefusesWhatItCannotUse) {
     expectRefusal({"--import", cloud_, "-o", folder_ / "none/map.delio"}, 1, "no such folder");
 }
 
+TEST_F(ImportedMap, RefusesACloudWithYUp) {
+    writeCloud(test::poseAtDeg(0, 0, 0, 0, 0, -90));
+    expectRefusal({"--import", cloud_, "-o", map_}, 1, "is flat along y");
+}
+
 TEST_F(ImportedMap, TheEdgesBetweenItsTilesStay) {
     writeCloud(Eigen::Isometry3d::Identity());
     ASSERT_EQ(import().exitCode, 0);
