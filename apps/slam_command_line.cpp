@@ -53,7 +53,7 @@ cli::HelpText slamHelp() {
          "with GNSS fixes: poses in east-north-up, TUM format; line for a map viewer"},
         {Folder::kCloudTum,
          "with --map of an imported cloud with an offset: poses in its coordinates"},
-        {Folder::kExtrinsics, "with --calibrate-extrinsics: the sensors' poses, for --extrinsics"},
+        {Folder::kExtrinsics, "poses that were calibrated: of the IMU, of LiDARs; for --extrinsics"},
         {both(Folder::kGraph, Folder::kMrptGraph), "pose graph"},
         {both(Folder::kPly, Folder::kScene), "map points; scene for SceneViewer3D"},
         {Folder::kMapPage, "the map as an interactive page for a browser"},

@@ -177,13 +177,10 @@ struct SlamCommandLine {
         0,
         "SECONDS",
         cmd};
-    Number queue{"",
-                 "queue",
-                 "Live sensor: scans that may wait; where there are more, the oldest is dropped",
-                 false,
-                 {5},
-                 "N",
-                 cmd};
+    Number queue{
+        "",    "queue", "Live sensor: scans that may wait; where more come, some are dropped",
+        false, {10},    "N",
+        cmd};
     Switch gui{"", "gui", "Show progress in a window", cmd};
     Number serve{"",
                  "serve",

@@ -79,6 +79,22 @@ TEST(Imu, OfUnknownOrientationBiasAndOffsetIsCalibrated) {
     EXPECT_LT(figure(summary.metrics, "end_error_percent"), 0.5);
 }
 
+TEST(Imu, ACalibratedOneIsUsedFromTheBeginningOfTheNextDrive) {
+    const test::TemporaryFolder folder;
+    const Words mounted = {"--imu-mount", "10,-20,130", "--imu-bias", "2", "--imu-offset", "0.05"};
+    slam(handWithImu(folder, mounted, "100"), folder / "first");
+    const std::string next = handWithImu(folder, mounted, "30");
+    const auto unknown = slam(next, folder / "unknown");
+    const Words given = {"--extrinsics", folder / "first/extrinsics.txt"};
+    const auto known = slam(next, folder / "known", given);
+    EXPECT_GE(figure(known.imu, "scans_used"), figure(unknown.imu, "scans_used") + 10);
+    EXPECT_NEAR(figure(known.imu, "yaw_deg"), 130, 0.5);
+    EXPECT_NEAR(figure(known.imu, "offset_ms"), 50, 2);
+    EXPECT_LT(figure(known.metrics, "end_error_percent"), 0.5);
+    EXPECT_NE(test::readText(folder / "known/extrinsics.txt").find("imu 0.00000"),
+              std::string::npos);
+}
+
 TEST(Imu, TheSameForAnyNumberOfThreads) {
     const test::TemporaryFolder folder;
     const std::string rawlog = handWithImu(folder, {"--imu-grade", "automotive"}, "30");

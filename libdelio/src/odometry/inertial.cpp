@@ -44,6 +44,7 @@ void GyroPrior::advance(const ScanClock& scan, const Eigen::Isometry3d& sensorPo
     const double end_s = scan.time_s + scan.last_s + kMostOffset_s;
     waiting_.takeUpTo(end_s, shift_s, [&](const ImuSample& sample) {
         if (sample.sensorPose) imuPose_ = sample.sensorPose->linear();
+        if (sample.offset_s && !offsetSigma_s_ && pairs_.empty()) offset_s_ = *sample.offset_s;
         use(sample.stamp_s - shift_s, sample.rate_radps);
     });
     if (imuPose_) given_ = normalised(Matrix3d(sensorPose.linear().transpose() * *imuPose_));

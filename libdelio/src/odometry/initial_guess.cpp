@@ -118,8 +118,9 @@ Placement searchScan(const LocalMap& map, const ScanView& view, const Expectatio
     Best best{map.placeAnywhere(points, expected.pose, expected.start, expected.upright)};
     if (points.cols() == 0 || (best.has(likely) && !expected.isShaken))
         return {best.estimate, true};
-    best.consider(map.placeTurned(points, expected.pose, likely));
-    if (expected.motionIsKnown && !best.has(likely)) {
+    if (!expected.isUrgent || expected.isShaken)
+        best.consider(map.placeTurned(points, expected.pose, likely));
+    if (expected.motionIsKnown && !expected.isUrgent && !best.has(likely)) {
         const Eigen::Isometry3d& latest = expected.reference.pose;
         best.consider(map.placeOnward(points, latest, latest.inverse() * expected.pose));
     }
@@ -129,7 +130,7 @@ Placement searchScan(const LocalMap& map, const ScanView& view, const Expectatio
     const double enough =
         (expected.motionIsKnown ? options.tracker.lost_share : Expectation::kLikely) * usual;
     if (best.has(enough)) return {best.estimate, true};
-    best.consider(relocalised(map, view, expected, options));
+    if (!expected.isUrgent) best.consider(relocalised(map, view, expected, options));
     best.estimate.valid = best.has(expected.motionIsKnown ? kSomewhere * usual : enough);
     return {best.estimate, true};
 }

@@ -48,6 +48,7 @@ struct Expectation {
     const Eigen::Matrix3f& upright;   //!< turns the sensor's z up
     bool motionIsKnown = false;       //!< else it may be anywhere within `start`
     bool isGuess = false;             //!< motion and place are not known well
+    bool isUrgent = false;            //!< no time for the searches that take longest
     bool isShaken = false;            //!< predictions are off by more than the widest kernel
     bool isPlacedByStanding = false;  //!< points that stand above the ground place the scan
     SearchReach start = {};           //!< how far a guess may be off

@@ -94,6 +94,7 @@ Interval PlaneOdometry::arrive(const Scan& scan, const PointCloud& cloud, Step& 
     time_s_ = arrivals_.sinceStart_s();
     unregistered_s_ += arrival.interval.elapsed_s;
     const ScanClock clock{time_s_, clock_s, endsOf(cloud).second};
+    isUrgent_ = scan.dropped > 0;
     usesGyro_ = false;
     gyro_.advance(clock, scan.sensorPose);
     wheels_.advance(clock, scan.sensorPose, path_.latest().time_s);

@@ -212,6 +212,7 @@ class PlaneOdometry : public Odometry {
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
     ScanTrajectory motion_{Twist{}};  //!< during the latest scan, seen from pose_
     ReportedPath path_;
+    bool isUrgent_ = false;      //!< scans were dropped before this one for lack of time
     double unregistered_s_ = 0;  //!< since the latest scan that was registered
     /** The latest scan as it came, where its points have times, and its trajectory (sensor to map,
      *  times from the scan's). */

@@ -89,7 +89,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAsPredicted(const PointCloud& cloud
         return attemptBy(cloud, expectation(extrapolated, isGuess, since_s, timeIsKnown),
                          extrapolation.motion(), step);
     };
-    const bool isTogether = timeIsKnown && !cloud.times_s.empty();
+    const bool isTogether = timeIsKnown && !cloud.times_s.empty() && !isUrgent_;
     if (!isTogether) endWindow();
     const bool wasTogether = !window_.isEmpty();
     Attempt best;
@@ -220,6 +220,7 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, bool 
     Expectation expected{predicted, reference_, upright_};
     expected.motionIsKnown = prediction_.hasMotion();
     expected.isGuess = isGuess;
+    expected.isUrgent = isUrgent_;
     expected.start.metres = expected.motionIsKnown ? std::min(gained_m, driven_m) : driven_m;
     expected.start.turn_rad = std::min(spacing.first_turn_radps * since_s, spacing.most_turn_rad);
     expected.reach_m =

@@ -37,6 +37,7 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewPair(const PointCloud& firs
                                                           const PointCloud& cloud,
                                                           const ScanView& view) {
     constexpr unsigned kMostRounds = 10, kPatience = 2;
+    constexpr double kClearly = 0.002;  // smaller differences of the inlier ratio are noise
     std::optional<ScanOnTrajectory> best;
     for (unsigned round = 0, worse = 0; round < kMostRounds && worse < kPatience; ++round) {
         const ScanTrajectory trajectory =
@@ -46,9 +47,9 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewPair(const PointCloud& firs
         auto next = registerAlong(trajectory, known, map_, cloud, view, options());
         if (!next) break;
         known.pose = next->estimate.pose();
-        const bool better = !best || next->inlierRatio > best->inlierRatio;
-        worse = better ? 0 : worse + 1;
-        if (better) best = std::move(next);
+        const double gained = best ? next->inlierRatio - best->inlierRatio : 1;
+        worse = gained > kClearly ? 0 : worse + 1;
+        if (gained > 0) best = std::move(next);
     }
     if (best) deskewFirst(first, best->trajectory.seenFrom(-known.since_s));
     return best;

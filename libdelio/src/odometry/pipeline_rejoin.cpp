@@ -24,6 +24,7 @@ void PlaneOdometry::rejoin(const ScanView& view) {
     const double lost_s = left_->left_s - left_->reference.time_s;
     Expectation expected{pose_, left_->reference, upright_};
     expected.isGuess = true;
+    expected.isUrgent = isUrgent_;
     expected.start.metres =
         std::min(spacing.acceleration / 2 * lost_s * lost_s, spacing.first_speed / 2);
     expected.start.turn_rad = std::min(spacing.first_turn_radps * lost_s, spacing.most_turn_rad);

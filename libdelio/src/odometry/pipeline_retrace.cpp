@@ -34,7 +34,7 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
     if (beginning_.empty()) return;
     if (beginning_.back().scan.time_s != time_s_) {
         const bool isMissing = !step.reason.empty() && prediction_.hasMotion();
-        if (isMissing || usesGyro_ || left_ ||
+        if (isMissing || isUrgent_ || left_ ||
             hasTimes(cloud) != hasTimes(beginning_.back().scan.cloud))
             return beginning_.clear();
         const bool isTracking = std::holds_alternative<Tracking>(state_) && waiting_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/voxel_grid.h"
 #include "delio/core/geometry.h"
@@ -50,15 +51,10 @@ std::vector<Eigen::Isometry3d> levelFrames(const std::vector<Submap>& submaps,
     return level;
 }
 
-std::optional<Submap> SubmapBuilder::add(std::size_t node, const Increment& increment,
-                                         const Eigen::Matrix3Xf& points,
-                                         const Eigen::Vector3d& up) {
-    std::optional<Submap> ended;
-    if (isComplete() || isBeyondGap(increment)) {
-        ended = merged();
-        ended_ = parts_.back().driven;
-        parts_.clear();
-    }
+std::future<Submap> SubmapBuilder::add(std::size_t node, const Increment& increment,
+                                       const Eigen::Matrix3Xf& points, const Eigen::Vector3d& up) {
+    std::future<Submap> ended;
+    if (isComplete() || isBeyondGap(increment)) ended = end();
     Part part{node,
               Eigen::Isometry3d::Identity(),
               {},
@@ -95,32 +91,37 @@ bool SubmapBuilder::isComplete() const {
            (end.pose.translation() - begin.pose.translation()).norm() >= options_.straight;
 }
 
-Submap SubmapBuilder::merged() const {
-    const Part& key = parts_[parts_.size() / 2];
+Submap SubmapBuilder::merged(const std::vector<Part>& parts, const SubmapOptions& options) {
+    const Part& key = parts[parts.size() / 2];
     Submap submap;
-    submap.first = parts_.front().node;
+    submap.first = parts.front().node;
     submap.key = key.node;
-    submap.last = parts_.back().node;
+    submap.last = parts.back().node;
     submap.driven = key.driven;
     submap.level = odometry::turnedUp(key.up).cast<double>().transpose();
     Eigen::Index count = 0, used = 0;
-    for (const auto& part : parts_) count += part.points.cols();
+    for (const auto& part : parts) count += part.points.cols();
     Eigen::Matrix3Xf all(3, count);
-    for (const Part& part : parts_) {
+    for (const Part& part : parts) {
         const Eigen::Isometry3f placed =
             (submap.level.transpose() * (key.pose.inverse() * part.pose)).cast<float>();
         for (Eigen::Index k = 0; k < part.points.cols(); ++k)
-            if (part.points.col(k).norm() <= options_.radius)
+            if (part.points.col(k).norm() <= options.radius)
                 all.col(used++) = placed * part.points.col(k);
     }
-    submap.points = firstOfVoxels(all.leftCols(used), options_.spacing);
+    submap.points = firstOfVoxels(all.leftCols(used), options.spacing);
     return submap;
 }
 
-std::optional<Submap> SubmapBuilder::finish() {
+std::future<Submap> SubmapBuilder::end() {
+    ended_ = parts_.back().driven;
+    return std::async(
+        std::launch::deferred,
+        [parts = std::exchange(parts_, {}), options = options_] { return merged(parts, options); });
+}
+
+std::future<Submap> SubmapBuilder::finish() {
     if (parts_.empty()) return {};
-    Submap last = merged();
-    parts_.clear();
-    return last;
+    return end();
 }
 }  // namespace delio::places

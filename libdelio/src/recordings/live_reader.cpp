@@ -7,7 +7,6 @@
 #include "live_source.h"
 #include "recognised_reader.h"
 #include "sources.h"
-#include "turn_assembler.h"
 
 namespace delio::io {
 namespace fs = std::filesystem;
@@ -56,7 +55,7 @@ LiveReader::LiveReader(std::shared_ptr<LiveSource> packets, std::unique_ptr<Scan
       label_(scans_->label()),
       meta_(scans_->meta()),
       feed_(settings.mostWaiting, [warn = settings.onWarning] {
-          if (warn) warn("scans come faster than they are processed: the oldest are dropped");
+          if (warn) warn("scans come faster than they are processed: some are dropped");
       }) {
     publish();
     thread_ = std::thread([this] { run(); });
@@ -129,8 +128,8 @@ void keepJson(const ScanSource& source) {
 
 std::unique_ptr<ScanReader> openLive(const ScanSource& source) {
     auto packets = std::make_shared<LiveSource>(source.path, source.live);
-    auto scans = std::make_unique<RecognisedReader>(
-        std::make_unique<TurnAssembler>(openPackets(source, packets)), true);
+    auto scans =
+        std::make_unique<RecognisedReader>(openPackets(source, packets), Delivery::kSensor);
     keepJson(source);
     return std::make_unique<LiveReader>(std::move(packets), std::move(scans), source.live);
 }

@@ -35,7 +35,8 @@ std::string listed(const std::set<std::string>& names) {
 }
 }  // namespace
 
-MergedReader::MergedReader(std::vector<MergedSensor> sensors, const Extrinsics& poses) {
+MergedReader::MergedReader(std::vector<MergedSensor> sensors, const ExtrinsicsFile& extrinsics)
+    : imu_(extrinsics.imu) {
     for (auto& [label, reader] : sensors) {
         sensors_.emplace_back();
         sensors_.back().label = label;
@@ -55,7 +56,17 @@ MergedReader::MergedReader(std::vector<MergedSensor> sensors, const Extrinsics& 
     }
     others_ = sensors_.front().reader->otherLabels();
     for (const Sensor& sensor : sensors_) others_.erase(sensor.reader->label());
-    takePoses(poses);
+    takePoses(extrinsics.lidars);
+}
+
+std::vector<ImuSample> MergedReader::takeImu() {
+    auto samples = sensors_.front().reader->takeImu();
+    if (imu_)
+        for (ImuSample& sample : samples) {
+            sample.sensorPose = imu_->pose;
+            sample.offset_s = imu_->offset_s;
+        }
+    return samples;
 }
 
 void MergedReader::takePoses(const Extrinsics& poses) {

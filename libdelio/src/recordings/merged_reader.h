@@ -28,13 +28,13 @@ struct MergedSensor {
  *  first. With one sensor, only its pose changes. */
 class MergedReader : public ScanReader {
  public:
-    /** `poses`: empty, or one for every sensor. Throws Error where a sensor has no scans, or its
+    /** `extrinsics`: of no LiDAR, or of every one. Throws Error where a sensor has no scans, or its
      *  pose relative to the first one is not known. */
-    MergedReader(std::vector<MergedSensor> sensors, const Extrinsics& poses);
+    MergedReader(std::vector<MergedSensor> sensors, const ExtrinsicsFile& extrinsics);
 
     std::optional<Scan> next() override;
     bool skip() override { return next().has_value(); }
-    std::vector<ImuSample> takeImu() override { return sensors_.front().reader->takeImu(); }
+    std::vector<ImuSample> takeImu() override;
     std::vector<OdometrySample> takeOdometry() override {
         return sensors_.front().reader->takeOdometry();
     }
@@ -81,6 +81,7 @@ class MergedReader : public ScanReader {
     Eigen::Isometry3d poseOf(const Sensor& sensor, const Scan& scan) const;
 
     std::vector<Sensor> sensors_;
+    std::optional<ImuMount> imu_;  //!< in place of what the samples say
     std::vector<std::pair<std::string, Eigen::Isometry3d>> poses_;  //!< of the sensors
     std::string label_;
     std::set<std::string> others_;  //!< that are not merged

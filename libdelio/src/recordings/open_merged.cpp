@@ -50,11 +50,9 @@ std::unique_ptr<ScanReader> openMerged(const ScanSource& source,
     if (source.path == "-" && labels.size() > 1)
         throw Error("several sensors are merged from a file only, not from standard input");
     if (isLive(source.path)) throw Error("--extrinsics needs a recording, not a live sensor");
-    Extrinsics poses = source.extrinsics;
-    if (poses.empty() && !source.extrinsicsFile.empty())
-        poses = readExtrinsics(source.extrinsicsFile);
-    if (poses.empty() && !source.extrinsicsFile.empty())
-        throw Error("'" + source.extrinsicsFile + "' has no pose of a sensor");
+    ExtrinsicsFile extrinsics;
+    if (!source.extrinsicsFile.empty()) extrinsics = readExtrinsics(source.extrinsicsFile);
+    if (!source.extrinsics.empty()) extrinsics.lidars = source.extrinsics;
     std::vector<MergedSensor> sensors;
     for (const auto& label : labels) {
         ScanSource one = source;
@@ -62,7 +60,7 @@ std::unique_ptr<ScanReader> openMerged(const ScanSource& source,
         sensors.push_back({label, open(one)});
     }
     try {
-        return std::make_unique<MergedReader>(std::move(sensors), poses);
+        return std::make_unique<MergedReader>(std::move(sensors), extrinsics);
     } catch (const Error& e) {
         throw Error("'" + source.path + "': " + e.what());
     }

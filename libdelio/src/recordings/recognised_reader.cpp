@@ -6,8 +6,18 @@
 #include "compensation.h"
 
 namespace delio::io {
-RecognisedReader::RecognisedReader(std::unique_ptr<ScanReader> source, bool isLive)
-    : source_(std::move(source)), isLive_(isLive), fraction_(source_->fraction()) {
+namespace {
+/** Each point has its time, and turns come in order. */
+bool arePackets(Delivery delivery) {
+    return delivery == Delivery::kPackets || delivery == Delivery::kSensor;
+}
+}  // namespace
+
+RecognisedReader::RecognisedReader(std::unique_ptr<ScanReader> source, Delivery delivery)
+    : source_(std::move(source)),
+      delivery_(delivery),
+      fraction_(source_->fraction()),
+      order_(arePackets(delivery)) {
     readAhead();
     recognise();
 }
@@ -38,9 +48,10 @@ void RecognisedReader::dropUnfitTimes(Scan& scan) {
 
 /** Empty scans identify nothing. */
 void RecognisedReader::readAhead() {
-    constexpr std::size_t kScans = 3, kMost = 20;
+    constexpr std::size_t kMost = 20;
+    const std::size_t scans = delivery_ == Delivery::kSensor ? 1 : 3;
     std::size_t withPoints = 0;
-    while (withPoints < kScans && ahead_.size() < kMost && readOne())
+    while (withPoints < scans && ahead_.size() < kMost && readOne())
         withPoints += !ahead_.back().points->empty();
 }
 
@@ -84,7 +95,7 @@ Recording RecognisedReader::recording() const {
  *  it. */
 void RecognisedReader::leaveOutFirst() {
     constexpr std::size_t kFew = 100;  // points: such a scan is not used in any case
-    if (recording_.motionCompensated.value_or(false)) return;
+    if (recording_.motionCompensated.value_or(false) || arePackets(delivery_)) return;
     const auto isUntimed = [](const Scan& scan) {
         return scan.times_s.empty() && scan.points->size() >= kFew;
     };
@@ -102,11 +113,14 @@ void RecognisedReader::passed() {
     if (ahead_.empty()) fraction_ = source_->fraction();
 }
 
-/** What comes later does not matter. Samples of an IMU come with the scans that are read: the same
- *  as in a recording. */
+/** What comes later does not matter. Samples of an IMU come with the scans that are read: as many
+ *  from packets that are measured as from those that are recorded, and from a pipe as from a file.
+ *  With the next turn those have come that are up to 0.1 s late. */
 bool RecognisedReader::isNextKnown() const {
-    return isLive_ && !ahead_.empty() && order_.isNext(ahead_.front()) &&
-           source_->recording().imu.empty();
+    if (delivery_ == Delivery::kFile || ahead_.empty() || !order_.isNext(ahead_.front()))
+        return false;
+    if (source_->recording().imu.empty()) return true;
+    return arePackets(delivery_) && ahead_.size() > 1;
 }
 
 std::optional<Scan> RecognisedReader::next() {

@@ -8,15 +8,22 @@
 #include "stamp_order.h"
 
 namespace delio::io {
+/** How scans come, and so how far a reader may look ahead. Scans are the same in any case. */
+enum class Delivery {
+    kFile,     //!< as fast as they are read
+    kPipe,     //!< perhaps as they are measured; from a file or by a program
+    kPackets,  //!< recorded packets: turns are in order
+    kSensor    //!< packets, as they are measured
+};
+
 /** A reader whose recording() and meta() are whole from the beginning, and whose stamps rise (see
- *  StampOrder). It reads three scans with points ahead, and looks at these where the source does
- * not say whether they were de-skewed. It looks again now and then: scans of a vehicle that stood
- * first look as if they were not. */
+ *  StampOrder). It reads three scans with points ahead, of a sensor only one, and looks at these
+ *  where the source does not say whether they were de-skewed. It looks again now and then: scans of
+ *  a vehicle that stood first look as if they were not. */
 class RecognisedReader : public ScanReader {
  public:
-    /** `isLive`: later on it reads ahead only where stamps are odd, or there is an IMU. Scans are
-     *  the same. */
-    explicit RecognisedReader(std::unique_ptr<ScanReader> source, bool isLive = false);
+    explicit RecognisedReader(std::unique_ptr<ScanReader> source,
+                              Delivery delivery = Delivery::kFile);
 
     std::optional<Scan> next() override;
     bool skip() override;
@@ -43,7 +50,7 @@ class RecognisedReader : public ScanReader {
     void lookAgain(const Scan& scan);
 
     std::unique_ptr<ScanReader> source_;
-    bool isLive_;
+    Delivery delivery_;
     std::deque<Scan> ahead_;
     std::deque<std::optional<double>> fractions_;  //!< of the drive, after each scan that is ahead
     std::optional<double> fraction_;

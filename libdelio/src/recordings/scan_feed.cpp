@@ -1,6 +1,7 @@
 #include "delio/recordings/scan_feed.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace delio::io {
@@ -26,6 +27,39 @@ void passOn(std::vector<Sample> samples, std::vector<Sample>& next) {
 ScanFeed::ScanFeed(std::size_t mostWaiting, std::function<void()> onFirstDrop)
     : mostWaiting_(std::max<std::size_t>(mostWaiting, 1)), onFirstDrop_(std::move(onFirstDrop)) {}
 
+/** The scan whose neighbours are nearest to each other. The latest one stays, and the first of the
+ *  drive. */
+std::size_t ScanFeed::leastMissed() const {
+    std::size_t least = 0;
+    double leastGap_s = std::numeric_limits<double>::infinity();
+    for (std::size_t i = taken_s_ ? 0 : 1; i + 1 < waiting_.size(); ++i) {
+        const double before_s = i == 0 ? *taken_s_ : waiting_[i - 1].scan.stamp_s,
+                     gap_s = waiting_[i + 1].scan.stamp_s - before_s;
+        if (gap_s >= leastGap_s) continue;
+        least = i;
+        leastGap_s = gap_s;
+    }
+    return least;
+}
+
+/** Its samples go to the next scan. */
+void ScanFeed::drop(std::size_t item) {
+    Item& next = waiting_[item + 1];
+    next.scan.dropped += waiting_[item].scan.dropped + 1;
+    passOn(std::move(waiting_[item].imu), next.imu);
+    passOn(std::move(waiting_[item].odometry), next.odometry);
+    waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(item));
+    ++dropped_;
+}
+
+/** Passes over the oldest. */
+void ScanFeed::catchUp() {
+    constexpr std::size_t kPart = 4;
+    const std::size_t over = isLate_ && taken_s_ ? waiting_.size() / kPart : 0;
+    for (std::size_t i = 0; i < over; ++i) drop(0);
+    isLate_ = isLate_ && over > 0;
+}
+
 void ScanFeed::add(Scan scan, std::optional<double> received_s) {
     bool isFirst = false;
     {
@@ -34,11 +68,9 @@ void ScanFeed::add(Scan scan, std::optional<double> received_s) {
         waiting_.push_back(
             {std::move(scan), std::exchange(imu_, {}), std::exchange(odometry_, {}), received_s});
         if (waiting_.size() > mostWaiting_) {
-            Item dropped = std::move(waiting_.front());
-            waiting_.pop_front();
-            passOn(std::move(dropped.imu), waiting_.front().imu);
-            passOn(std::move(dropped.odometry), waiting_.front().odometry);
-            isFirst = dropped_++ == 0;
+            isFirst = dropped_ == 0;
+            isLate_ = true;
+            drop(leastMissed());
         }
         changed_.notify_one();
     }
@@ -72,8 +104,10 @@ std::optional<ScanFeed::Item> ScanFeed::take() {
         if (fault_) std::rethrow_exception(std::exchange(fault_, nullptr));
         return {};
     }
+    catchUp();
     Item item = std::move(waiting_.front());
     waiting_.pop_front();
+    taken_s_ = item.scan.stamp_s;
     return item;
 }
 

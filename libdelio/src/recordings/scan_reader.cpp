@@ -29,8 +29,8 @@ std::unique_ptr<ScanReader> openFolder(const ScanSource& source) {
     return openCloudFolder(source);
 }
 
-std::unique_ptr<ScanReader> openFile(const ScanSource& source) {
-    switch (kindOf(source.path)) {
+std::unique_ptr<ScanReader> openFile(const ScanSource& source, FileKind kind) {
+    switch (kind) {
         case FileKind::kPcap:
             return openPcap(source);
         case FileKind::kRos1Bag:
@@ -46,20 +46,27 @@ std::unique_ptr<ScanReader> openFile(const ScanSource& source) {
     }
     return std::make_unique<RawlogReader>(source.path, source.label, source.imagesFolder);
 }
-}  // namespace
 
-namespace {
 std::unique_ptr<ScanReader> openSensor(const ScanSource& source) {
     if (isLive(source.path)) return openLive(source);
-    if (source.path != "-" && !fs::exists(source.path))
+    const bool isPipe = source.path == "-", isFolder = fs::is_directory(source.path);
+    if (!isPipe && !fs::exists(source.path))
         throw Error("cannot read '" + source.path + "': no such file or folder");
-    if (source.path != "-" && !fs::is_directory(source.path) && !fs::is_regular_file(source.path))
+    if (!isPipe && !isFolder && !fs::is_regular_file(source.path))
         throw Error("'" + source.path +
                     "' is neither a file nor a folder; read a pipe from standard input with -i -");
-    auto scans = fs::is_directory(source.path) ? openFolder(source) : openFile(source);
+    const auto recognised = [](std::unique_ptr<ScanReader> scans, Delivery delivery) {
+        return std::make_unique<RecognisedReader>(std::move(scans), delivery);
+    };
+    const auto turns = [](std::unique_ptr<ScanReader> parts) {
+        return std::make_unique<TurnAssembler>(std::move(parts));
+    };
+    if (isFolder) return recognised(turns(openFolder(source)), Delivery::kFile);
+    const FileKind kind = kindOf(source.path);
+    auto scans = openFile(source, kind);
+    if (kind == FileKind::kPcap) return recognised(std::move(scans), Delivery::kPackets);
     // What comes through a pipe may be measured now.
-    return std::make_unique<RecognisedReader>(std::make_unique<TurnAssembler>(std::move(scans)),
-                                              source.path == "-");
+    return recognised(turns(std::move(scans)), isPipe ? Delivery::kPipe : Delivery::kFile);
 }
 }  // namespace
 

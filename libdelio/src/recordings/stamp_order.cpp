@@ -12,8 +12,10 @@ constexpr double kMostUnknown_s = 1;  // scans are sorted over, where that is no
 
 bool StampOrder::isNext(const Scan& first) const {
     constexpr double kMost = 2 * kApart;  // a scan that is apart from this one lies after it
-    return latest_s_ && usual_s_ > 0 && passedOver_ == 0 && !isLate(first) &&
-           stampOf(first) < *latest_s_ + kMost * usual_s_;
+    if (!latest_s_) return startsInOrder_;
+    if (passedOver_ > 0 || isLate(first)) return false;
+    if (usual_s_ == 0) return startsInOrder_ && stampOf(first) < *latest_s_ + kMostUnknown_s;
+    return stampOf(first) < *latest_s_ + kMost * usual_s_;
 }
 
 bool StampOrder::isClockSet(const std::deque<Scan>& ahead) const {
@@ -75,6 +77,10 @@ Scan StampOrder::give(std::deque<Scan>& ahead, std::size_t place) {
 std::optional<Scan> StampOrder::take(std::deque<Scan>& ahead) {
     constexpr double kOfASpinningLidar_s = 0.1;
     const std::size_t index = ahead.front().index;
+    if (isNext(ahead.front())) {
+        wasSet_ = false;
+        return give(ahead, 0);
+    }
     if (isClockSet(ahead)) {
         findings_.add(
             "stamps do not increase (clock set back or stopped): continued from the previous scan",

@@ -17,12 +17,15 @@ class StampOrder {
     /** How many scans take() compares. */
     static constexpr std::size_t kWindow = 3;
 
+    /** `startsInOrder`: the first scans come in the order in which they were taken. */
+    explicit StampOrder(bool startsInOrder = false) : startsInOrder_(startsInOrder) {}
+
     /** Takes a scan off `ahead`, the next scans as they were recorded: at least one, and kWindow
      *  unless the drive ends before. Nothing: that scan is left out. */
     std::optional<Scan> take(std::deque<Scan>& ahead);
 
     /** True where take() gives the first scan whatever comes after it: it follows the one before at
-     *  the usual interval. */
+     *  the usual interval, or the drive starts in order. */
     bool isNext(const Scan& first) const;
 
     /** Ignored or changed scans, one line per kind. */
@@ -37,6 +40,7 @@ class StampOrder {
     void learn(double passed_s);
     Scan give(std::deque<Scan>& ahead, std::size_t place);
 
+    bool startsInOrder_;
     std::optional<double> latest_s_;  //!< stamp of the scan that was given last
     double usual_s_ = 0;              //!< from one scan to the next; 0: not known
     double added_s_ = 0;              //!< to the stamps that were recorded

@@ -89,6 +89,21 @@ void writeInCloud(const RunRecord& record, const RunFolder& folder) {
     for (auto& pose : inCloud.poses) pose.translation() += offset;
     io::writeTum(inCloud, folder.path(RunFolder::kCloudTum));
 }
+/** What was calibrated in the drive, for --extrinsics; empty: nothing. */
+std::string extrinsicsOf(const RunRecord& record) {
+    std::string lines;
+    for (const auto& sensor : record.extrinsics)
+        lines += io::extrinsicsLine(sensor.label, sensor.pose) + "\n";
+    const auto& imu = record.imu;
+    if (imu && imu->rotation && imu->rotationSigma_rad) {
+        io::ImuMount mount;
+        mount.pose.linear() = record.rows.front().sensorPose.linear() * *imu->rotation;
+        if (imu->offsetSigma_s) mount.offset_s = imu->offset_s;
+        lines += io::extrinsicsLine(mount) + "\n";
+    }
+    if (lines.empty()) return lines;
+    return "# LABEL x y z yaw pitch roll (metres and degrees, in the vehicle)\n" + lines;
+}
 }  // namespace
 
 std::string storedMapIn(const std::string& path) {
@@ -170,12 +185,9 @@ void RunFolder::writeTables(const RunRecord& record) const {
     if (!record.joints.empty()) writeLoopTable(record.joints, path(kJoints));
     if (!record.fixes.empty())
         writeLocalisationTable(record.rows, record.fixes, path(kLocalisation));
-    if (!record.extrinsics.empty())
-        io::replaceTextFile(path(kExtrinsics), [&](std::ostream& out) {
-            out << "# LABEL x y z yaw pitch roll (metres and degrees, in the vehicle)\n";
-            for (const auto& sensor : record.extrinsics)
-                out << io::extrinsicsLine(sensor.label, sensor.pose) << "\n";
-        });
+    const auto extrinsics = extrinsicsOf(record);
+    if (!extrinsics.empty())
+        io::replaceTextFile(path(kExtrinsics), [&](std::ostream& out) { out << extrinsics; });
     io::replaceTextFile(path(kConfig), [&](std::ostream& out) { record.options.write(out); });
 }
 

@@ -1,10 +1,10 @@
 #include "delio/run/summary.h"
 
-#include <sys/resource.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <ostream>
 #include <type_traits>
 
@@ -344,10 +344,13 @@ Summary::Figures liveFiguresOf(const LiveRecord& live) {
             {"latency_worst_ms", ms.back()}};
 }
 
+/** Of this program alone: getrusage() counts the one that started it as well. */
 double peakMemory_mb() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) / 1024;
+    std::ifstream status("/proc/self/status");
+    double kilobytes = 0;
+    for (std::string word; kilobytes == 0 && status >> word;)
+        if (word == "VmHWM:") status >> kilobytes;
+    return kilobytes / 1024;
 }
 
 Summary summaryOf(const RunRecord& record, double pictures_ms) {

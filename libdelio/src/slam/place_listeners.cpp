@@ -22,15 +22,13 @@ void LoopCloser::add(const SlamScan& scan) {
     }
     // The pose of an unregistered scan is only predicted: its points are left out.
     const auto still = scan.step.predicted ? Eigen::Matrix3Xf(3, 0) : staticPoints(scan);
-    poses_.push_back(scan.pose);
     end(builder_.add(scan.node, scan.increment, still, up_));
+    poses_.push_back(scan.pose);
     searchNext();
 }
 
-void LoopCloser::end(std::optional<places::Submap> submap) {
-    if (!submap) return;
-    const Eigen::Isometry3d pose = poses_[submap->key];
-    waiting_.push_back({std::move(*submap), pose});
+void LoopCloser::end(std::future<places::Submap> submap) {
+    if (submap.valid()) waiting_.push_back({std::move(submap), std::exchange(poses_, {})});
 }
 
 /** Searches for all submaps that wait, unless the thread is busy: in a thread of its own, or here
@@ -55,8 +53,12 @@ void LoopCloser::searchTaken() noexcept {
     Stopwatch watch;
     try {
         tbb::task_arena(1).execute([&] {
-            for (auto& [submap, pose] : taken_)
-                if (!fault_) search_.add(std::move(submap), pose);
+            for (auto& [ended, poses] : taken_) {
+                if (fault_) break;
+                places::Submap submap = ended.get();
+                const Eigen::Isometry3d& pose = poses[submap.key - submap.first];
+                search_.add(std::move(submap), pose);
+            }
         });
     } catch (...) {
         fault_ = std::current_exception();

@@ -35,15 +35,15 @@ class LoopCloser : public SlamListener {
 
  private:
     struct Ended {
-        places::Submap submap;
-        Eigen::Isometry3d pose;  //!< of its key node
+        std::future<places::Submap> submap;
+        std::vector<Eigen::Isometry3d> poses;  //!< of its nodes
     };
-    void end(std::optional<places::Submap> submap);
+    void end(std::future<places::Submap> submap);
     void searchNext() noexcept;
     void searchTaken() noexcept;
 
     places::SubmapBuilder builder_;
-    std::vector<Eigen::Isometry3d> poses_;  //!< of all nodes
+    std::vector<Eigen::Isometry3d> poses_;  //!< of the nodes of the submap that is being made
     std::vector<Ended> waiting_;            //!< submaps that are not searched for yet
     std::vector<Ended> taken_;              //!< belongs, as search_, to the thread while it is busy
     places::LoopSearch search_;             //!< belongs to the thread while that is busy

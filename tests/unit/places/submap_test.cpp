@@ -21,8 +21,8 @@ struct Drive {
     std::vector<Submap> submaps;
     std::vector<Eigen::Isometry3d> poses;
 
-    void take(std::optional<Submap> ended) {
-        if (ended) submaps.push_back(std::move(*ended));
+    void take(std::future<Submap> ended) {
+        if (ended.valid()) submaps.push_back(ended.get());
     }
     void add(const Eigen::Isometry3d& pose, const Eigen::Matrix3Xf& points = post(),
              const Eigen::Vector3d& up = kUp) {
@@ -102,16 +102,17 @@ TEST(SubmapBuilder, CutsAtAGap) {
     SubmapBuilder builder{{}};
     const Increment step{poseAt(1, 0, 0), 1e-6 * Matrix6::Identity()},
         gap{poseAt(1, 0, 0), 9 * Matrix6::Identity()};
-    for (std::size_t i = 0; i < 5; ++i) EXPECT_FALSE(builder.add(i, step, post(), kUp));
-    const auto before = builder.add(5, gap, post(), kUp);
-    ASSERT_TRUE(before);
-    EXPECT_EQ(before->last, 4U);
-    EXPECT_FALSE(builder.add(6, step, post(), kUp));
-    const auto after = builder.finish();
-    ASSERT_TRUE(after);
-    EXPECT_EQ(after->first, 5U);
-    EXPECT_GT(after->driven.variance_m2, 9);
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_FALSE(builder.add(i, step, post(), kUp).valid());
+    auto before = builder.add(5, gap, post(), kUp);
+    ASSERT_TRUE(before.valid());
+    EXPECT_FALSE(builder.add(6, step, post(), kUp).valid());
+    EXPECT_EQ(before.get().last, 4U);  // whatever came meanwhile
+    auto after = builder.finish();
+    ASSERT_TRUE(after.valid());
+    const Submap second = after.get();
+    EXPECT_EQ(second.first, 5U);
+    EXPECT_GT(second.driven.variance_m2, 9);
 }
 
-TEST(SubmapBuilder, OfNothingHasNone) { EXPECT_FALSE(SubmapBuilder{{}}.finish()); }
+TEST(SubmapBuilder, OfNothingHasNone) { EXPECT_FALSE(SubmapBuilder{{}}.finish().valid()); }
 }  // namespace

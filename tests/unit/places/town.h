@@ -58,8 +58,8 @@ inline std::vector<places::Submap> submapsOf(const test::Scene& scene, const Pos
                                              const Increment& gap = {}) {
     places::SubmapBuilder builder{{}};
     std::vector<places::Submap> submaps;
-    const auto take = [&](std::optional<places::Submap> ended) {
-        if (ended) submaps.push_back(std::move(*ended));
+    const auto take = [&](std::future<places::Submap> ended) {
+        if (ended.valid()) submaps.push_back(ended.get());
     };
     test::Noise noise;
     Increment step{{}, 1e-6 * Matrix6::Identity()};

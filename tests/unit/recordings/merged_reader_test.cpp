@@ -2,6 +2,7 @@
 #include "recordings/merged_reader.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/obs/CObservationIMU.h>
 
 #include "delio/core/geometry.h"
 #include "rawlog_files.h"
@@ -160,6 +161,25 @@ TEST_F(Merged, PosesOfAFile) {
     EXPECT_TRUE(one->sensorPose.isApprox(fromMrpt(CPose3D(0, 2, 3, M_PI / 2, 0, 0)), 1e-9));
 }
 
+TEST_F(Merged, TheFilesImuReplacesTheRecordings) {
+    addDrive(3);
+    auto imu = mrpt::obs::CObservationIMU::Create();
+    imu->sensorLabel = "imu";
+    imu->timestamp = mrpt::Clock::fromDouble(1000.05);
+    imu->set(mrpt::obs::IMU_WX, 1.0);
+    imu->set(mrpt::obs::IMU_WY, 0.0);
+    imu->set(mrpt::obs::IMU_WZ, 0.0);
+    objects_.insert(objects_.begin() + 1, imu);
+    const auto reader = open("front", "imu 1 2 3 90 0 0 -0.03");
+    while (reader->next()) continue;
+    const auto samples = reader->takeImu();
+    ASSERT_EQ(samples.size(), 1U);
+    ASSERT_TRUE(samples[0].sensorPose && samples[0].offset_s);
+    EXPECT_TRUE(samples[0].sensorPose->isApprox(fromMrpt(CPose3D(1, 2, 3, M_PI / 2, 0, 0)), 1e-9));
+    EXPECT_EQ(*samples[0].offset_s, -0.03);
+    EXPECT_NEAR(samples[0].stamp_s, 0.05, 1e-6);
+}
+
 TEST_F(Merged, Errors) {
     addDrive(3);
     const std::string file = "'" + rawlog_ + "': ";
@@ -173,8 +193,14 @@ TEST_F(Merged, Errors) {
     for (const char* line : {"front 0 0 0 0 0", "front 0 0 0 0 0 x", "front 0 0 nan 0 0 0"})
         EXPECT_NE(faultOf("all", line).find("line 1: expected LABEL x y z yaw pitch roll"),
                   std::string::npos);
-    EXPECT_NE(faultOf("all", "front 0 0 0 0 0 0\nfront 0 0 0 0 0 0\n").find("is there twice"),
-              std::string::npos);
+    for (const char* twice :
+         {"front 0 0 0 0 0 0\nfront 0 0 0 0 0 0\n", "imu 0 0 0 0 0 0\nimu 0 0 0 0 0 0"})
+        EXPECT_NE(faultOf("all", twice).find("is there twice"), std::string::npos);
+    EXPECT_NE(faultOf("all", "# nothing").find("has no pose of a sensor"), std::string::npos);
+    EXPECT_NE(faultOf("all", "front 0 0 0 0 0 0 0.01").find("expected LABEL"), std::string::npos);
+    for (const char* offset : {"imu 0 0 0 0 0 0 x", "imu 0 0 0 0 0 0 0.2", "imu 0 0 0 0 0 0 nan"})
+        EXPECT_NE(faultOf("all", offset).find("line 1: the offset of an IMU's clock"),
+                  std::string::npos);
 }
 
 TEST_F(Merged, EqualPosesAreDoubted) {

@@ -21,6 +21,8 @@ class Source : public ScanReader {
     std::size_t untimed = 0;  //!< the first ones have no times
     bool shuffled = false;    //!< times are those of other points
     std::optional<bool> told;
+    std::string imu;              //!< its name
+    std::size_t* read = nullptr;  //!< scans that were read
     std::function<double(std::size_t)> stampOf = [](std::size_t scan) {
         return 100 + 0.1 * static_cast<double>(scan);
     };
@@ -32,6 +34,7 @@ class Source : public ScanReader {
             throw Error("cut off");
         }
         if (given_ >= scans) return {};
+        if (read) ++*read;
         return scanAt(given_++);
     }
     bool skip() override { return next().has_value(); }
@@ -46,6 +49,7 @@ class Source : public ScanReader {
         recording.kind = "test";
         recording.sensor = "Spinner";
         recording.motionCompensated = told;
+        recording.imu = imu;
         return recording;
     }
 
@@ -75,10 +79,11 @@ class Source : public ScanReader {
     std::set<std::string> others_;
 };
 
-RecognisedReader readerOf(const std::function<void(Source&)>& set) {
+RecognisedReader readerOf(const std::function<void(Source&)>& set,
+                          Delivery delivery = Delivery::kFile) {
     auto source = std::make_unique<Source>();
     set(*source);
-    return RecognisedReader(std::move(source));
+    return RecognisedReader(std::move(source), delivery);
 }
 }  // namespace
 
@@ -136,6 +141,31 @@ TEST(RecognisedReader, StampsRise) {
     while (const auto scan = reader.next()) scans.push_back(scan->index);
     EXPECT_EQ(scans, (std::vector<std::size_t>{0, 1, 2, 4, 3, 5, 6, 8, 9}));
     EXPECT_EQ(reader.recording().findings.size(), 2U);
+}
+
+/** How many scans are read when the reader is made, and when each scan is given. */
+std::vector<std::size_t> readsOf(Delivery delivery, const std::string& imu) {
+    std::size_t read = 0;
+    auto reader = readerOf(
+        [&](Source& source) {
+            source.scans = 6;
+            source.imu = imu;
+            source.read = &read;
+        },
+        delivery);
+    std::vector<std::size_t> reads{read};
+    while (reader.next()) reads.push_back(read);
+    return reads;
+}
+
+TEST(RecognisedReader, AScanOfASensorIsGivenAtOnce) {
+    using Reads = std::vector<std::size_t>;
+    EXPECT_EQ(readsOf(Delivery::kSensor, ""), (Reads{1, 1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(readsOf(Delivery::kSensor, "imu"), (Reads{1, 2, 3, 4, 5, 6, 6}));
+    EXPECT_EQ(readsOf(Delivery::kPackets, ""), (Reads{3, 3, 3, 3, 4, 5, 6}));
+    EXPECT_EQ(readsOf(Delivery::kPackets, "imu"), (Reads{3, 3, 3, 4, 5, 6, 6}));
+    EXPECT_EQ(readsOf(Delivery::kPipe, ""), (Reads{3, 3, 4, 4, 4, 5, 6}));
+    EXPECT_EQ(readsOf(Delivery::kPipe, "imu"), readsOf(Delivery::kFile, "imu"));
 }
 
 // Not how far was read ahead.

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <future>
 #include <thread>
+#include <vector>
 
 #include "delio/core/error.h"
 
@@ -12,6 +14,7 @@ namespace {
 Scan scanOf(std::size_t index) {
     Scan scan;
     scan.index = index;
+    scan.stamp_s = 0.1 * static_cast<double>(index);
     return scan;
 }
 
@@ -44,7 +47,7 @@ TEST(ScanFeed, GivesScansInOrderWithTheSamplesBeforeThem) {
     EXPECT_EQ(feed.dropped(), 0U);
 }
 
-TEST(ScanFeed, DropsTheOldestScanAndKeepsItsSamples) {
+TEST(ScanFeed, DropsScansAndKeepsTheirSamples) {
     int calls = 0;
     ScanFeed feed(2, [&] { ++calls; });
     for (std::size_t i = 0; i < 5; ++i) {
@@ -54,16 +57,57 @@ TEST(ScanFeed, DropsTheOldestScanAndKeepsItsSamples) {
     feed.close();
     EXPECT_EQ(feed.dropped(), 3U);
     EXPECT_EQ(calls, 1);
+    // The drive begins with its first scan, and the latest one is always there.
     auto item = feed.take();
     ASSERT_TRUE(item);
-    EXPECT_EQ(item->scan.index, 3U);
-    ASSERT_EQ(item->imu.size(), 4U);
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(item->imu[i].stamp_s, static_cast<double>(i));
+    EXPECT_EQ(item->scan.index, 0U);
+    EXPECT_EQ(item->imu.size(), 1U);
     item = feed.take();
     ASSERT_TRUE(item);
     EXPECT_EQ(item->scan.index, 4U);
-    EXPECT_EQ(item->imu.size(), 1U);
+    ASSERT_EQ(item->imu.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(item->imu[i].stamp_s, static_cast<double>(i + 1));
     EXPECT_FALSE(feed.take());
+}
+
+/** Numbers of the scans that are taken, where each one takes as long as `perScan` others need to
+ *  come, and the second one `second`. */
+std::vector<std::size_t> takenOf(std::size_t scans, std::size_t perScan, std::size_t second) {
+    ScanFeed feed(10);
+    std::vector<std::size_t> taken;
+    for (std::size_t i = 0; i < scans;) {
+        if (i == 0) feed.add(scanOf(i++));
+        taken.push_back(feed.take()->scan.index);
+        const std::size_t busy = taken.size() == 2 ? second : perScan;
+        for (std::size_t end = std::min(scans, i + busy); i < end;) feed.add(scanOf(i++));
+    }
+    return taken;
+}
+
+std::size_t longestGapOf(const std::vector<std::size_t>& taken) {
+    std::size_t longest = 0;
+    for (std::size_t i = 1; i < taken.size(); ++i)
+        longest = std::max(longest, taken[i] - taken[i - 1]);
+    return longest;
+}
+
+TEST(ScanFeed, WhatIsTakenAfterAHiccupIsEvenInTime) {
+    // While the second scan takes its time, 40 others come, of which ten may wait.
+    const auto taken = takenOf(400, 1, 40);
+    EXPECT_LE(longestGapOf(taken), 12U);
+    // It catches up: the last hundred scans are taken one by one, shortly after they came.
+    ASSERT_GT(taken.size(), 100U);
+    EXPECT_EQ(longestGapOf({taken.end() - 100, taken.end()}), 1U);
+    EXPECT_GE(taken.back() + 4, 399U);
+}
+
+TEST(ScanFeed, AShortHiccupCostsNoScan) { EXPECT_EQ(longestGapOf(takenOf(400, 1, 10)), 1U); }
+
+TEST(ScanFeed, AnOdometryThatIsTooSlowGetsEvenlySpacedScans) {
+    const auto taken = takenOf(400, 3, 3);
+    EXPECT_LE(longestGapOf(taken), 5U);
+    EXPECT_NEAR(static_cast<double>(taken.size()), 400.0 / 3, 8);
+    EXPECT_GE(taken.back() + 12, 399U);
 }
 
 TEST(ScanFeed, AFaultComesAfterTheScans) {

@@ -14,8 +14,9 @@ struct Given {
 
 /** What is given of scans that are stamped so. `isLive`: scans are read ahead only where isNext()
  *  does not know the first one. */
-Given givenOf(const std::vector<double>& stamps_s, bool isLive = false) {
-    StampOrder order;
+Given givenOf(const std::vector<double>& stamps_s, bool isLive = false,
+              bool startsInOrder = false) {
+    StampOrder order(startsInOrder);
     std::deque<Scan> ahead;
     Given given;
     std::size_t read = 0;
@@ -73,24 +74,34 @@ TEST(StampOrder, ReadingAheadOnlyWhereNeededGivesTheSame) {
                 for (std::size_t i = at; i < stamps.size(); ++i) stamps[i] += by_s;
             if (kind == 4) stamps.erase(stamps.begin() + static_cast<std::ptrdiff_t>(at));
         }
-        const auto all = givenOf(stamps), live = givenOf(stamps, true);
-        EXPECT_EQ(live.scans, all.scans) << drive;
-        EXPECT_EQ(live.stamps_s, all.stamps_s) << drive;
-        EXPECT_EQ(live.findings, all.findings) << drive;
+        for (const bool inOrder : {false, true}) {
+            const auto all = givenOf(stamps, false, inOrder), live = givenOf(stamps, true, inOrder);
+            EXPECT_EQ(live.scans, all.scans) << drive;
+            EXPECT_EQ(live.stamps_s, all.stamps_s) << drive;
+            EXPECT_EQ(live.findings, all.findings) << drive;
+        }
     }
 }
 
 TEST(StampOrder, AScanAtTheUsualIntervalNeedsNoLookAhead) {
-    StampOrder order;
-    std::deque<Scan> ahead;
-    std::size_t known = 0;
-    for (std::size_t i = 0; i < 20; ++i) {
-        ahead.emplace_back();
-        ahead.back().stamp_s = 0.1 * static_cast<double>(i);
-        known += order.isNext(ahead.front());
-        order.take(ahead);
+    for (const bool startsInOrder : {false, true}) {
+        StampOrder order(startsInOrder);
+        std::deque<Scan> ahead;
+        std::size_t known = 0;
+        for (std::size_t i = 0; i < 20; ++i) {
+            ahead.emplace_back();
+            ahead.back().stamp_s = 0.1 * static_cast<double>(i);
+            known += order.isNext(ahead.front());
+            order.take(ahead);
+        }
+        EXPECT_EQ(known, startsInOrder ? 20U : 18U);  // two scans show the interval
     }
-    EXPECT_EQ(known, 18U);  // two scans show the interval
+}
+
+TEST(StampOrder, FirstScansInOrderStayInOrder) {
+    const std::vector<double> swapped{0.1, 0, 0.2, 0.3};
+    EXPECT_EQ(givenOf(swapped).scans, (Scans{1, 0, 2, 3}));
+    EXPECT_EQ(givenOf(swapped, false, true).scans, (Scans{0, 2, 3}));
 }
 
 TEST(StampOrder, SwappedScansAreSorted) {

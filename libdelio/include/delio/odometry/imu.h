@@ -20,6 +20,9 @@ struct ImuSample {
     /** Pose of the IMU in the vehicle: maps the IMU's coordinates to the vehicle's; nothing where
      *  the source does not say it. */
     std::optional<Eigen::Isometry3d> sensorPose;
+    /** Added to a scan's time, it gives the stamp of the same moment, seconds, at most 0.1; nothing
+     *  where it is not known. */
+    std::optional<double> offset_s = std::nullopt;
 };
 
 /** What an odometry found out about the IMU. Rotations map the IMU's axes to the LiDAR's. */

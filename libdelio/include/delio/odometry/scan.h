@@ -30,6 +30,10 @@ struct Scan {
      *  it); empty if the source does not give times. NaN: the time of that point is not known. */
     std::vector<float> times_s;
 
+    /** Scans since the one before that were dropped for lack of time (ScanFeed). An odometry then
+     *  leaves out searches that would cost it more scans than they are worth. */
+    std::size_t dropped = 0;
+
     /** Pose of the sensor in the vehicle: maps sensor coordinates to vehicle coordinates. */
     Eigen::Isometry3d sensorPose = Eigen::Isometry3d::Identity();
 };

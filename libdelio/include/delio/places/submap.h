@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <optional>
+#include <future>
 #include <vector>
 
 #include "delio/core/increment.h"
@@ -61,12 +61,13 @@ class SubmapBuilder {
     const SubmapOptions& options() const { return options_; }  //!< that it was made with
 
     /** The next scan: increment since the one before, points in the vehicle's frame and the unit
-     *  vector that points up in it. Where it begins another submap, the one that ended. */
-    std::optional<Submap> add(std::size_t node, const Increment& increment,
-                              const Eigen::Matrix3Xf& points, const Eigen::Vector3d& up);
+     *  vector that points up in it. Where it begins another submap, the one that ended, otherwise
+     *  none (not valid()). Its scans are merged when it is asked for, which takes time. */
+    std::future<Submap> add(std::size_t node, const Increment& increment,
+                            const Eigen::Matrix3Xf& points, const Eigen::Vector3d& up);
 
-    /** The one that is being made, if any. */
-    std::optional<Submap> finish();
+    /** The same of the one that is being made, if any. */
+    std::future<Submap> finish();
 
  private:
     struct Part {
@@ -80,7 +81,8 @@ class SubmapBuilder {
     bool isComplete() const;
     /** Where the scan was taken is not known well enough from those before it: a pause. */
     bool isBeyondGap(const Increment& increment) const;
-    Submap merged() const;
+    static Submap merged(const std::vector<Part>& parts, const SubmapOptions& options);
+    std::future<Submap> end();
 
     SubmapOptions options_;
     std::vector<Part> parts_;  //!< of the one that is being made

@@ -132,8 +132,8 @@ struct LiveSettings {
      *  it gives the same scans. */
     std::string record;
     double idle_s = 0;  //!< seconds without a packet that end the drive; 0: nothing does
-    /** Scans that wait for the odometry at a time. Where there are more, the oldest is dropped. */
-    std::size_t mostWaiting = 5;
+    /** Scans that may wait for the odometry. Where there are more, some are dropped (ScanFeed). */
+    std::size_t mostWaiting = 10;
     /** Asked 20 times a second, by another thread: true ends the drive. Null: it goes on. */
     std::function<bool()> isEnded;
     /** Gets warnings during the drive, from other threads. */
@@ -181,7 +181,8 @@ struct ScanSource {
     std::string sensorFile;
     LiveSettings live = {};  //!< of "udp://..."
     /** Poses of the sensors in the vehicle, instead of the recording's: lines `LABEL x y z yaw
-     * pitch roll`, metres and degrees. Empty: none. */
+     * pitch roll`, metres and degrees, and of an IMU `imu x y z yaw pitch roll [OFFSET]`, see
+     * ImuSample::offset_s. Empty: none. */
     std::string extrinsicsFile = {};
     /** The same by label, in place of the file's; empty: none. */
     std::map<std::string, Eigen::Isometry3d> extrinsics = {};

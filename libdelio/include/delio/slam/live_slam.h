@@ -14,8 +14,8 @@
 
 namespace delio {
 /** A Slam in a thread of its own, fed by the threads of sensors' drivers. add() does not wait:
- *  where more scans come than are processed, the oldest one that waits is dropped as a whole.
- *  Poses come to the listeners of the Slam, in its thread. */
+ *  where too many scans wait, whole ones are dropped, evenly in time. Poses come to the listeners
+ * of the Slam, in its thread. */
 class LiveSlam {
  public:
     /** Scans so far. */
@@ -27,7 +27,7 @@ class LiveSlam {
     };
 
     /** `slam`: with its listeners. `mostWaiting`: scans that may wait. */
-    explicit LiveSlam(std::unique_ptr<Slam> slam, std::size_t mostWaiting = 5);
+    explicit LiveSlam(std::unique_ptr<Slam> slam, std::size_t mostWaiting = 10);
     /** As finish(). */
     ~LiveSlam();
     LiveSlam(const LiveSlam&) = delete;
