@@ -106,12 +106,25 @@ Comparison compareOrSayWhy(const io::Trajectory& reference, const io::Trajectory
     }
 }
 
+/** True if more rows follow the last scan than between two scans. */
+bool goesOnAfter(const io::ScanTable& table, std::size_t rows) {
+    const auto& scans = table.scans;
+    const std::size_t step = scans.size() > 1 ? scans.back() - scans[scans.size() - 2] : 1;
+    return rows > scans.back() + step;
+}
+
 /** Prints notes about the compared poses. */
-void describe(const Comparison& comparison, bool verbose, const std::string& pair) {
+void describe(const Comparison& comparison, const std::optional<io::ScanTable>& table, bool verbose,
+              const std::string& pair) {
     const std::string matched = std::to_string(comparison.reference.size());
-    if (comparison.unusedReference > 0)
-        cli::inform(pair + "scored on the " + matched + " of " +
-                    std::to_string(comparison.reference.size() + comparison.unusedReference) +
+    const std::size_t rows = comparison.reference.size() + comparison.unusedReference;
+    if (comparison.unusedReference > 0 && goesOnAfter(*table, rows))
+        cli::warn(pair + "the reference has " + std::to_string(rows) +
+                  " rows, but the last scan is number " + std::to_string(table->scans.back()) +
+                  "; row N was taken for scan N, which is wrong if the recording has fewer scans "
+                  "than the reference has rows");
+    else if (comparison.unusedReference > 0)
+        cli::inform(pair + "scored on the " + matched + " of " + std::to_string(rows) +
                     " scans used according to " + RunFolder::kScans);
     if (comparison.unmatchedReference + comparison.unmatchedEstimate > 0)
         cli::warn(pair + matched + " poses match in time; " +
@@ -175,7 +188,7 @@ Comparison compareFiles(const std::string& name, const std::string& referenceFil
         compareOrSayWhy(reference, estimate, settings, table ? &*table : nullptr, pair);
     comparison.row.name = name;
     comparison.row.sequence = printable(fs::path(referenceFile).stem().string());
-    describe(comparison, settings.verbose, pair);
+    describe(comparison, table, settings.verbose, pair);
     return comparison;
 }
 

@@ -238,4 +238,20 @@ TEST_F(DelioEval, HelpAndVersionSucceed) {
     EXPECT_EQ(version.exitCode, 0);
     EXPECT_TRUE(test::isOneLine(version.out));
 }
+TEST_F(DelioEval, WarnsOfRowsAfterTheLastScan) {
+    fs::create_directory(folder_ / "run");
+    io::writeKitti(cameraDrive(0.505, 3), in("run/trajectory_kitti.txt"));
+    const auto errorsFor = [&](const std::string& scans) {
+        test::writeText(in("run/scans.csv"), "scan,stamp_s,predicted\n" + scans);
+        const auto result = tsvOf("ref.txt", "run");
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return result.err;
+    };
+    const std::string asked = "reference has 501 rows, but the last scan is number 2";
+    EXPECT_NE(errorsFor("0,0,0\n1,0.1,0\n2,0.2,0\n").find("warning: "), std::string::npos);
+    EXPECT_NE(errorsFor("0,0,0\n1,0.1,0\n2,0.2,0\n").find(asked), std::string::npos);
+    // Every 250th scan of the whole drive was used.
+    EXPECT_NE(errorsFor("0,0,0\n250,25,0\n500,50,0\n").find("the 3 of 501 scans used"),
+              std::string::npos);
+}
 }  // namespace

@@ -86,6 +86,20 @@ TEST_F(ImportedMap, RefusesWhatItCannotUse) {
     expectRefusal({"--import", cloud_, "-o", folder_ / "none/map.delio"}, 1, "no such folder");
 }
 
+TEST_F(ImportedMap, RefusesACloudWithYUp) {
+    writeCloud(test::poseAtDeg(0, 0, 0, 0, 0, -90));
+    expectRefusal({"--import", cloud_, "-o", map_}, 1, "is flat along y");
+}
+
+TEST_F(ImportedMap, TheEdgesBetweenItsTilesStay) {
+    writeCloud(Eigen::Isometry3d::Identity());
+    ASSERT_EQ(import().exitCode, 0);
+    test::writeText(folder_ / "edits.txt", "forbid 0 1\n");
+    const auto run = runTool("delio-map", {"-i", map_, "--edits", folder_ / "edits.txt", "-o",
+                                           folder_ / "edited.delio"});
+    test::expectFailure(run, 1, {"'forbid 0 1'", "holds the drive or the imported cloud together"});
+}
+
 TEST_F(ImportedMap, OverwritesOnlyWhenAsked) {
     test::writeText(map_, "old");
     test::writeText(cloud_, "");

@@ -30,6 +30,9 @@ bool joins(const graph::Edge& edge, std::size_t a, std::size_t b) {
     return (edge.from == a && edge.to == b) || (edge.from == b && edge.to == a);
 }
 
+/** Consecutive nodes: poses of a drive, or tiles of an imported cloud. */
+bool isChain(std::size_t a, std::size_t b) { return a + 1 == b || b + 1 == a; }
+
 /** Registers `to` to `from` within the reach of loops, and judges the result as a loop. */
 Closure closureBetween(const StoredMap& map, const std::vector<Eigen::Isometry3d>& level,
                        const GraphEdit& edit) {
@@ -75,8 +78,7 @@ std::vector<SubmapEdge> submapEdges(const StoredMap& map) {
     std::vector<SubmapEdge> edges;
     for (const auto& edge : map.graph().edges()) {
         const auto from = submapAt.find(edge.from), to = submapAt.find(edge.to);
-        const bool isChain = edge.from + 1 == edge.to || edge.to + 1 == edge.from;
-        if (isChain || from == submapAt.end() || to == submapAt.end()) continue;
+        if (isChain(edge.from, edge.to) || from == submapAt.end() || to == submapAt.end()) continue;
         const Eigen::Isometry3d off =
             edge.increment.pose.inverse() * poses[edge.from].inverse() * poses[edge.to];
         edges.push_back({from->second, to->second, edge, off.translation().norm(),
@@ -133,6 +135,8 @@ MapContent edited(const StoredMap& map, const std::vector<GraphEdit>& edits) {
         const bool wasThere = graph.edges().size() < content.graph.edges().size();
         if (edit.kind == GraphEdit::Kind::Forbid) {
             if (!wasThere) refuse("there is no edge between these submaps");
+            if (isChain(a, b))
+                refuse("this edge holds the drive or the imported cloud together and must stay");
         } else {
             const auto level = levelFrames(submaps, content.graph.poses());
             const auto closure = closureBetween(map, level, edit);

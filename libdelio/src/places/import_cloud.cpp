@@ -97,6 +97,9 @@ struct Tile {
 class CutCloud {
  public:
     explicit CutCloud(std::vector<Eigen::Vector3f> points);
+    /** Throws Error where another axis than z is up: the cloud is flat along it, and more surfaces
+     *  face it than z. LeGO-LOAM writes such maps. */
+    void checkUp(const std::string& cloud) const;
 
     std::size_t size() const { return tiles_.size(); }
     const std::vector<Eigen::Isometry3d>& levelFrames() const { return level_; }
@@ -140,6 +143,32 @@ CutCloud::CutCloud(std::vector<Eigen::Vector3f> points) : points_(std::move(poin
             Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up).toRotationMatrix();
         level_.push_back(isometry(level, {middle.x(), middle.y(), groundOf(i, level)}));
     }
+}
+
+void CutCloud::checkUp(const std::string& cloud) const {
+    constexpr double kFlat = 0.5, kCone_deg = 30;
+    Eigen::Vector3d extent, facing = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k < 3; ++k) {
+        std::vector<float> values;
+        for (const auto& point : points_) values.push_back(point[k]);
+        const auto at = [&](double quantile) {
+            const auto rank =
+                static_cast<std::ptrdiff_t>(quantile * static_cast<double>(values.size() - 1));
+            std::nth_element(values.begin(), values.begin() + rank, values.end());
+            return double{values[static_cast<std::size_t>(rank)]};
+        };
+        extent[k] = at(0.95) - at(0.05);
+        for (const auto& tile : tiles_) {
+            const auto& surfaces = tile.surfaces;
+            for (Eigen::Index i = 0; i < surfaces.directions.cols(); ++i)
+                if (std::abs(surfaces.directions(k, i)) > std::cos(kCone_deg * kDeg))
+                    facing[k] += static_cast<double>(surfaces.planarity[i]);
+        }
+    }
+    for (Eigen::Index k = 0; k < 2; ++k)
+        if (extent[k] < kFlat * std::min(extent[1 - k], extent.z()) && facing[k] > facing.z())
+            throw Error("'" + cloud + "' is flat along " + "xy"[k] +
+                        ", as a map of LeGO-LOAM is: turn it so that z is up");
 }
 
 /** Into tiles in the order of their rows. */
@@ -264,6 +293,7 @@ ImportFigures importCloud(const std::string& path, double spacing_m, const std::
     figures.kept = points.size();
     checkDensity(points, path);
     CutCloud cloud(std::move(points));
+    cloud.checkUp(path);
     figures.submaps = figures.origin.tiles = cloud.size();
     figures.tilt_deg = std::acos(std::min(1.0, cloud.up().z())) / kDeg;
     auto content = contentOf(cloud, figures.origin);
