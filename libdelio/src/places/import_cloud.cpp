@@ -166,7 +166,8 @@ void CutCloud::checkUp(const std::string& cloud) const {
         }
     }
     for (Eigen::Index k = 0; k < 2; ++k)
-        if (extent[k] < kFlat * std::min(extent[1 - k], extent.z()) && facing[k] > facing.z())
+        if (extent[k] < kFlat * std::min(extent[1 - k], extent.z()) && facing[k] > facing.z() &&
+            facing.z() > 0)  // else it is a wall
             throw Error("'" + cloud + "' is flat along " + "xy"[k] +
                         ", as a map of LeGO-LOAM is: turn it so that z is up");
 }
