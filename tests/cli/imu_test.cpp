@@ -93,6 +93,13 @@ TEST(Imu, ACalibratedOneIsUsedFromTheBeginningOfTheNextDrive) {
     EXPECT_LT(figure(known.metrics, "end_error_percent"), 0.5);
     EXPECT_NE(test::readText(folder / "known/extrinsics.txt").find("imu 0.00000"),
               std::string::npos);
+    // A rawlog has the stamps of one clock.
+    Words copy = {"-i", next, "-o", folder / "copy.rawlog"};
+    copy.insert(copy.end(), given.begin(), given.end());
+    EXPECT_EQ(test::runTool("scans2rawlog", copy).exitCode, 0);
+    const auto copied = slam(folder / "copy.rawlog", folder / "of_copy");
+    EXPECT_NEAR(figure(copied.imu, "offset_ms"), 0, 2);
+    EXPECT_EQ(figure(copied.imu, "scans_used"), figure(known.imu, "scans_used"));
 }
 
 TEST(Imu, TheSameForAnyNumberOfThreads) {

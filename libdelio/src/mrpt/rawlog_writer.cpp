@@ -169,7 +169,7 @@ void RawlogWriter::append(CObservationPointCloud& observation, double stamp_s, d
 void RawlogWriter::add(const ImuSample& sample, double epoch_s) {
     auto observation = observationOf(sample);
     observation.sensorLabel = "imu";
-    observation.timestamp = timeOf(sample.stamp_s, epoch_s);
+    observation.timestamp = timeOf(sample.stamp_s - sample.offset_s.value_or(0), epoch_s);
     put(observation);
 }
 

@@ -65,6 +65,7 @@ TEST(ScanFeed, DropsScansAndKeepsTheirSamples) {
     item = feed.take();
     ASSERT_TRUE(item);
     EXPECT_EQ(item->scan.index, 4U);
+    EXPECT_EQ(item->scan.dropped, 3U);
     ASSERT_EQ(item->imu.size(), 4U);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(item->imu[i].stamp_s, static_cast<double>(i + 1));
     EXPECT_FALSE(feed.take());
