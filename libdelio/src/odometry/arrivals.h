@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include "delio/core/odometry_options.h"
 
@@ -12,9 +13,29 @@ namespace delio::odometry {
 /** What a scan's stamp and points say before the scan is registered. */
 struct Arrival {
     Interval interval;    //!< since the scan before
+    double time_s = 0;    //!< when the scan was measured, seconds, of the stamps' clock
     unsigned copies = 0;  //!< scans in a row, up to this one, with the points of the one before
     /** Scans in a row, up to this one, whose points have no times while those before had. */
     unsigned untimed = 0;
+};
+
+/** Evens stamps out that jitter against the times of the points, as stamps of arrival do: the turns
+ *  of a spinning LiDAR follow each other without a gap, and each takes as long as the points say.
+ */
+class TurnClock {
+ public:
+    /** What has to be added to the scan's stamp, seconds. 0 until an interval differs from the
+     *  duration of a turn by more than 5 %. */
+    double correction_s(const Scan& scan);
+
+ private:
+    bool isUneven(const Scan& scan, double interval_s);
+    double follow(double stamp_s, double interval_s);
+
+    enum class State { kOff, kNoStamp, kRaw, kEvened };
+    State state_ = State::kNoStamp;
+    double raw_s_ = 0, even_s_ = 0;   //!< the latest stamp, as it came and evened out
+    std::optional<double> period_s_;  //!< of a turn, once it was asked for; 0: nothing spins
 };
 
 /** Recognises scans that are no new measurement: drivers repeat scans, and recorders merge topics.
@@ -24,7 +45,8 @@ class Arrivals {
     /** `needTimes`: scans are de-skewed by the times of their points. */
     explicit Arrivals(bool needTimes) : needTimes_(needTimes) {}
 
-    /** Takes the next scan, which was measured at `time_s`: seconds, of the stamps' clock. */
+    /** Takes the next scan, which was measured at `time_s` by its stamp: seconds, of the stamps'
+     *  clock. */
     Arrival take(const Scan& scan, double time_s);
 
     /** Sum of the intervals, seconds: rises with every scan, whatever the stamps do. */
@@ -32,6 +54,7 @@ class Arrivals {
 
  private:
     bool needTimes_;
+    TurnClock clock_;
     Timeline timeline_;
     std::uint64_t fingerprint_ = 0;  //!< of the latest scan's points
     unsigned copies_ = 0, untimed_ = 0;

@@ -203,8 +203,9 @@ paper::SurfaceNormals surfacesOf(const ScanView& view, double probe) {
 
 /** For each axis that the planes do not constrain, or hardly where an earlier scan was: where the
  *  points do not either, the prediction is taken and the axis is reported as unobserved. Where
- * points say that the scan is where an earlier one was, their answer stays; it is reported as
- * unobserved unless surfaces that face the axis confirm the standstill. */
+ *  points say that the scan is where an earlier one was, the prediction is taken if the motion
+ *  cannot have stopped so suddenly. Otherwise their answer stays, and it is reported as unobserved
+ *  unless surfaces that face the axis confirm the standstill. */
 void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& predicted,
                                 Motion motion, PlaneEstimate& found) const {
     auto& translation = found.translation;
@@ -217,18 +218,28 @@ void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& p
     if (doubtful.cols() == 0) return;
     paper::SurfaceNormals surfaces;
     if (rests) surfaces = surfacesOf(view, options_.probe);
-    const auto stands = [&](const Eigen::Vector3d& axis) {
+    const auto isVertical = [&](const Eigen::Vector3d& axis) {
         constexpr double kVertical = 0.8;  // cosine
-        return showsStandstill(points_, surfaces, found.pose(),
-                               {axis, std::abs(axis.dot(up_)) > kVertical, options_.probe,
-                                pointOptions_.last_kernel / 2});
+        return std::abs(axis.dot(up_)) > kVertical;
+    };
+    const auto stands = [&](const Eigen::Vector3d& axis) {
+        return showsStandstill(
+            points_, surfaces, found.pose(),
+            {axis, isVertical(axis), options_.probe, pointOptions_.last_kernel / 2});
+    };
+    const auto isSeen = [&](const Eigen::Vector3d& axis) {
+        // (Where only points that stand above the ground were placed, the ground shows the height.)
+        const bool byAll = isVertical(axis) && view.level.cols() > 0;
+        return pointsSee(points_, byAll ? view.level : view.coarse, found.pose(), axis,
+                         options_.probe, pointOptions_);
     };
     Eigen::Matrix3Xd unseen(3, 0);
     for (Eigen::Index i = 0; i < doubtful.cols(); ++i) {
         const Eigen::Vector3d axis = doubtful.col(i);
         const Eigen::Matrix3d along = axis * axis.transpose();
-        if (!pointsSee(points_, view.level.cols() > 0 ? view.level : view.coarse, found.pose(),
-                       axis, options_.probe, pointOptions_))
+        const double off_m = std::abs(axis.dot(translation.translation - predicted.translation()));
+        const bool isStopped = rests && motion == Motion::kFast && off_m > options_.probe;
+        if (isStopped || !isSeen(axis))
             translation.translation += along * (predicted.translation() - translation.translation);
         else if (!rests || stands(axis))
             continue;

@@ -89,11 +89,10 @@ PointCloud PlaneOdometry::prepare(const Scan& scan, Step& step) {
 /** The time since the scan before, and whether the scan can be used (Step::reason). Gyroscope and
  *  wheels follow as far. */
 Interval PlaneOdometry::arrive(const Scan& scan, const PointCloud& cloud, Step& step) {
-    const double clock_s = scan.stamp_s - cloud.stamp_s;
-    const Arrival arrival = arrivals_.take(scan, clock_s);
+    const Arrival arrival = arrivals_.take(scan, scan.stamp_s - cloud.stamp_s);
     time_s_ = arrivals_.sinceStart_s();
     unregistered_s_ += arrival.interval.elapsed_s;
-    const ScanClock clock{time_s_, clock_s, endsOf(cloud).second};
+    const ScanClock clock{time_s_, arrival.time_s, endsOf(cloud).second};
     isUrgent_ = scan.dropped > 0;
     usesGyro_ = false;
     gyro_.advance(clock, scan.sensorPose);

@@ -96,6 +96,8 @@ class PlaneOdometry : public Odometry {
     Attempt attemptBy(const PointCloud& cloud, const Expectation& expected,
                       const ScanTrajectory& motion, Step& step);
     bool isImplausible(const PointEstimate& placed) const;
+    bool isAlias(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
+                 double since_s) const;
     Motion motion() const;
     Extrapolation predictMotion(double duration_s);
     Expectation expectation(const Eigen::Isometry3d& predicted, bool isGuess, double since_s,
@@ -182,7 +184,7 @@ class PlaneOdometry : public Odometry {
         if (!prediction_.hasMotion()) return true;
         if (isLost(state_)) return !isShaken();
         const bool isSteady = kernel_m() < options().points.first_kernel;
-        return isGuess && isSteady && !std::holds_alternative<Degenerate>(state_);
+        return isGuess && isSteady;
     }
     /** Predictions are off by more than any kernel. */
     bool isShaken() const {

@@ -10,6 +10,7 @@
 
 #include "core/kd_tree.h"
 #include "core/voxel_grid.h"
+#include "odometry/ground_plane.h"
 
 namespace delio::odometry {
 namespace {
@@ -74,6 +75,54 @@ std::optional<Eigen::Vector3d> spinAxisOf(const Eigen::Matrix3Xf& points) {
     return axis;
 }
 
+namespace {
+/** A point's time, seconds, and azimuth about the axis, rad. */
+using Azimuths = std::vector<std::pair<double, double>>;
+
+/** In the order of time, of some points. */
+Azimuths azimuthsOf(const Eigen::Matrix3Xf& points, const std::vector<float>& times_s,
+                    const Eigen::Vector3d& axis) {
+    constexpr Eigen::Index kEnough = 5000;
+    const Eigen::Vector3d u = axis.unitOrthogonal(), v = axis.cross(u);
+    Azimuths all;
+    for (Eigen::Index i = 0; i < points.cols();
+         i += std::max<Eigen::Index>(1, points.cols() / kEnough)) {
+        const Eigen::Vector3d point = points.col(i).cast<double>();
+        all.emplace_back(double{times_s[static_cast<std::size_t>(i)]},
+                         std::atan2(point.dot(v), point.dot(u)));
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+}  // namespace
+
+std::optional<double> turnPeriodOf(const Eigen::Matrix3Xf& points,
+                                   const std::vector<float>& times_s) {
+    constexpr double kShare = 0.8, kAlike = 0.1, kPart = 0.25;
+    if (points.cols() == 0) return {};
+    const Eigen::Vector3d axis = spinAxisOf(points).value_or(Eigen::Vector3d::UnitZ());
+    const Azimuths all = azimuthsOf(points, times_s, axis);
+    const double apart_s = kPart * (all.back().first - all.front().first);
+    std::vector<double> rates;  // turns a second
+    for (std::size_t i = 0, j = 0; i < all.size(); ++i) {
+        while (j < all.size() && all[j].first < all[i].first + apart_s) ++j;
+        if (j == all.size()) break;
+        const double turned = all[j].second - all[i].second;
+        rates.push_back(std::remainder(turned, 2 * M_PI) / (2 * M_PI) /
+                        (all[j].first - all[i].first));
+    }
+    if (rates.empty()) return {};
+    const auto middle = rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2);
+    std::nth_element(rates.begin(), middle, rates.end());
+    const double rate = *middle;
+    const auto alike = std::count_if(rates.begin(), rates.end(), [&](double other) {
+        return std::abs(other - rate) < kAlike * std::abs(rate);
+    });
+    if (rate == 0 || static_cast<double>(alike) < kShare * static_cast<double>(rates.size()))
+        return {};
+    return 1 / std::abs(rate);
+}
+
 Eigen::Matrix3f turnedUp(const Eigen::Vector3d& up) {
     constexpr double kNearly = 2 * M_PI / 180;
     const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
@@ -94,7 +143,10 @@ std::optional<Eigen::Matrix3f> uprightOf(const Eigen::Matrix3Xf& points) {
 
 Eigen::Matrix3f uprightOf(const Eigen::Isometry3d& sensorPose, const Eigen::Matrix3Xf& points) {
     const Eigen::Matrix3f mounted = turnedUp(sensorPose.linear().row(2));
-    return mounted.isIdentity() ? uprightOf(points).value_or(mounted) : mounted;
+    if (!mounted.isIdentity()) return mounted;
+    const Eigen::Matrix3f spinning = uprightOf(points).value_or(mounted);
+    const auto ground = groundNormalOf(points, spinning.row(2).transpose().cast<double>());
+    return ground ? turnedUp(*ground) : spinning;
 }
 
 Eigen::Vector3d upIn(const Eigen::Isometry3d& sensorPose, const Eigen::Matrix3Xf& points) {

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <optional>
+#include <vector>
 
 namespace delio::odometry {
 /** The axis, a unit vector, that a spinning LiDAR turns about, in the frame of its points (the
@@ -9,6 +10,12 @@ namespace delio::odometry {
  *  elevation, so that neighbouring rays, which are mostly one beam's, differ across the axis only.
  *  Nothing where the points do not look like that. */
 std::optional<Eigen::Vector3d> spinAxisOf(const Eigen::Matrix3Xf& points);
+
+/** How long a spinning LiDAR takes for a turn, seconds, from the azimuths and times of its points;
+ *  nothing where azimuths do not rise or fall evenly with time. `times_s`: of each point, seconds.
+ */
+std::optional<double> turnPeriodOf(const Eigen::Matrix3Xf& points,
+                                   const std::vector<float>& times_s);
 
 /** The rotation that turns `up`, a unit vector, into z; the identity where it is z already, or
  *  nearly: beams of an HDL-64E do not come from one point. */

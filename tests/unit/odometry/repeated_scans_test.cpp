@@ -2,6 +2,7 @@
 
 #include "odometry/arrivals.h"
 #include "odometry_drive.h"
+#include "swing.h"
 
 // Scans that drivers and recorders repeat: a copy says nothing about the motion.
 namespace {
@@ -144,5 +145,84 @@ TEST(ScansThatLoseTheirTimes, ArePredictedAtFirst) {
     for (std::size_t i = 0; i < kScans; ++i)
         EXPECT_EQ(steps[i].predicted, i >= 3 && i < 6) << i << " " << steps[i].reason;
     for (const auto& step : withoutTimes(3, 4, false)) EXPECT_FALSE(step.predicted);
+}
+
+/** A turn of 0.1 s on a straight way at 10 m/s. The points' times count from the begin of the turn,
+ *  which is the stamp, but for its error. */
+Scan turnAt(std::size_t i, double error_s) {
+    constexpr double kHalf_s = 0.05;
+    const double begin_s = 0.1 * static_cast<double>(i);
+    const auto sweep = test::sweep(test::yard(), 0.01, begin_s + kHalf_s, [](double time_s) {
+        return poseAtDeg(-4 + 10 * time_s, 1, 0, 0);
+    });
+    Scan scan = test::scanOf(sweep.points.cast<float>());
+    for (const double time_s : sweep.times_s)
+        scan.times_s.push_back(static_cast<float>(time_s + kHalf_s));
+    scan.stamp_s = begin_s + error_s;
+    return scan;
+}
+
+/** Metres: the worst of the steps after the first ones, which have to be 1 m. */
+double worstStep(double jitter_s) {
+    test::Noise noise(5);
+    std::vector<Scan> scans;
+    for (std::size_t i = 0; i < 20; ++i) scans.push_back(turnAt(i, jitter_s * noise.uniform()));
+    const auto steps = stepsOf(scans, quick("accurate"));
+    double worst_m = 0;
+    for (std::size_t i = 5; i < steps.size(); ++i)
+        worst_m = std::max(
+            worst_m, (steps[i].increment.pose.translation() - Eigen::Vector3d(1, 0, 0)).norm());
+    return worst_m;
+}
+
+// The times of the points are exact, the stamps say when a message arrived.
+TEST(StampsThatJitter, AreEvenedOut) {
+    EXPECT_LT(worstStep(0), 0.03);
+    EXPECT_LT(worstStep(0.03), 0.06);
+}
+
+/** Seconds: the largest difference between the intervals and those of the stamps without error. */
+double worstInterval(const std::vector<double>& errors_s, const std::vector<std::size_t>& turns) {
+    TurnClock clock;
+    double worst_s = 0, before_s = 0;
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+        const Scan scan = turnAt(turns[k], errors_s[k]);
+        const double evened_s = scan.stamp_s + clock.correction_s(scan);
+        constexpr std::size_t kSettled = 4;
+        if (k >= kSettled)
+            worst_s = std::max(
+                worst_s,
+                std::abs(evened_s - before_s - 0.1 * static_cast<double>(turns[k] - turns[k - 1])));
+        before_s = evened_s;
+    }
+    return worst_s;
+}
+
+TEST(TurnClock, EvensJitterAndKeepsGaps) {
+    const std::vector<double> none(12),
+        errors_s{0.01, -0.02, 0.02, -0.01, 0.03, -0.02, -0.01, 0.02, 0.01, -0.03, 0.025, 0};
+    const std::vector<std::size_t> all{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11},
+        some{0, 1, 2, 3, 4, 5, 7, 8, 9, 12, 13, 14};
+    EXPECT_LT(worstInterval(errors_s, all), 0.012);
+    EXPECT_LT(worstInterval(errors_s, some), 0.012);
+    EXPECT_LT(worstInterval(none, some), 1e-9);
+}
+
+// Stamps without jitter stay as they are, and so do those of scans whose points have no times.
+TEST(TurnClock, LeavesOtherStampsAsTheyAre) {
+    TurnClock even, untimed, overlapping;
+    for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(even.correction_s(turnAt(i, i % 2 == 0 ? 0.002 : 0)), 0);
+        Scan scan = turnAt(i, i % 2 == 0 ? 0.03 : 0);
+        scan.times_s.clear();
+        EXPECT_EQ(untimed.correction_s(scan), 0);
+    }
+    // Twice as many scans as turns: each shares half of its points with the one before.
+    for (std::size_t i = 0; i < 20; ++i) {
+        const double late_s = overlapping.correction_s(turnAt(i, -0.05 * static_cast<double>(i)));
+        if (i > 10) {
+            EXPECT_EQ(late_s, 0);
+        }
+    }
 }
 }  // namespace

@@ -108,4 +108,82 @@ TEST(SpinAxis, PatternsThatDoNotRepeatHaveNone) {
         })));
     }
 }
+
+/** Azimuths that rise evenly through a turn of `period_s`. */
+std::vector<float> timesOf(const Eigen::Matrix3Xf& points, double period_s) {
+    std::vector<float> times_s;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        times_s.push_back(static_cast<float>(
+            period_s *
+            (0.5 + std::atan2(double{points(1, i)}, double{points(0, i)}) / (2 * M_PI))));
+    return times_s;
+}
+
+TEST(TurnPeriod, IsSeenInAnyAxesAndWhereASectorIsMissing) {
+    const Eigen::Matrix3Xf points = scanOfRings(32).points;
+    for (const double period_s : {0.05, 0.1}) {
+        const auto times_s = timesOf(points, period_s);
+        const auto whole = turnPeriodOf(turnOf({1, 2, 3}, 70) * points, times_s);
+        ASSERT_TRUE(whole);
+        EXPECT_NEAR(*whole, period_s, 0.01 * period_s);
+        std::vector<Eigen::Index> seen;
+        std::vector<float> timesOfSeen;
+        for (Eigen::Index i = 0; i < points.cols(); ++i) {
+            if (points(0, i) < 0 && std::abs(points(1, i)) < -points(0, i)) continue;  // 90 deg
+            seen.push_back(i);
+            timesOfSeen.push_back(times_s[static_cast<std::size_t>(i)]);
+        }
+        const auto part = turnPeriodOf(points(Eigen::all, seen), timesOfSeen);
+        ASSERT_TRUE(part);
+        EXPECT_NEAR(*part, period_s, 0.01 * period_s);
+    }
+}
+
+TEST(TurnPeriod, NothingSpinsWithoutOrder) {
+    const Eigen::Matrix3Xf points = scanOfRings(32).points;
+    auto times_s = timesOf(points, 0.1);
+    std::shuffle(times_s.begin(), times_s.end(), std::mt19937(1));
+    EXPECT_FALSE(turnPeriodOf(points, times_s));
+    EXPECT_FALSE(turnPeriodOf(points, std::vector<float>(times_s.size(), 0.0F)));
+    EXPECT_FALSE(turnPeriodOf(patternOf(0, test::rosetteBeam), std::vector<float>(24000, 0.0F)));
+}
+
+/** What a sensor sees that is tilted by `degrees` about `axis`. */
+Eigen::Matrix3Xf tiltedScan(const Eigen::Vector3d& axis, double degrees, unsigned rings,
+                            const test::Scene& scene = test::yard()) {
+    test::Noise noise;
+    Eigen::Isometry3d pose = test::poseAt(2, 1, 0, 0.3);
+    pose.linear() *= test::rotationAbout(axis.normalized(), degrees);
+    return test::ringScan(scene, pose, {rings, 900, -15, 15, 0.02}, noise).points;
+}
+
+TEST(Upright, TheGroundSaysHowASensorIsTilted) {
+    for (const unsigned rings : {16U, 64U})
+        for (const double degrees : {15.0, 30.0, 45.0})
+            for (const Eigen::Vector3d& axis :
+                 {Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(1, 1, 0)}) {
+                const Eigen::Matrix3d tilt = test::rotationAbout(axis.normalized(), degrees);
+                const Eigen::Matrix3f upright = odometry::uprightOf(
+                    Eigen::Isometry3d::Identity(), tiltedScan(axis, degrees, rings));
+                const Eigen::Vector3d up = upright.row(2).transpose().cast<double>();
+                EXPECT_LT(up.cross(tilt.row(2).transpose()).norm(), 0.02)
+                    << rings << " rings, " << degrees << " deg";
+            }
+}
+
+TEST(Upright, WithoutATiltedGroundTheSpinAxisSays) {
+    for (const auto& scene : {test::yard(), test::room(), test::corridor()}) {
+        const auto points = tiltedScan({0, 1, 0}, 0, 32, scene);
+        EXPECT_EQ(odometry::uprightOf(Eigen::Isometry3d::Identity(), points),
+                  Eigen::Matrix3f::Identity());
+    }
+}
+
+// The mounting that a source knows is not doubted.
+TEST(Upright, ThePoseOnTheVehicleComesFirst) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = test::rotationAbout({0, 1, 0}, 20);
+    const auto upright = odometry::uprightOf(pose, tiltedScan({0, 1, 0}, 35, 32));
+    EXPECT_LT((upright.row(2).cast<double>() - pose.linear().row(2)).norm(), 1e-6);
+}
 }  // namespace
