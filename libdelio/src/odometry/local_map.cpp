@@ -145,9 +145,14 @@ PointEstimate LocalMap::placeTurned(const Eigen::Matrix3Xd& coarse,
 
 PointEstimate LocalMap::levelled(const ScanView& view, PointEstimate placed) const {
     if (!placed.valid || view.level.cols() == 0) return placed;
-    const auto all = place(view.level, placed.pose, pointOptions_.least_kernel);
+    constexpr double kAgree = 0.1;  // of the last kernel
+    auto all = place(view.level, placed.pose, pointOptions_.least_kernel);
     if (!all.valid) return placed;
     const Eigen::Isometry3d moved = placed.pose.inverse() * all.pose;
+    if (moved.translation().norm() < kAgree * pointOptions_.last_kernel) {
+        all.kernel_m = placed.kernel_m;
+        return all;
+    }
     const Eigen::Vector3d up = placed.pose.linear().transpose() * up_,
                           turn = rotationLog(moved.linear());
     placed.inlierRatio = all.inlierRatio;
@@ -188,7 +193,8 @@ PlaneEstimate LocalMap::byPoints(const PointEstimate& placed,
     translation.translation = placed.pose.translation();
     translation.covariance = std::pow(options_.point_sigma, 2) * Eigen::Matrix3d::Identity();
     translation.residual_m = placed.residual_m;
-    translation.unobservedAxes = Eigen::Matrix3d::Identity();
+    translation.unobservedAxes =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up_).toRotationMatrix();
     estimate.inlierRatio = placed.inlierRatio;
     return estimate;
 }
