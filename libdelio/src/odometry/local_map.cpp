@@ -218,7 +218,11 @@ void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& p
     const bool rests = isWhereAScanWas(translation.translation);
     Eigen::Matrix3Xd doubtful = translation.unobservedAxes;
     constexpr double kThin = 0.006;  // of the planes' weight; smooth tunnels show up to 0.005
-    const bool mayStand = rests && motion != Motion::kFast;
+    const auto isStopped = [&](const Eigen::Vector3d& axis) {
+        const Eigen::Vector3d off = translation.translation - predicted.translation();
+        return rests && motion == Motion::kFast && std::abs(axis.dot(off)) > options_.probe;
+    };
+    const bool mayStand = rests && (motion != Motion::kFast || isStopped(found.weakestAxis));
     if (doubtful.cols() == 0 && mayStand && translation.observability[0] < kThin)
         doubtful = found.weakestAxis;
     if (doubtful.cols() == 0) return;
@@ -243,9 +247,7 @@ void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& p
     for (Eigen::Index i = 0; i < doubtful.cols(); ++i) {
         const Eigen::Vector3d axis = doubtful.col(i);
         const Eigen::Matrix3d along = axis * axis.transpose();
-        const double off_m = std::abs(axis.dot(translation.translation - predicted.translation()));
-        const bool isStopped = rests && motion == Motion::kFast && off_m > options_.probe;
-        if (isStopped || !isSeen(axis))
+        if (isStopped(axis) || !isSeen(axis))
             translation.translation += along * (predicted.translation() - translation.translation);
         else if (!rests || stands(axis))
             continue;
