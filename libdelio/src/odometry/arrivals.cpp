@@ -113,7 +113,7 @@ Arrival Arrivals::take(const Scan& scan, double time_s) {
     fingerprint_ = fingerprint;
     const double evened_s = copies_ > 0 ? time_s : time_s + clock_.correction_s(scan);
     const Interval interval = timeline_.advance(evened_s, copies_ > 0);
-    const bool hasTimes = !scan.times_s.empty(), isEmpty = scan.points->size() == 0;
+    const bool hasTimes = !scan.times_s.empty(), isEmpty = scan.points->empty();
     hadTimes_ = hadTimes_ || hasTimes;
     if (!isEmpty) untimed_ = needTimes_ && hadTimes_ && !hasTimes ? untimed_ + 1 : 0;
     return {interval, evened_s, copies_, untimed_};

@@ -181,8 +181,8 @@ bool PlaneOdometry::isImplausible(const PointEstimate& placed) const {
     return moved.norm() < least_m && placed.inlierRatio < kAsBefore * inlierRatios_.latest;
 }
 
-/** True where a scan of a degenerate scene, in which other places look alike, lies farther from the
- *  prediction than any vehicle gets. */
+/** True where a scan of a degenerate scene lies farther from the prediction than any vehicle gets:
+ *  such scenes are self-similar. */
 bool PlaneOdometry::isAlias(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
                             double since_s) const {
     if (!std::holds_alternative<Degenerate>(state_) || !prediction_.hasMotion()) return false;

@@ -142,7 +142,7 @@ std::optional<Eigen::Matrix3f> uprightOf(const Eigen::Matrix3Xf& points) {
 }
 
 Eigen::Matrix3f uprightOf(const Eigen::Isometry3d& sensorPose, const Eigen::Matrix3Xf& points) {
-    const Eigen::Matrix3f mounted = turnedUp(sensorPose.linear().row(2));
+    Eigen::Matrix3f mounted = turnedUp(sensorPose.linear().row(2));
     if (!mounted.isIdentity()) return mounted;
     const Eigen::Matrix3f spinning = uprightOf(points).value_or(mounted);
     const auto ground = groundNormalOf(points, spinning.row(2).transpose().cast<double>());
