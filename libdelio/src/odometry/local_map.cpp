@@ -145,14 +145,9 @@ PointEstimate LocalMap::placeTurned(const Eigen::Matrix3Xd& coarse,
 
 PointEstimate LocalMap::levelled(const ScanView& view, PointEstimate placed) const {
     if (!placed.valid || view.level.cols() == 0) return placed;
-    constexpr double kAgree = 0.1;  // of the last kernel
-    auto all = place(view.level, placed.pose, pointOptions_.least_kernel);
+    const auto all = place(view.level, placed.pose, pointOptions_.least_kernel);
     if (!all.valid) return placed;
     const Eigen::Isometry3d moved = placed.pose.inverse() * all.pose;
-    if (moved.translation().norm() < kAgree * pointOptions_.last_kernel) {
-        all.kernel_m = placed.kernel_m;
-        return all;
-    }
     const Eigen::Vector3d up = placed.pose.linear().transpose() * up_,
                           turn = rotationLog(moved.linear());
     placed.inlierRatio = all.inlierRatio;

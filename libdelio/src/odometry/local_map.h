@@ -79,8 +79,8 @@ class LocalMap {
     /** The same of a cloud of many scans: points see all rotations of it alike. */
     PlaneEstimate refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed) const;
 
-    /** By all points of the scan, where it was placed by those that stand above the ground: the
-     * whole pose if both agree, else height, tilt and inlier ratio. */
+    /** Height, tilt and inlier ratio by all points of the scan, where it was placed by those that
+     *  stand above the ground. These keep the rest. */
     PointEstimate levelled(const ScanView& view, PointEstimate placed) const;
 
     /** By planes, from where the points were placed; from where planes lead once more, if more
