@@ -65,7 +65,7 @@ class Levels {
     static constexpr int kLevels = 64;
     static int levelOf(float height) {
         constexpr float kLevel_m = 0.25F;
-        return std::clamp(static_cast<int>(height / kLevel_m), 0, kLevels - 1);
+        return static_cast<int>(std::clamp<float>(height / kLevel_m, 0, kLevels - 1));
     }
     std::size_t cellOf(const Eigen::Vector3f& point) const {
         return grid_.at(point.x(), point.y());
