@@ -96,8 +96,6 @@ class PlaneOdometry : public Odometry {
     Attempt attemptBy(const PointCloud& cloud, const Expectation& expected,
                       const ScanTrajectory& motion, Step& step);
     bool isImplausible(const PointEstimate& placed) const;
-    bool isAlias(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
-                 double since_s) const;
     Motion motion() const;
     Extrapolation predictMotion(double duration_s);
     Expectation expectation(const Eigen::Isometry3d& predicted, bool isGuess, double since_s,

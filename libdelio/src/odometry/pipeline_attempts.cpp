@@ -27,8 +27,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptToTrack(const PointCloud& cloud,
     Attempt attempt =
         attemptWithGyro(cloud, interval.duration_s, since_s, !reference_.isBeforePause, step);
     attempt = attemptByWheels(cloud, interval.duration_s, std::move(attempt), step);
-    PointEstimate& placed = attempt.placement.estimate;
-    if (isImplausible(placed) || isAlias(placed, attempt.predicted, since_s)) placed.valid = false;
+    if (isImplausible(attempt.placement.estimate)) attempt.placement.estimate.valid = false;
     return attempt;
 }
 
@@ -179,16 +178,6 @@ bool PlaneOdometry::isImplausible(const PointEstimate& placed) const {
                  least_m = (speed_mps - acceleration / 2 * braking_s) * braking_s;
     const Eigen::Vector3d moved = placed.pose.translation() - reference_.pose.translation();
     return moved.norm() < least_m && placed.inlierRatio < kAsBefore * inlierRatios_.latest;
-}
-
-/** True where a scan of a degenerate scene lies farther from the prediction than any vehicle gets:
- *  such scenes are self-similar. */
-bool PlaneOdometry::isAlias(const PointEstimate& placed, const Eigen::Isometry3d& predicted,
-                            double since_s) const {
-    if (!std::holds_alternative<Degenerate>(state_) || !prediction_.hasMotion()) return false;
-    const double turned_rad = angleOf(predicted.linear().transpose() * placed.pose.linear());
-    return isBeyondReach(placed, predicted, since_s) ||
-           (!isShaken() && turned_rad > options().spacing.first_turn_radps * since_s);
 }
 
 Motion PlaneOdometry::motion() const {

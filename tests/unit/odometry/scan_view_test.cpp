@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "odometry/above_ground.h"
 #include "ring_scan.h"
 
 using namespace delio;
@@ -90,29 +89,5 @@ TEST(ScanView, ThinningTakesCentroidsOfStaticPointsTwice) {
     ASSERT_EQ(view.thinned.cols(), 2);
     EXPECT_NEAR(view.thinned(0, 0), 0.9, 1e-6);  // of the centroids: not (0.2 + 0.4 + 1.5) / 3
     EXPECT_NEAR(view.thinned(0, 1), 6.5, 1e-6);
-}
-
-// Rings on a ceiling lie on each other wherever the sensor is, as those on the floor do.
-TEST(ScanView, WhatStandsIsNeitherFloorNorCeiling) {
-    constexpr double kLeast = 0.3;
-    const test::Block hall{{-20, -15, -1.8}, {20, 15, 3}}, pillar{{3, 2, -1.8}, {3.6, 2.6, 3}};
-    test::Noise noise;
-    const Eigen::Matrix3Xf points = test::ringScan({hall, pillar}, Eigen::Isometry3d::Identity(),
-                                                   {32, 900, -25, 25, 0.02}, noise)
-                                        .points;
-    const Eigen::Matrix3Xf standing =
-        standingPoints(points, Eigen::Matrix3f::Identity(), kLeast, 60);
-    const auto isUpright = [](const Eigen::Vector3f& point) {
-        constexpr float kNear = 0.15F;
-        const bool isWall = std::abs(point.x()) > 20 - kNear || std::abs(point.y()) > 15 - kNear,
-                   isPillar = (point.head<2>() - Eigen::Vector2f(3.3F, 2.3F)).norm() < 0.5F;
-        return isWall || isPillar;
-    };
-    Eigen::Index upright = 0, kept = 0;
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-        upright += isUpright(points.col(i)) && points(2, i) > -1;
-    for (Eigen::Index i = 0; i < standing.cols(); ++i) kept += isUpright(standing.col(i));
-    EXPECT_GT(kept, 0.95 * static_cast<double>(upright));
-    EXPECT_LT(standing.cols() - kept, 0.03 * static_cast<double>(points.cols()));  // near walls
 }
 }  // namespace
