@@ -65,7 +65,8 @@ double spanOf(const std::vector<float>& times_s) {
 }  // namespace
 
 bool TurnClock::isUneven(const Scan& scan, double interval_s) {
-    constexpr double kUneven = 0.05, kShortest = 0.2, kLongest = 1.8, kTurn = 1.2;
+    constexpr double kUneven = 0.05, kShortest = 0.2, kLongest = 1.8;
+    constexpr double kLeast = 0.6, kMost = 1.2;  // of a turn
     const auto differs = [&](double turn_s) {
         return interval_s > kShortest * turn_s && interval_s < kLongest * turn_s &&
                std::abs(interval_s - turn_s) > kUneven * turn_s;
@@ -73,8 +74,9 @@ bool TurnClock::isUneven(const Scan& scan, double interval_s) {
     const double span_s = spanOf(scan.times_s);
     if (span_s <= 0 || !differs(span_s)) return false;
     if (!period_s_) period_s_ = periodOf(scan);
-    // Scans that overlap are no turns that follow each other.
-    return *period_s_ > 0 && differs(*period_s_) && span_s < kTurn * *period_s_;
+    // Parts of a turn, or several turns in one scan, do not follow each other turn by turn.
+    const double turn_s = *period_s_;
+    return differs(turn_s) && span_s > kLeast * turn_s && span_s < kMost * turn_s;
 }
 
 /** The evened stamp, from the one before. */
@@ -98,8 +100,8 @@ double TurnClock::follow(double stamp_s, double interval_s) {
 }
 
 double TurnClock::correction_s(const Scan& scan) {
-    if (state_ == State::kOff || scan.times_s.empty()) return 0;
     const double stamp_s = scan.stamp_s, interval_s = stamp_s - raw_s_;
+    if (state_ == State::kOff || scan.times_s.empty() || !std::isfinite(stamp_s)) return 0;
     if (state_ == State::kRaw && isUneven(scan, interval_s)) state_ = State::kEvened;
     if (state_ == State::kNoStamp) state_ = State::kRaw;
     even_s_ = state_ == State::kEvened ? follow(stamp_s, interval_s) : stamp_s;

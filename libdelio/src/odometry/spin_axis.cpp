@@ -103,6 +103,7 @@ std::optional<double> turnPeriodOf(const Eigen::Matrix3Xf& points,
     const Eigen::Vector3d axis = spinAxisOf(points).value_or(Eigen::Vector3d::UnitZ());
     const Azimuths all = azimuthsOf(points, times_s, axis);
     const double apart_s = kPart * (all.back().first - all.front().first);
+    if (!(apart_s > 0)) return {};
     std::vector<double> rates;  // turns a second
     for (std::size_t i = 0, j = 0; i < all.size(); ++i) {
         while (j < all.size() && all[j].first < all[i].first + apart_s) ++j;

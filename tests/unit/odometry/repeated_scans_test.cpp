@@ -225,4 +225,13 @@ TEST(TurnClock, LeavesOtherStampsAsTheyAre) {
         }
     }
 }
+
+TEST(TurnClock, AStampThatIsNoNumberIsPassedOver) {
+    TurnClock clock;
+    for (std::size_t i = 0; i < 8; ++i) {
+        const double error_s = i == 4 ? std::nan("") : i % 2 == 0 ? 0.03 : 0;
+        const double late_s = clock.correction_s(turnAt(i, error_s));
+        EXPECT_LT(std::abs(late_s), 0.05) << i;
+    }
+}
 }  // namespace
