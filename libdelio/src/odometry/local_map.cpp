@@ -16,8 +16,9 @@ struct Facing {
 };
 
 Facing facing(const paper::SurfaceNormals& scan, const Eigen::Isometry3d& pose,
-              const Eigen::Vector3d& axis) {
+              const Eigen::Vector3d& axis, bool isVertical) {
     constexpr double kFacing = 0.5;    // cosine: within 60 deg
+    constexpr float kGrazing = 0.3F;   // cosine between normal and ray
     constexpr double kOneSided = 0.8;  // length of the mean direction: 1 for a single direction
     const Eigen::Index all = scan.directions.cols();
     Facing found{Eigen::Matrix3Xd(3, all), Eigen::Matrix3Xd(3, all)};
@@ -27,6 +28,9 @@ Facing facing(const paper::SurfaceNormals& scan, const Eigen::Isometry3d& pose,
         const Eigen::Vector3d normal = pose.linear() * scan.directions.col(i).cast<double>(),
                               point = scan.points.col(i).cast<double>();
         if (std::abs(normal.dot(axis)) < kFacing) continue;
+        // The noise of the ranges makes a ring on a floor look like a surface along its rays.
+        const float across = scan.directions.col(i).dot(scan.points.col(i).normalized());
+        if (!isVertical && std::abs(across) < kGrazing) continue;
         found.normals.col(kept) = normal;
         found.points.col(kept++) = pose * point;
         direction += point.normalized();
@@ -67,7 +71,7 @@ bool showsStandstill(const PointMap& map, const paper::SurfaceNormals& scan,
     // road: in a smooth corridor up to 1 % of all surfaces.
     constexpr double kFewest = 20, kFewestOfAll = 0.02;
     constexpr double kMatched = 0.5, kGone = 0.5, kStill_m = 0.02;
-    const Facing surfaces = facing(scan, pose, test.axis);
+    const Facing surfaces = facing(scan, pose, test.axis, test.isVertical);
     const auto count = static_cast<double>(surfaces.points.cols()),
                all = static_cast<double>(scan.directions.cols());
     if (count < std::max(kFewest, kFewestOfAll * all) || !(surfaces.isAllAround || test.isVertical))
