@@ -64,22 +64,20 @@ ScanTrajectory ScanTrajectory::seenFrom(double time_s) const {
     return seen;
 }
 
-PoseTable::PoseTable(const ScanTrajectory& trajectory, double first_s, double last_s)
-    : first_s_(first_s) {
+template <typename Scalar>
+PoseTableOf<Scalar>::PoseTableOf(const ScanTrajectory& trajectory, double first_s, double last_s)
+    : first_s_(static_cast<Scalar>(first_s)) {
     constexpr unsigned kParts = 256;
     constexpr double kLeast_s = 1e-9;
     const double step_s = std::max(last_s - first_s, kLeast_s) / kParts;
-    perSecond_ = 1 / step_s;
-    for (unsigned k = 0; k <= kParts; ++k) poses_.push_back(trajectory.at(first_s + k * step_s));
+    perSecond_ = static_cast<Scalar>(1 / step_s);
+    Eigen::Matrix4d before = trajectory.at(first_s).matrix();
+    for (unsigned k = 1; k <= kParts; ++k) {
+        const Eigen::Matrix4d after = trajectory.at(first_s + k * step_s).matrix();
+        parts_.push_back({before.cast<Scalar>(), (after - before).cast<Scalar>()});
+        before = after;
+    }
 }
-
-Eigen::Isometry3d PoseTable::at(double time_s) const {
-    const double at =
-        std::clamp((time_s - first_s_) * perSecond_, 0.0, static_cast<double>(poses_.size() - 2));
-    const auto k = static_cast<std::size_t>(at);
-    const double share = (time_s - first_s_) * perSecond_ - static_cast<double>(k);
-    Eigen::Isometry3d pose;
-    pose.matrix() = (1 - share) * poses_[k].matrix() + share * poses_[k + 1].matrix();
-    return pose;
-}
+template class PoseTableOf<float>;
+template class PoseTableOf<double>;
 }  // namespace delio

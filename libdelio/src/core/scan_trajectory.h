@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "delio/core/geometry.h"
@@ -52,17 +54,48 @@ class ScanTrajectory {
 ScanTrajectory placed(const Eigen::Isometry3d& pose, const ScanTrajectory& trajectory);
 
 /** A trajectory for many lookups: poses at times so close to each other that a pose in between is
- * their weighted mean. */
-class PoseTable {
+ * their weighted mean. `Scalar`: float or double. */
+template <typename Scalar>
+class PoseTableOf {
  public:
+    using Matrix = Eigen::Matrix<Scalar, 4, 4>;
+    using Vector = Eigen::Matrix<Scalar, 3, 1>;
+    using Isometry = Eigen::Transform<Scalar, 3, Eigen::Isometry>;
+
     /** From `first_s` to `last_s`. */
-    PoseTable(const ScanTrajectory& trajectory, double first_s, double last_s);
+    PoseTableOf(const ScanTrajectory& trajectory, double first_s, double last_s);
 
     /** Approximates ScanTrajectory::at() within 1e-6 rad for rotations below 0.7 rad. */
-    Eigen::Isometry3d at(double time_s) const;
+    Isometry at(Scalar time_s) const {
+        const auto [part, share] = partAt(time_s);
+        return Isometry(Matrix(part.pose + share * part.change));
+    }
+    /** The place alone. */
+    Vector placeAt(Scalar time_s) const {
+        const auto [part, share] = partAt(time_s);
+        return part.pose.template topRightCorner<3, 1>() +
+               share * part.change.template topRightCorner<3, 1>();
+    }
 
  private:
-    double first_s_, perSecond_;
-    std::vector<Eigen::Isometry3d> poses_;
+    struct Part {
+        Matrix pose, change;  //!< at its start, and until its end
+    };
+    struct InPart {
+        const Part& part;
+        Scalar share;  //!< of the part that has passed
+    };
+    InPart partAt(Scalar time_s) const {
+        const Scalar at = (time_s - first_s_) * perSecond_;
+        const Scalar last = static_cast<Scalar>(parts_.size() - 1);
+        const auto k = static_cast<std::size_t>(std::clamp(at, Scalar{0}, last));
+        return {parts_[k], at - static_cast<Scalar>(k)};
+    }
+
+    Scalar first_s_, perSecond_;
+    std::vector<Part> parts_;
 };
+extern template class PoseTableOf<float>;
+extern template class PoseTableOf<double>;
+using PoseTable = PoseTableOf<double>;
 }  // namespace delio

@@ -1,5 +1,6 @@
 #include "odometry/deskew.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <algorithm>
 #include <cmath>
@@ -23,10 +24,12 @@ Eigen::Matrix3Xf deskew(const Eigen::Matrix3Xf& points, const std::vector<float>
     Eigen::Matrix3Xf result(3, points.cols());
     if (points.cols() == 0) return result;
     const auto [least, most] = std::minmax_element(times_s.begin(), times_s.end());
-    const PoseTable poses(trajectory, double{*least}, double{*most});
-    tbb::parallel_for(Eigen::Index{0}, points.cols(), [&](Eigen::Index i) {
-        const double time_s = double{times_s[static_cast<std::size_t>(i)]};
-        result.col(i) = poses.at(time_s).cast<float>() * points.col(i);
+    const PoseTableOf<float> poses(trajectory, double{*least}, double{*most});
+    using Range = tbb::blocked_range<Eigen::Index>;
+    constexpr Eigen::Index kTogether = 2048;
+    tbb::parallel_for(Range(0, points.cols(), kTogether), [&](const Range& range) {
+        for (Eigen::Index i = range.begin(); i != range.end(); ++i)
+            result.col(i) = poses.at(times_s[static_cast<std::size_t>(i)]) * points.col(i);
     });
     return result;
 }

@@ -12,15 +12,15 @@
 
 namespace delio::odometry {
 namespace {
-/** The polynomial's coefficients, a rotation vector and a translation each: the pose at the stamp,
- *  and what acceleration and jerk add to the way there and beyond. */
+/** The polynomial's coefficients, a rotation vector and a translation each, in the map's axes: the
+ *  pose at the stamp, and what acceleration and jerk add to the way there and beyond. */
 constexpr Eigen::Index kDegree = 3;
 using Coefficients = Eigen::Matrix<double, 6 * kDegree, 1>;
-using Equations = NormalEquations<6 * kDegree>;
+using Shares = Eigen::Matrix<double, kDegree, 1>;
 
 /** What each coefficient counts at `time_s` from the stamp: nothing where the pose is known; the
  *  latter two nothing at the stamp either. */
-Eigen::Matrix<double, kDegree, 1> sharesAt(double time_s, double since_s) {
+Shares sharesAt(double time_s, double since_s) {
     const double way = 1 + time_s / since_s;
     return {way, way * (way - 1), way * (way - 1) * (way + 1)};
 }
@@ -41,20 +41,59 @@ Coefficients informationOf(const TrajectoryPrior& prior) {
     return information;
 }
 
+/** Normal equations of the coefficients. Points that were measured at about the same time come
+ *  together as six unknowns, the motion at that time. */
+class Equations {
+ public:
+    NormalEquations<6 * kDegree> sums;
+
+    void add(double time_s, double since_s, const Vector6& jacobian, double residual,
+             double weight) {
+        constexpr double kTogether = 1.0 / 256;  // of the time between the scans
+        const double slot = std::floor(time_s / (kTogether * since_s));
+        if (slot != slot_) {
+            close();
+            slot_ = slot;
+            shares_ = sharesAt((slot + 0.5) * kTogether * since_s, since_s);
+        }
+        together_.add(jacobian, residual, weight);
+    }
+    /** Adds what is still apart. */
+    void close() {
+        for (Eigen::Index i = 0; i < kDegree; ++i) {
+            sums.gradient.segment<6>(6 * i) += shares_[i] * together_.gradient;
+            for (Eigen::Index j = 0; j < kDegree; ++j)
+                sums.information.block<6, 6>(6 * i, 6 * j) +=
+                    shares_[i] * shares_[j] * together_.information;
+        }
+        sums.weight += together_.weight;
+        sums.cost += together_.cost;
+        together_ = {};
+    }
+    void operator+=(Equations other) {
+        close();
+        other.close();
+        sums += other.sums;
+    }
+
+ private:
+    NormalEquations<6> together_;
+    double slot_ = NAN;
+    Shares shares_ = Shares::Zero();
+};
+
 /** Of points that are in the map's frame already. */
 Equations equationsOf(const Correspondences& matches, const TimedPoints& scan,
                       const PoseTable& poses, double since_s) {
-    return sumOver<Equations>(matches, [&](const Correspondence& match, Equations& sum) {
+    auto all = sumOver<Equations>(matches, [&](const Correspondence& match, Equations& sum) {
         const double time_s = scan.times_s[match.index],
                      residual = match.normal.dot(match.point - match.mean);
-        const Eigen::Vector3d point = scan.points.col(static_cast<Eigen::Index>(match.index));
-        Vector6 both;
-        both << point.cross(poses.at(time_s).linear().transpose() * match.normal), match.normal;
-        const auto shares = sharesAt(time_s, since_s);
-        Coefficients all;
-        for (Eigen::Index k = 0; k < kDegree; ++k) all.segment<6>(6 * k) = shares[k] * both;
-        sum.add(all, residual, match.weight);
+        Vector6 jacobian;
+        jacobian << (match.point - poses.placeAt(time_s)).cross(match.normal), match.normal;
+        sum.add(time_s, since_s, jacobian, residual, match.weight);
     });
+    all.close();
+    return all;
 }
 
 /** In the map's frame. */
@@ -71,7 +110,7 @@ ScanTrajectory bent(const ScanTrajectory& trajectory, const Coefficients& step, 
         const auto shares = sharesAt(trajectory.times_s()[i], since_s);
         Vector6 move = Vector6::Zero();
         for (Eigen::Index k = 0; k < kDegree; ++k) move += shares[k] * step.segment<6>(6 * k);
-        const Eigen::Matrix3d R = poses[i].linear() * rotationExp(move.head<3>());
+        const Eigen::Matrix3d R = rotationExp(move.head<3>()) * poses[i].linear();
         poses[i] = isometry(normalised(R), poses[i].translation() + move.tail<3>());
     }
     return {trajectory.times_s(), poses};
@@ -98,7 +137,7 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
             place(scan, poses, placed);
             const auto matches = matcher.at(Eigen::Isometry3d::Identity(), width);
             if (matches.size() < options.min_matches) return trajectory;
-            Equations equations = equationsOf(matches, scan, poses, since_s);
+            auto equations = equationsOf(matches, scan, poses, since_s).sums;
             // As in registerToPlanes(): points of one surface err together.
             const double factor =
                 std::max(equations.cost / static_cast<double>(matches.size()), kLeastFactor) /

@@ -14,7 +14,7 @@ bool StampOrder::isNext(const Scan& first) const {
     constexpr double kMost = 2 * kApart;  // a scan that is apart from this one lies after it
     if (!latest_s_) return startsInOrder_;
     if (passedOver_ > 0 || isLate(first)) return false;
-    if (usual_s_ == 0) return startsInOrder_ && stampOf(first) < *latest_s_ + kMostUnknown_s;
+    if (isStart()) return startsInOrder_ && stampOf(first) < *latest_s_ + kMostUnknown_s;
     return stampOf(first) < *latest_s_ + kMost * usual_s_;
 }
 
@@ -54,8 +54,8 @@ bool StampOrder::isOutOfOrder(const std::deque<Scan>& ahead, double gained_s) co
 /** A scan that is missing does not make another interval the usual one. */
 void StampOrder::learn(double passed_s) {
     constexpr double kChange = 1.2;
-    usual_s_ =
-        usual_s_ == 0 ? passed_s : std::clamp(passed_s, usual_s_ / kChange, usual_s_ * kChange);
+    usual_s_ = isStart() ? passed_s : std::clamp(passed_s, usual_s_ / kChange, usual_s_ * kChange);
+    ++intervals_;
 }
 
 Scan StampOrder::give(std::deque<Scan>& ahead, std::size_t place) {

@@ -32,6 +32,9 @@ class StampOrder {
     std::vector<std::string> findings() const { return findings_.lines(); }
 
  private:
+    /** The usual interval is not known. The first one of a sensor may be too short: its first scan
+     *  can be a part of a turn. */
+    bool isStart() const { return intervals_ < (startsInOrder_ ? 2U : 1U); }
     double stampOf(const Scan& scan) const { return scan.stamp_s + added_s_; }
     bool isLate(const Scan& scan) const { return latest_s_ && !(stampOf(scan) > *latest_s_); }
     bool isClockSet(const std::deque<Scan>& ahead) const;
@@ -43,6 +46,7 @@ class StampOrder {
     bool startsInOrder_;
     std::optional<double> latest_s_;  //!< stamp of the scan that was given last
     double usual_s_ = 0;              //!< from one scan to the next; 0: not known
+    unsigned intervals_ = 0;          //!< that were learnt from
     double added_s_ = 0;              //!< to the stamps that were recorded
     bool wasSet_ = false;  //!< the scan before came with a clock that was set back or stopped
     std::size_t passedOver_ = 0;  //!< how often the first of `ahead` was

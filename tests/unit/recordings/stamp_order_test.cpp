@@ -98,6 +98,20 @@ TEST(StampOrder, AScanAtTheUsualIntervalNeedsNoLookAhead) {
     }
 }
 
+TEST(StampOrder, AShortFirstIntervalIsNotTheUsualOne) {
+    const std::vector<double> stamps_s{0, 0.05, 0.15, 0.25, 0.35};  // the first scan is half a turn
+    StampOrder order(true);
+    std::deque<Scan> ahead;
+    for (const double stamp_s : stamps_s) {
+        ahead.emplace_back();
+        ahead.back().stamp_s = stamp_s;
+        EXPECT_TRUE(order.isNext(ahead.front())) << stamp_s;
+        order.take(ahead);
+    }
+    EXPECT_EQ(givenOf(stamps_s, true, true).stamps_s, stamps_s);
+    EXPECT_EQ(givenOf(stamps_s, false, true).stamps_s, stamps_s);
+}
+
 TEST(StampOrder, FirstScansInOrderStayInOrder) {
     const std::vector<double> swapped{0.1, 0, 0.2, 0.3};
     EXPECT_EQ(givenOf(swapped).scans, (Scans{1, 0, 2, 3}));
