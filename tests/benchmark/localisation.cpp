@@ -2,10 +2,13 @@
 // DRIVE.poses.txt, DRIVE.calib.txt and DRIVE.times.txt beside them, and DRIVE.origin.txt if they
 // are two drives through one world (synth2rawlog).
 //   benchmark_localisation MAP.delio MAPPED.rawlog DRIVE.rawlog [--start N] [--every N]
-//                          [--places N] [--elsewhere] [--list] [--own OWN.delio POSE.txt]
-//                          --own: MAP was imported from a cloud of OWN, whose poses POSE.txt (one
-//                          row in KITTI's format) brings into the cloud
-//                          (share/scripts/foreign-maps)
+//                          [--places N] [--elsewhere] [--list] [--own OWN POSE.txt]
+//                          [--around M]
+//                          --own: MAP was imported from a cloud of OWN, a map.delio or another
+//                          program's poses (TUM, stamps of MAPPED), which POSE.txt (one row in
+//                          KITTI's format) brings into the cloud (share/scripts/foreign-maps)
+//                          --around M: errors are relative to the mean of the poses of OWN within
+//                          M metres, which the cloud shows, and not to the nearest pose
 //   benchmark_localisation --seam MAP.delio FIRST.rawlog SECOND.rawlog
 //                          how well two drives of one map fit together where they meet
 #include <algorithm>
@@ -35,6 +38,7 @@ using Eigen::Isometry3d;
 struct Settings {
     std::string map, mapped, drive, own, ownPose;
     std::size_t start = 0, every = 1, places = 100;
+    double around_m = 0;
     bool elsewhere = false;  // the drive is in another world: nothing may be found
     bool list = false;
     bool seam = false;
@@ -55,15 +59,17 @@ std::vector<Isometry3d> truePoses(const std::string& rawlog) {
 /** Poses that are known twice: as the map has them, and truly. */
 class MapTruth {
  public:
-    MapTruth(const StoredMap& map, const StoredDrive& drive, const std::string& rawlog) {
+    MapTruth(const StoredMap& map, const StoredDrive& drive, const std::string& rawlog)
+        : MapTruth(map.trajectory(drive), rawlog) {}
+
+    MapTruth(const io::Trajectory& known, const std::string& rawlog) {
         const auto truth = truePoses(rawlog);
         std::map<long, std::size_t> scanAt;  // by milliseconds
         const auto reader = io::openScans(rawlog);
         std::size_t number = 0;
         for (auto scan = reader->next(); scan; scan = reader->next(), ++number)
             scanAt[std::lround(1000 * scan->stamp_s)] = number;
-        const auto known = map.trajectory(drive);
-        for (std::size_t i = 0; i < known.poses.size(); ++i) {
+        for (std::size_t i = 0; i < known.stamps_s.size(); ++i) {
             const auto at = scanAt.find(std::lround(1000 * known.stamps_s[i]));
             if (at == scanAt.end() || at->second >= truth.size()) continue;
             true_.push_back(truth[at->second]);
@@ -88,6 +94,21 @@ class MapTruth {
         }
         return mapped_[best] * true_[best].inverse() * truth;
     }
+    /** Each pose becomes what those around it say of it, on average. */
+    void average(double around_m) {
+        const auto known = mapped_;
+        for (std::size_t i = 0; i < known.size(); ++i) {
+            Vector6 sum = Vector6::Zero();
+            double count = 0;
+            for (std::size_t k = 0; k < known.size(); ++k) {
+                if ((true_[k].translation() - true_[i].translation()).norm() > around_m) continue;
+                sum += poseLog(known[i].inverse() * known[k] * true_[k].inverse() * true_[i]);
+                ++count;
+            }
+            mapped_[i] = known[i] * poseExp(sum / count);
+        }
+    }
+
     /** Drops poses about which a map has less than half of what it usually has: it was cut off. */
     void keepWithin(const Eigen::Matrix3Xf& cloud) {
         constexpr float kAround_m = 25;
@@ -221,13 +242,21 @@ void print(const Starts& starts, const Tracking& tracking) {
         run::peakMemory_mb());
 }
 
+/** As the program knows it that wrote the cloud. */
+MapTruth ownTruth(const Settings& settings) {
+    if (std::filesystem::path(settings.own).extension() != ".delio")
+        return {io::readTrajectory(settings.own), settings.mapped};
+    const StoredMap own(settings.own);
+    return {own, own.drives().front(), settings.mapped};
+}
+
 MapTruth truthOf(const StoredMap& map, const Settings& settings) {
     if (settings.own.empty()) return {map, map.drives().front(), settings.mapped};
-    const StoredMap own(settings.own);
-    MapTruth truth(own, own.drives().front(), settings.mapped);
+    MapTruth truth = ownTruth(settings);
     Isometry3d inCloud = io::readTrajectory(settings.ownPose).poses.at(0);
     inCloud.translation() -= map.cloudOrigin().value().offset;
     truth.move(inCloud);
+    if (settings.around_m > 0) truth.average(settings.around_m);
     truth.keepWithin(map.cloud(0.3));
     return truth;
 }
@@ -261,7 +290,7 @@ void measure(const Settings& settings) {
     for (auto scan = reader->next(); scan && scan->index < truth.size(); ++number) {
         last.push_back(*scan);
         if (last.size() > kScans) last.pop_front();
-        if (settings.places > 0 && number % apart == kScans - 1 && last.size() == kScans)
+        if (settings.places > 0 && number % apart == (kScans - 1) % apart && last.size() == kScans)
             startAt(map, {last.begin(), last.end()}, last.front().index, truth, mapTruth, settings,
                     options, starts);
         watch.lap_ms();
@@ -316,7 +345,9 @@ int main(int argc, char** argv) {
             else if (word == "--own" && i + 2 < argc) {
                 settings.own = argv[++i];
                 settings.ownPose = argv[++i];
-            } else if (word == "--start" && i + 1 < argc)
+            } else if (word == "--around" && i + 1 < argc)
+                settings.around_m = std::stod(argv[++i]);
+            else if (word == "--start" && i + 1 < argc)
                 settings.start = number();
             else if (word == "--every" && i + 1 < argc)
                 settings.every = number();
