@@ -83,6 +83,18 @@ TEST(PoseTable, IsTheCourse) {
     EXPECT_LT(difference(PoseTable(trajectory, 0.01, 0.01).at(0.01), trajectory.at(0.01)), 1e-9);
 }
 
+TEST(PoseTable, OfFloatsIsTheCourse) {
+    const ScanTrajectory trajectory(Twist{{20, 0, 0}, {2, -3, 6}});
+    const PoseTable table(trajectory, -0.05, 0.05);
+    const PoseTableOf<float> floats(trajectory, -0.05, 0.05);
+    for (float time_s = -0.05F; time_s <= 0.05F; time_s += 0.0007F) {
+        const Isometry3d exact = trajectory.at(time_s);
+        const Eigen::Matrix4d off = floats.at(time_s).matrix().cast<double>() - exact.matrix();
+        EXPECT_LT(off.norm(), 5e-6) << time_s;
+        EXPECT_LT((table.placeAt(time_s) - exact.translation()).norm(), 3e-6) << time_s;
+    }
+}
+
 TEST(ScanTrajectory, NeedsTwoPosesAtTimesThatIncrease) {
     const auto pose = Isometry3d::Identity();
     EXPECT_THROW(ScanTrajectory({}, {}), Error);
