@@ -45,7 +45,7 @@ void startIn(const fs::path& folder, const std::string& rawlog, test::VirtualDis
     fs::create_directories(display.home() / ".RawLogViewer");
     test::writeText(display.home() / ".RawLogViewer/config.cfg", "[tips]\nshow = 0\n");
     display.start("sh", {"-c", "cd \"$0\" && exec RawLogViewer \"$1\"", folder, rawlog});
-    display.waitFor("RawlogViewer");
+    display.waitFor(kMainWindowOnly.front());
     sleep(3);
 }
 
@@ -62,19 +62,14 @@ struct AfterClick {
     std::vector<std::string> windows;
     double greyShare = 0;  //!< of the 3D view
     int blackPixels = 0;   //!< in it
+
+    bool hasEffect() const { return greyShare > 0.5 || hasException(); }
+    bool hasException() const {
+        return std::find(windows.begin(), windows.end(), "Exception") != windows.end();
+    }
 };
 
-AfterClick clickOnAScan(const fs::path& folder, const std::string& rawlog) {
-    test::VirtualDisplay display;
-    startIn(folder, rawlog, display);
-    const auto xdotool = [](const std::vector<std::string>& words) {
-        EXPECT_EQ(test::runTool("xdotool", words).exitCode, 0);
-        sleep(2);
-    };
-    // At first the window is too small to have the list in it.
-    xdotool({"search", "--name", "RawlogViewer - Part", "windowsize", "1200", "850"});
-    xdotool({"mousemove", "60", "140", "click", "1"});
-    sleep(2);
+AfterClick look(test::VirtualDisplay& display) {
     AfterClick found;
     found.windows = display.windows();
     auto picture = display.screenshot();
@@ -86,6 +81,24 @@ AfterClick clickOnAScan(const fs::path& folder, const std::string& rawlog) {
             found.blackPixels += shade < 20;
         }
     found.greyShare = static_cast<double>(grey) / all;
+    return found;
+}
+
+AfterClick clickOnAScan(const fs::path& folder, const std::string& rawlog) {
+    test::VirtualDisplay display;
+    startIn(folder, rawlog, display);
+    // A click has no effect while the viewer loads the rawlog, and a busy machine makes it slow.
+    constexpr int kClicks = 10;
+    AfterClick found;
+    for (int click = 0; click < kClicks && !found.hasEffect(); ++click) {
+        // At first the window is too small to have the list in it.
+        test::runTool("xdotool",
+                      {"search", "--name", "RawlogViewer - Part", "windowsize", "1200", "850"});
+        sleep(2);
+        test::runTool("xdotool", {"mousemove", "60", "140", "click", "1"});
+        sleep(4);
+        found = look(display);
+    }
     return found;
 }
 
@@ -132,7 +145,6 @@ TEST(RawLogViewer, AClickOnAScanShowsItsPoints) {
         EXPECT_GT(found.blackPixels, kPoints);
     }
     // MRPT 2.5.8 loses a '/' of the folder: where this no longer holds, compatibility.md is wrong.
-    const auto byPath = clickOnAScan("/", external).windows;
-    EXPECT_NE(std::find(byPath.begin(), byPath.end(), "Exception"), byPath.end());
+    EXPECT_TRUE(clickOnAScan("/", external).hasException());
 }
 }  // namespace

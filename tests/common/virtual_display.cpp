@@ -100,7 +100,7 @@ std::vector<std::string> VirtualDisplay::windows() const {
 }
 
 bool VirtualDisplay::waitFor(const std::string& text) const {
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 300; ++i) {
         for (const auto& title : windows())
             if (title.find(text) != std::string::npos) return true;
         usleep(200000);

@@ -28,7 +28,7 @@ class VirtualDisplay {
     /** Titles of the windows that can be seen. */
     std::vector<std::string> windows() const;
 
-    /** Waits for a window whose title holds `text`; false if it does not come within 20 s. */
+    /** Waits for a window whose title holds `text`; false if it does not come within a minute. */
     bool waitFor(const std::string& text) const;
 
     mrpt::img::CImage screenshot() const;
