@@ -83,4 +83,12 @@ Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size) {
         if (numbers.ofPoint[static_cast<std::size_t>(i)] == met) first.col(met++) = points.col(i);
     return first;
 }
+
+Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size, double smallest,
+                               Eigen::Index enough) {
+    auto kept = firstOfVoxels(points, size);
+    while (kept.cols() < enough && size > smallest)
+        kept = firstOfVoxels(points, size = std::max(size / 2, smallest));
+    return kept;
+}
 }  // namespace delio

@@ -69,6 +69,11 @@ Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size);
 /** One point per voxel: the first one. A centroid would lie between a sensor's rings. */
 Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size);
 
+/** The same, but the voxels are halved, down to `smallest`, until there are `enough` points: a
+ * small room has few surfaces. */
+Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size, double smallest,
+                               Eigen::Index enough);
+
 /** At most `most` of the columns, evenly over their order: of a scan the same share all around. */
 template <typename Columns>
 Columns sample(const Columns& columns, Eigen::Index most) {

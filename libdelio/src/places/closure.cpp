@@ -26,7 +26,8 @@ std::uint64_t columnOf(const Eigen::Vector3d& point) {
 }
 
 Eigen::Matrix3Xd thinned(const Eigen::Matrix3Xf& points, double spacing) {
-    return firstOfVoxels(points, spacing).cast<double>();
+    constexpr Eigen::Index kEnough = 1000;
+    return firstOfVoxels(points, spacing, spacing / 4, kEnough).cast<double>();
 }
 }  // namespace
 
@@ -43,11 +44,15 @@ RegistrableSubmap::RegistrableSubmap(const Eigen::Matrix3Xf& points)
     : map_(odometry::mapOfManyScans()),
       coarse_(thinned(points, kCoarse_m)),
       thinned_(thinned(points, kThinned_m)),
-      standing_(aboveGround(points)) {
-    const Eigen::Matrix3Xd all = points.cast<double>();
+      standing_(standing(points)) {
+    const Eigen::Matrix3Xd all = points.cast<double>(), above = aboveGround(points);
     map_.add(points, Eigen::Isometry3d::Identity());
+    for (Eigen::Index i = 0; i < above.cols(); ++i)
+        filled_.insert(voxelKey(above.col(i), kThinned_m));
+    VoxelIndex standingVoxels;
     for (Eigen::Index i = 0; i < standing_.cols(); ++i)
-        filled_.insert(voxelKey(standing_.col(i), kThinned_m));
+        standingVoxels.insert(voxelKey(standing_.col(i), kThinned_m));
+    count_ = standingVoxels.size();
     for (Eigen::Index i = 0; i < all.cols(); ++i) {
         const auto number = columns_.insert(columnOf(all.col(i)));
         if (number == tops_.size()) tops_.push_back(all(2, i));
@@ -84,6 +89,21 @@ double RegistrableSubmap::support(const RegistrableSubmap& other,
     return both / std::max({1.0, visible, kLeast * static_cast<double>(theirs.size())});
 }
 
+double RegistrableSubmap::seenThrough(const odometry::RangeImage& scan,
+                                      const Eigen::Isometry3d& pose) const {
+    constexpr double kMargin_m = 0.5, kFarthest_m = 30, kFewest = 50;
+    const Eigen::Isometry3d toScan = pose.inverse();
+    double free = 0, taken = 0;
+    for (Eigen::Index i = 0; i < standing_.cols(); ++i) {
+        const Eigen::Vector3d point = toScan * standing_.col(i);
+        if (point.norm() > kFarthest_m) continue;
+        const auto place = scan.at(point.cast<float>(), static_cast<float>(kMargin_m));
+        free += place == odometry::Place::kFree;
+        taken += place == odometry::Place::kTaken;
+    }
+    return free / std::max(free + taken, kFewest);
+}
+
 double RegistrableSubmap::overlap(const RegistrableSubmap& other,
                                   const Eigen::Isometry3d& pose) const {
     VoxelIndex theirs, both;
@@ -92,7 +112,7 @@ double RegistrableSubmap::overlap(const RegistrableSubmap& other,
         theirs.insert(key);
         if (filled_.find(key) != VoxelIndex::kNone) both.insert(key);
     }
-    const std::size_t fewer = std::min(filled_.size(), theirs.size());
+    const std::size_t fewer = std::min(count_, theirs.size());
     return fewer == 0 ? 0 : static_cast<double>(both.size()) / static_cast<double>(fewer);
 }
 
@@ -131,6 +151,7 @@ void confirm(Closure& closure, const ClosureEnd& from, const ClosureEnd& to,
 
 namespace {
 constexpr double kCell_m = HeightImage::kCell_m;
+constexpr double kGround_m = 0.3;  // at most above the ground's height
 
 std::uint64_t cellAt(double x, double y) {
     return voxelKey(floorOf(x / kCell_m), floorOf(y / kCell_m), 0);
@@ -144,7 +165,7 @@ FreeSpace::FreeSpace(const HeightImage& image, const Eigen::Matrix3Xf& points) {
     constexpr std::array<double, 3> kBeside{-kCell_m, 0, kCell_m};
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const auto x = static_cast<double>(points(0, i)), y = static_cast<double>(points(1, i));
-        bool isBare = true;
+        bool isBare = static_cast<double>(points(2, i)) - image.groundAt(x, y) < kGround_m;
         for (const double dx : kBeside)
             for (const double dy : kBeside)
                 isBare = isBare && standing_.find(cellAt(x + dx, y + dy)) == VoxelIndex::kNone;
@@ -154,6 +175,7 @@ FreeSpace::FreeSpace(const HeightImage& image, const Eigen::Matrix3Xf& points) {
 
 double FreeSpace::conflict(const HeightImage& other, const Eigen::Isometry3d& pose) const {
     constexpr std::uint8_t kUpright = 2 | 4;  // 1 to 2 m, and 2 to 4 m
+    constexpr double kFewest = 20;            // cells; fewer are no evidence
     double bare = 0, seen = 0;
     const auto cells = other.cells();
     for (Eigen::Index i = 0; i < cells.cols(); ++i) {
@@ -164,7 +186,7 @@ double FreeSpace::conflict(const HeightImage& other, const Eigen::Isometry3d& po
         bare += isBare;
         seen += isBare || standing_.find(cell) != VoxelIndex::kNone;
     }
-    return seen > 0 ? bare / seen : 0;
+    return bare / std::max(seen, kFewest);
 }
 
 std::shared_ptr<const DenseSubmap> DenseSubmapCache::at(std::size_t submap,

@@ -10,6 +10,7 @@
 #include "delio/places/loops.h"
 #include "delio/places/submap.h"
 #include "odometry/local_map.h"
+#include "odometry/range_image.h"
 #include "places/descriptor.h"
 
 namespace delio::places {
@@ -46,8 +47,8 @@ class RegistrableSubmap {
                                        const Eigen::Isometry3d& guess) const;
 
     /** Overlap coefficient (Szymkiewicz and Simpson) of the voxels of 0.5 m that the two fill above
-     *  the ground, 0 to 1: those that both fill, divided by the smaller set. The ground is left
-     * out, as it matches anywhere. `pose`: other to this. */
+     *  the ground, 0 to 1: those that both fill, divided by the smaller set. Ground and ceilings
+     * are left out, as they match anywhere. `pose`: other to this. */
     double overlap(const RegistrableSubmap& other, const Eigen::Isometry3d& pose) const;
 
     /** Fraction of the other's voxels of 0.5 m above the ground that this one fills as well, 0
@@ -55,10 +56,15 @@ class RegistrableSubmap {
      * does not see higher), but at most 70 % of them. */
     double support(const RegistrableSubmap& other, const Eigen::Isometry3d& pose) const;
 
+    /** Of what stands here and what a scan saw or saw through, the fraction that it saw through, 0
+     *  to 1. `pose`: the scan to this. */
+    double seenThrough(const odometry::RangeImage& scan, const Eigen::Isometry3d& pose) const;
+
  private:
     odometry::LocalMap map_;
     Eigen::Matrix3Xd coarse_, thinned_, standing_;
-    VoxelIndex filled_;         //!< by what stands
+    VoxelIndex filled_;         //!< by what is above the ground
+    std::size_t count_ = 0;     //!< of those that what stands fills
     VoxelIndex columns_;        //!< of 1 m in which anything was seen
     std::vector<double> tops_;  //!< of each of them
 };
@@ -84,8 +90,8 @@ class FreeSpace {
     FreeSpace(const HeightImage& image, const Eigen::Matrix3Xf& points);
 
     /** Takes the cells in which the other cloud is filled from 1 to 4 m (a wall, a hedge, a trunk)
-     *  and which this one observed, and gives the fraction that this one saw as bare ground. 0
-     *  without such cells. `pose`: other to this. */
+     *  and which this one observed, and gives the fraction that this one saw as bare ground.
+     *  Less with fewer than 20 such cells, 0 without. `pose`: other to this. */
     double conflict(const HeightImage& other, const Eigen::Isometry3d& pose) const;
 
  private:

@@ -1,6 +1,7 @@
 #include "places/descriptor.h"
 
 #include <tbb/parallel_for.h>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -76,6 +77,7 @@ namespace {
 constexpr double kBlock_m = 4;  // of one height of the ground
 constexpr double kGround_m = 0.3;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::uint64_t keyAt(double x, double y, double size) {
     return voxelKey(floorOf(x / size), floorOf(y / size), 0);
@@ -167,6 +169,126 @@ double lowest(std::vector<float>& heights) {
     return static_cast<double>(*tenth);
 }
 
+Eigen::Vector2d centreOf(const Eigen::Vector3f& point, double size) {
+    return ((point.head<2>().cast<double>() / size).array().floor() + 0.5) * size;
+}
+
+/** The cells of a block in which something is above the ground. */
+class BlockCells {
+ public:
+    void add(const Eigen::Vector3f& point, double height) {
+        const auto number = index_.insert(keyAt(point.x(), point.y(), HeightImage::kCell_m));
+        if (number == cells_.size()) cells_.push_back({centreOf(point, HeightImage::kCell_m), {}});
+        cells_[number].heights.push_back(height);
+    }
+
+    /** Height of the level surface that covers the block, with nothing below it in most cells;
+     *  infinity if there is none. A wall is no ceiling: its cells lie in a line. */
+    double ceiling() const {
+        constexpr double kRoom_m = 1.5, kFlat_m = 0.25, kBelow_m = 0.5, kBroad_m = 0.6;
+        constexpr std::size_t kLeast = 8;
+        std::vector<double> tops;
+        for (const auto& cell : cells_) {
+            const double top = *std::max_element(cell.heights.begin(), cell.heights.end());
+            if (top > kRoom_m) tops.push_back(top);
+        }
+        const double height = median(tops);
+        std::size_t isFree = 0;
+        Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+        Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+        for (const auto& [centre, heights] : cells_) {
+            const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+            if (std::abs(*high - height) > kFlat_m || *low < height - kBelow_m) continue;
+            ++isFree;
+            sum += centre;
+            squares += centre * centre.transpose();
+        }
+        const auto count = static_cast<double>(isFree);
+        if (isFree < kLeast || 2 * isFree < tops.size()) return kInfinity;
+        const Eigen::Matrix2d scatter = (squares - sum * sum.transpose() / count) / count;
+        const double narrow =
+            Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter, Eigen::EigenvaluesOnly)
+                .eigenvalues()[0];
+        return narrow > kBroad_m * kBroad_m ? height - kFlat_m : kInfinity;
+    }
+
+ private:
+    struct Cell {
+        Eigen::Vector2d centre;
+        std::vector<double> heights;  //!< above the ground
+    };
+    VoxelIndex index_;
+    std::vector<Cell> cells_;
+};
+
+/** Blocks of 4 m of a levelled cloud. */
+class Blocks {
+ public:
+    explicit Blocks(const Eigen::Matrix3Xf& points);
+
+    /** Indices of the points above the ground. */
+    std::vector<Eigen::Index> aboveGround(const Eigen::Matrix3Xf& points) const;
+    /** Of these, the ones that are no ceiling. */
+    std::vector<Eigen::Index> standing(const Eigen::Matrix3Xf& points) const;
+
+    std::size_t at(const Eigen::Vector3f& point) const {
+        return index_.find(keyAt(point.x(), point.y(), kBlock_m));
+    }
+    /** Above the ground. */
+    double heightOf(const Eigen::Vector3f& point) const {
+        return static_cast<double>(point.z()) - grounds_[at(point)];
+    }
+    const std::vector<Eigen::Vector2d>& centres() const { return centres_; }
+    const std::vector<double>& grounds() const { return grounds_; }
+
+ private:
+    VoxelIndex index_;
+    std::vector<Eigen::Vector2d> centres_;
+    std::vector<double> grounds_;  //!< metres
+};
+
+Blocks::Blocks(const Eigen::Matrix3Xf& points) {
+    std::vector<std::vector<float>> heights;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Eigen::Vector3f p = points.col(i);
+        const auto number = index_.insert(keyAt(p.x(), p.y(), kBlock_m));
+        if (number == heights.size()) {
+            heights.emplace_back();
+            centres_.push_back(centreOf(p, kBlock_m));
+        }
+        heights[number].push_back(p.z());
+    }
+    for (auto& block : heights) grounds_.push_back(lowest(block));
+}
+
+std::vector<Eigen::Index> Blocks::aboveGround(const Eigen::Matrix3Xf& points) const {
+    std::vector<Eigen::Index> above;
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+        if (heightOf(points.col(i)) > kGround_m) above.push_back(i);
+    return above;
+}
+
+std::vector<Eigen::Index> Blocks::standing(const Eigen::Matrix3Xf& points) const {
+    auto above = aboveGround(points);
+    std::vector<BlockCells> cells(grounds_.size());
+    for (const auto i : above) cells[at(points.col(i))].add(points.col(i), heightOf(points.col(i)));
+    std::vector<double> ceilings;
+    ceilings.reserve(cells.size());
+    for (const auto& block : cells) ceilings.push_back(block.ceiling());
+    const auto isCeiling = [&](Eigen::Index i) {
+        return heightOf(points.col(i)) > ceilings[at(points.col(i))];
+    };
+    above.erase(std::remove_if(above.begin(), above.end(), isCeiling), above.end());
+    return above;
+}
+
+Eigen::Matrix3Xd columns(const Eigen::Matrix3Xf& points, const std::vector<Eigen::Index>& which) {
+    Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(which.size()));
+    for (std::size_t i = 0; i < which.size(); ++i)
+        result.col(static_cast<Eigen::Index>(i)) = points.col(which[i]).cast<double>();
+    return result;
+}
+
 Eigen::Matrix<std::int16_t, 2, Eigen::Dynamic> halvesOf(const Eigen::Matrix2Xd& centres) {
     return (centres * 2 / HeightImage::kCell_m).array().round().cast<std::int16_t>();
 }
@@ -188,37 +310,23 @@ Raster::Raster(const Eigen::Matrix2Xi& cells, const std::vector<std::uint8_t>& i
 }
 
 HeightImage::HeightImage(const Eigen::Matrix3Xf& points) {
-    std::vector<std::vector<float>> blocks;
+    const Blocks blocks(points);
+    heights_ = blocks.grounds();
+    grounds_.resize(2, static_cast<Eigen::Index>(heights_.size()));
+    for (Eigen::Index i = 0; i < grounds_.cols(); ++i) {
+        grounds_.col(i) = blocks.centres()[static_cast<std::size_t>(i)];
+        groundIndex_.insert(keyAt(grounds_(0, i), grounds_(1, i), kBlock_m));
+    }
     std::vector<Eigen::Vector2d> centres;
-    const auto centreOf = [](float value, double size) {
-        return (std::floor(static_cast<double>(value) / size) + 0.5) * size;
-    };
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const auto p = points.col(i);
-        const auto number = groundIndex_.insert(keyAt(p.x(), p.y(), kBlock_m));
-        if (number == blocks.size()) {
-            blocks.emplace_back();
-            centres.emplace_back(centreOf(p.x(), kBlock_m), centreOf(p.y(), kBlock_m));
-        }
-        blocks[number].push_back(p.z());
-    }
-    grounds_.resize(2, static_cast<Eigen::Index>(blocks.size()));
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-        grounds_.col(static_cast<Eigen::Index>(i)) = centres[i];
-        heights_.push_back(lowest(blocks[i]));
-    }
-    centres.clear();
     VoxelIndex cells;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const auto p = points.col(i);
-        const auto band = bandOf(static_cast<double>(p.z()) - groundAt(p.x(), p.y()));
-        if (band == 0) continue;
+    for (const auto i : blocks.standing(points)) {
+        const Eigen::Vector3f p = points.col(i);
         const auto number = cells.insert(keyAt(p.x(), p.y(), kCell_m));
         if (number == bands_.size()) {
             bands_.push_back(0);
-            centres.emplace_back(centreOf(p.x(), kCell_m), centreOf(p.y(), kCell_m));
+            centres.push_back(centreOf(p, kCell_m));
         }
-        bands_[number] = static_cast<std::uint8_t>(bands_[number] | band);
+        bands_[number] = static_cast<std::uint8_t>(bands_[number] | bandOf(blocks.heightOf(p)));
     }
     Eigen::Matrix2Xd all(2, static_cast<Eigen::Index>(centres.size()));
     for (std::size_t i = 0; i < centres.size(); ++i)
@@ -238,16 +346,11 @@ HeightImage::HeightImage(const Eigen::Matrix2Xd& cells, std::vector<std::uint8_t
 }
 
 Eigen::Matrix3Xd aboveGround(const Eigen::Matrix3Xf& points) {
-    const HeightImage image(points);
-    Eigen::Matrix3Xd above(3, points.cols());
-    Eigen::Index count = 0;
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const Eigen::Vector3d point = points.col(i).cast<double>();
-        if (point.z() - image.groundAt(point.x(), point.y()) > kGround_m)
-            above.col(count++) = point;
-    }
-    above.conservativeResize(3, count);
-    return above;
+    return columns(points, Blocks(points).aboveGround(points));
+}
+
+Eigen::Matrix3Xd standing(const Eigen::Matrix3Xf& points) {
+    return columns(points, Blocks(points).standing(points));
 }
 
 double HeightImage::groundAt(double x, double y) const {

@@ -48,8 +48,8 @@ class WallOrientations {
     Eigen::VectorXd weights_;
 };
 
-/** A levelled cloud seen from above: for each cell, a bit for each height band above the local
- * ground that has points. Absolute height, which drifts most, has no influence. */
+/** A levelled cloud without ceilings, seen from above: for each cell, a bit for each height band
+ * above the local ground that has points. Absolute height, which drifts most, has no influence. */
 class HeightImage {
  public:
     static constexpr double kCell_m = 0.5;  //!< edge of a cell, metres
@@ -60,7 +60,7 @@ class HeightImage {
     HeightImage(const Eigen::Matrix2Xd& cells, std::vector<std::uint8_t> bands,
                 Eigen::Matrix2Xd grounds, std::vector<double> heights);
 
-    /** Centres of the cells that have points above the ground: x and y, metres. */
+    /** Centres of the cells in which something stands: x and y, metres. */
     Eigen::Matrix2Xd cells() const { return kCell_m / 2 * halves_.cast<double>(); }
     /** Of each of the cells, a bit for each height band. */
     const std::vector<std::uint8_t>& bands() const { return bands_; }
@@ -83,6 +83,8 @@ class HeightImage {
 
 /** The points of a levelled cloud that are above the ground. */
 Eigen::Matrix3Xd aboveGround(const Eigen::Matrix3Xf& points);
+/** Of these, the points that are no ceiling: a ceiling matches anywhere in a building. */
+Eigen::Matrix3Xd standing(const Eigen::Matrix3Xf& points);
 
 /** A pose of one height image on another. */
 struct Shift {

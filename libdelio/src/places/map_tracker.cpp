@@ -158,8 +158,8 @@ std::optional<Increment> MapTracker::track(const Eigen::Matrix3Xf& points,
     fix.reason = "not registered to the map";
     if (!placed.valid) return {};
     auto found = map.registerPlanes(view, placed, predicted.pose, odometry::Motion::kFast);
-    // Ground matches anywhere: only points above it count.
-    const auto standing = places::aboveGround((level * view.thinned).cast<float>());
+    // Ground and ceilings match anywhere.
+    const auto standing = places::standing((level * view.thinned).cast<float>());
     if (standing.cols() > 0)
         fix.inlierRatio =
             local_.shareAt(standing, found.pose() * turned(level.transpose()), kMeets_m);

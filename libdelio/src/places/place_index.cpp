@@ -15,6 +15,24 @@ constexpr int kTurns = 72;
 constexpr int kReach = 10;             // cells from the middle of a place
 constexpr std::size_t kSide = 24;      // shifts in a row; those beyond the reach are not looked at
 constexpr int kRows = 2 * kReach + 1;  // of shifts
+
+/** The best `kMost`, whose headings are `kApart_rad` apart: a room may be as similar to itself
+ *  turned round. */
+std::vector<Shift> distinct(std::vector<Shift> shifts) {
+    constexpr std::size_t kMost = 4;
+    constexpr double kApart_rad = M_PI / 6;
+    std::stable_sort(shifts.begin(), shifts.end(),
+                     [](const Shift& a, const Shift& b) { return a.overlap > b.overlap; });
+    std::vector<Shift> kept;
+    for (const auto& shift : shifts) {
+        const auto isNear = [&](const Shift& other) {
+            return std::abs(std::remainder(shift.yaw - other.yaw, 2 * M_PI)) < kApart_rad;
+        };
+        if (kept.size() < kMost && std::none_of(kept.begin(), kept.end(), isNear))
+            kept.push_back(shift);
+    }
+    return kept;
+}
 }  // namespace
 
 struct PlaceIndex::Turned {
@@ -109,11 +127,14 @@ class PlaceIndex::Overlaps {
     std::vector<std::size_t> seen_;     //!< in layers_, of each band of each cell, unshifted
 };
 
-PlaceMatch PlaceIndex::best(const Raster& place, const std::vector<Turned>& turns) {
-    PlaceMatch best;
+/** The best shift of each heading; of these the best, and others that are clearly elsewhere. */
+std::vector<Shift> PlaceIndex::best(const Raster& place, const std::vector<Turned>& turns) {
+    std::vector<Shift> best;
+    best.reserve(turns.size());
     Overlaps overlaps(place);
     for (const auto& turned : turns) {
         overlaps.take(turned);
+        Shift shift;
         std::uint32_t most = 0;
         for (int dy = 0; dy < kRows; ++dy) {
             const auto row = overlaps.row(dy);
@@ -121,14 +142,14 @@ PlaceMatch PlaceIndex::best(const Raster& place, const std::vector<Turned>& turn
                 const std::uint32_t bits = row[static_cast<std::size_t>(dx)];
                 if (bits <= most) continue;
                 most = bits;
-                const double share = bits / std::max(1.0, turned.bits);
-                if (share <= best.shift.overlap) continue;
-                best.shift = {
-                    turned.yaw, {kLarge_m * (dx - kReach), kLarge_m * (dy - kReach), 0}, share};
+                shift = {turned.yaw,
+                         {kLarge_m * (dx - kReach), kLarge_m * (dy - kReach), 0},
+                         bits / std::max(1.0, turned.bits)};
             }
         }
+        best.push_back(shift);
     }
-    return best;
+    return distinct(std::move(best));
 }
 
 std::vector<PlaceMatch> PlaceIndex::find(const HeightImage& cloud, std::size_t most) const {
@@ -141,11 +162,12 @@ std::vector<PlaceMatch> PlaceIndex::find(const HeightImage& cloud,
                                          const std::vector<std::size_t>& places,
                                          std::size_t most) const {
     const auto turns = turnsOf(cloud);
-    std::vector<PlaceMatch> matches(places.size());
-    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-        matches[i] = best(places_[places[i]], turns);
-        matches[i].place = places[i];
-    });
+    std::vector<std::vector<Shift>> shifts(places.size());
+    tbb::parallel_for(std::size_t{0}, places.size(),
+                      [&](std::size_t i) { shifts[i] = best(places_[places[i]], turns); });
+    std::vector<PlaceMatch> matches;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        for (const auto& shift : shifts[i]) matches.push_back({places[i], shift});
     std::stable_sort(matches.begin(), matches.end(), [](const PlaceMatch& a, const PlaceMatch& b) {
         return a.shift.overlap > b.shift.overlap;
     });

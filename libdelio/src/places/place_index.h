@@ -19,7 +19,8 @@ class PlaceIndex {
     void add(const HeightImage& image);
     std::size_t size() const { return places_.size(); }  //!< places
 
-    /** The best match of each place, of these the best `most`, the best first. */
+    /** The best matches of each place at up to four headings, of all these the best `most`, the
+     * best first. */
     std::vector<PlaceMatch> find(const HeightImage& cloud, std::size_t most) const;
     /** The same among some places only. */
     std::vector<PlaceMatch> find(const HeightImage& cloud, const std::vector<std::size_t>& places,
@@ -34,7 +35,7 @@ class PlaceIndex {
     class Overlaps;
     static Raster rasterOf(const HeightImage& image, double yaw, int margin);
     static std::vector<Turned> turnsOf(const HeightImage& cloud);
-    static PlaceMatch best(const Raster& place, const std::vector<Turned>& turns);
+    static std::vector<Shift> best(const Raster& place, const std::vector<Turned>& turns);
 
     std::vector<Raster> places_;
 };

@@ -15,6 +15,10 @@ constexpr double kDeg = M_PI / 180;
 /** Like places::kMaxFreeSpaceConflict, but stricter, because there is no other information about
  *  the cloud's position. */
 constexpr double kMaxFreeSpaceConflict = 0.2;
+/** The least similarity. Places of another building have up to 0.35, the right ones more, with
+ *  another sensor than the map's, too (share/doc/stored_map.md). */
+constexpr double kMinSimilarity = 0.35;
+constexpr double kCell_deg = 2;  // of the image that shows what a cloud saw through
 
 Eigen::Isometry3d poseOf(const Shift& shift) {
     return isometry(rotationExp(shift.yaw * Eigen::Vector3d::UnitZ()), shift.translation);
@@ -24,9 +28,9 @@ Eigen::Isometry3d poseOf(const Shift& shift) {
  *  its neighbours, because objects in rows are similar to each other. */
 std::vector<Shift> refined(const places::Descriptor& place, const places::Descriptor& cloud,
                            const Shift& seen) {
-    constexpr double kTurn_rad = 7 * kDeg, kReach_m = 8, kApart_m = 2;
+    constexpr double kTurn_rad = 15 * kDeg, kReach_m = 8, kApart_m = 2;
     constexpr std::size_t kMost = 3;
-    auto turns = place.walls.turnsOf(cloud.walls, seen.yaw, kTurn_rad, 2);
+    auto turns = place.walls.turnsOf(cloud.walls, seen.yaw, kTurn_rad, 3);
     turns.push_back(seen.yaw);
     std::vector<Shift> best;
     for (const double yaw : turns) {
@@ -36,6 +40,26 @@ std::vector<Shift> refined(const places::Descriptor& place, const places::Descri
             best = std::move(shifts);
     }
     return best;
+}
+
+/** All of a place, at the headings at which its walls are parallel to the cloud's. */
+std::vector<Shift> atAllHeadings(const places::Descriptor& place, const places::Descriptor& cloud) {
+    constexpr double kQuarter_rad = 95 * kDeg, kReach_m = 20, kApart_m = 2;
+    constexpr std::size_t kMost = 3;
+    std::vector<Shift> found;
+    for (const double turn : place.walls.turnsOf(cloud.walls, 0, kQuarter_rad, 4))
+        for (const double yaw : {turn, turn + M_PI})
+            for (const auto& shift :
+                 shiftsOf(place.image, cloud.image, yaw, {0, 0}, kReach_m, kApart_m, kMost))
+                found.push_back(shift);
+    return found;
+}
+
+/** True for two shifts that registration brings to the same pose. */
+bool isSame(const Shift& a, const Shift& b) {
+    constexpr double kSame_m = 1, kSame_rad = 5 * kDeg;
+    return (a.translation - b.translation).norm() < kSame_m &&
+           std::abs(std::remainder(a.yaw - b.yaw, 2 * M_PI)) < kSame_rad;
 }
 
 bool isElsewhere(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
@@ -50,7 +74,7 @@ std::vector<OptionField> PlaceSearchOptions::fields() const {
     return {{"min_overlap", &Me::min_overlap,
              "minimum fraction of the scans' structure above the ground that is in the map", 0, 1},
             {"rival", &Me::rival,
-             "maximum overlap of the second-best place, as a fraction of the best one's", 0, 1}};
+             "maximum similarity of the second-best place, as a fraction of the best one's", 0, 1}};
 }
 
 PlaceSearch::PlaceSearch(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& options)
@@ -74,32 +98,48 @@ FoundPlace PlaceSearch::find(const Eigen::Matrix3Xf& cloud,
     return verified(index_.find(seen.image, submaps, kMost), cloud, seen);
 }
 
-/** In fine, the best first; those that are clearly worse than the best are left out. */
+/** In fine, the best first; those that are clearly worse than the best are left out. Where the
+ *  coarse matches are as good as each other, as in a building, the places are searched in fine. */
 std::vector<PlaceSearch::Hypothesis> PlaceSearch::hypotheses(
     const std::vector<places::PlaceMatch>& matches, const places::Descriptor& seen) const {
-    constexpr std::size_t kMost = 6;
-    std::vector<std::vector<Shift>> shifts(matches.size());
-    tbb::parallel_for(std::size_t{0}, shifts.size(), [&](std::size_t i) {
-        shifts[i] = refined(descriptors_[matches[i].place], seen, matches[i].shift);
+    constexpr std::size_t kMost = 10;
+    std::vector<std::size_t> unclear;
+    for (const auto& match : matches)
+        if (match.shift.overlap >= options_.rival * matches.front().shift.overlap)
+            unclear.push_back(match.place);
+    if (unclear.size() < 2) unclear.clear();
+    std::sort(unclear.begin(), unclear.end());
+    unclear.erase(std::unique(unclear.begin(), unclear.end()), unclear.end());
+    std::vector<std::vector<Hypothesis>> found(matches.size() + unclear.size());
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
+        const bool isClear = i < matches.size();
+        const std::size_t place = isClear ? matches[i].place : unclear[i - matches.size()];
+        const auto& there = descriptors_[place];
+        for (const auto& shift :
+             isClear ? refined(there, seen, matches[i].shift) : atAllHeadings(there, seen))
+            found[i].push_back({place, shift});
     });
-    std::vector<Hypothesis> found;
-    for (std::size_t i = 0; i < shifts.size(); ++i)
-        for (const auto& shift : shifts[i]) found.push_back({matches[i].place, shift});
-    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    std::vector<Hypothesis> all;
+    for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
         return a.shift.overlap > b.shift.overlap;
     });
-    const auto isWorse = [&](const Hypothesis& other) {
-        return other.shift.overlap < options_.rival * found.front().shift.overlap;
-    };
-    found.erase(std::find_if(found.begin(), found.end(), isWorse), found.end());
-    if (found.size() > kMost) found.resize(kMost);
-    return found;
+    std::vector<Hypothesis> kept;
+    for (const auto& one : all) {
+        if (kept.size() == kMost || one.shift.overlap < options_.rival * all.front().shift.overlap)
+            break;
+        const auto isKnown = [&](const Hypothesis& other) {
+            return other.place == one.place && isSame(other.shift, one.shift);
+        };
+        if (std::none_of(kept.begin(), kept.end(), isKnown)) kept.push_back(one);
+    }
+    return kept;
 }
 
 /** Registers the cloud where a hypothesis puts it, and looks whether it can be there. */
 FoundPlace PlaceSearch::registered(const Hypothesis& hypothesis, const places::DenseSubmap& place,
-                                   const places::Descriptor& seen,
-                                   const places::DenseSubmap& cloud) const {
+                                   const Seen& seen) const {
+    const auto& cloud = seen.dense;
     const auto& image = descriptors_[hypothesis.place].image;
     places::ClosureOptions options;
     options.min_overlap = 0;  // it is judged by what the place could have seen
@@ -110,20 +150,25 @@ FoundPlace PlaceSearch::registered(const Hypothesis& hypothesis, const places::D
     found.submap = hypothesis.place;
     found.pose = map_->levelFrames()[hypothesis.place] * closure.level;
     found.overlap = place.map.support(cloud.map, closure.level);
-    found.conflict = std::max(place.free.conflict(seen.image, closure.level),
+    found.similarity =
+        found.overlap * closure.inlierRatio - 2 * place.map.seenThrough(seen.ranges, closure.level);
+    found.conflict = std::max(place.free.conflict(seen.descriptor.image, closure.level),
                               cloud.free.conflict(image, closure.level.inverse()));
     found.reason = closure.reason;
     if (found.reason.empty() && found.overlap < options_.min_overlap)
         found.reason = "too little overlap";
+    if (found.reason.empty() && found.similarity < kMinSimilarity)
+        found.reason = "not similar enough";
     if (found.reason.empty() && found.conflict > kMaxFreeSpaceConflict)
         found.reason = "free-space conflict";
     return found;
 }
 
 FoundPlace PlaceSearch::verified(const std::vector<places::PlaceMatch>& matches,
-                                 const Eigen::Matrix3Xf& cloud, const places::Descriptor& seen) {
-    const places::DenseSubmap ground(cloud, seen.image);
-    const auto found = hypotheses(matches, seen);
+                                 const Eigen::Matrix3Xf& cloud,
+                                 const places::Descriptor& descriptor) {
+    const Seen seen{descriptor, {cloud, descriptor.image}, {cloud, kCell_deg}};
+    const auto found = hypotheses(matches, descriptor);
     std::vector<std::shared_ptr<const places::DenseSubmap>> grounds;
     grounds.reserve(found.size());
     for (const auto& [place, shift] : found)
@@ -131,20 +176,19 @@ FoundPlace PlaceSearch::verified(const std::vector<places::PlaceMatch>& matches,
             return places::DenseSubmap(map_->surroundings(place), descriptors_[place].image);
         }));
     std::vector<FoundPlace> places(found.size());
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
-        places[i] = registered(found[i], *grounds[i], seen, ground);
-    });
+    tbb::parallel_for(std::size_t{0}, found.size(),
+                      [&](std::size_t i) { places[i] = registered(found[i], *grounds[i], seen); });
     FoundPlace best;
     best.reason = "no similar place";
     for (const auto& place : places) {
         const bool isFound = place.reason.empty(), hasBest = best.reason.empty();
-        if (isFound != hasBest ? isFound : place.overlap > best.overlap) best = place;
+        if (isFound != hasBest ? isFound : place.similarity > best.similarity) best = place;
     }
     if (!best.reason.empty()) return best;
     for (const auto& place : places)
         if (place.reason.empty() && isElsewhere(place.pose, best.pose))
-            best.rival = std::max(best.rival, place.overlap);
-    if (best.rival > options_.rival * best.overlap)
+            best.rival = std::max(best.rival, place.similarity);
+    if (best.rival > options_.rival * best.similarity)
         best.reason = "ambiguous: a second place is as similar";
     return best;
 }

@@ -12,17 +12,22 @@ namespace delio {
 /** Result of a place search: pose in the map, or the reason of the failure. */
 struct FoundPlace {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< the cloud's frame to the map's
-    double overlap = 0;      //!< RegistrableSubmap::support() of the cloud by the map
-    double conflict = 0;     //!< FreeSpace::conflict(), the larger of both directions
-    double rival = 0;        //!< overlap of the second-best place
+    double overlap = 0;   //!< RegistrableSubmap::support() of the cloud by the map
+    double conflict = 0;  //!< FreeSpace::conflict(), the larger of both directions
+    /** Overlap times inlier ratio, less twice RegistrableSubmap::seenThrough(). A similar room
+     * fills many of the same voxels, but its walls are on other planes, and the cloud saw through
+     * some. */
+    double similarity = 0;
+    double rival = 0;        //!< similarity of the second-best place
     std::size_t submap = 0;  //!< of the map, in which it was found
     std::string reason;      //!< empty: it was found
 };
 
 /** Finds a levelled cloud in a stored map without an initial guess. All places and headings are
  *  compared coarsely (PlaceIndex), the best ones in the descriptors' resolution, rotation first;
- * then they are registered. Verification is that of loops: enough overlap, no walls in the other's
- * free space, and no second place that is nearly as good. */
+ * then they are registered. Verification is that of loops, and more: enough overlap, no walls in
+ * the other's free space, few walls that the cloud saw through, and no second place that is nearly
+ * as good. */
 class PlaceSearch {
  public:
     /** Reads the descriptors of all submaps of `map`. Error if they are damaged. */
@@ -30,7 +35,7 @@ class PlaceSearch {
 
     const PlaceSearchOptions& options() const { return options_; }  //!< that it was made with
 
-    /** `cloud`: z up, metres. */
+    /** `cloud`: z up, metres, as seen from about its origin. */
     FoundPlace find(const Eigen::Matrix3Xf& cloud);
     /** Among some submaps only. */
     FoundPlace find(const Eigen::Matrix3Xf& cloud, const std::vector<std::size_t>& submaps);
@@ -42,10 +47,16 @@ class PlaceSearch {
     };
     std::vector<Hypothesis> hypotheses(const std::vector<places::PlaceMatch>& matches,
                                        const places::Descriptor& seen) const;
+    /** The cloud that is searched for. */
+    struct Seen {
+        const places::Descriptor& descriptor;
+        places::DenseSubmap dense;
+        odometry::RangeImage ranges;
+    };
     FoundPlace registered(const Hypothesis& hypothesis, const places::DenseSubmap& place,
-                          const places::Descriptor& seen, const places::DenseSubmap& cloud) const;
+                          const Seen& seen) const;
     FoundPlace verified(const std::vector<places::PlaceMatch>& matches,
-                        const Eigen::Matrix3Xf& cloud, const places::Descriptor& seen);
+                        const Eigen::Matrix3Xf& cloud, const places::Descriptor& descriptor);
 
     std::shared_ptr<const StoredMap> map_;
     PlaceSearchOptions options_;

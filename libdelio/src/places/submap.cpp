@@ -109,7 +109,9 @@ Submap SubmapBuilder::merged(const std::vector<Part>& parts, const SubmapOptions
             if (part.points.col(k).norm() <= options.radius)
                 all.col(used++) = placed * part.points.col(k);
     }
-    submap.points = firstOfVoxels(all.leftCols(used), options.spacing);
+    constexpr Eigen::Index kEnough = 30000;
+    submap.points =
+        firstOfVoxels(all.leftCols(used), options.spacing, options.spacing / 2, kEnough);
     return submap;
 }
 

@@ -104,6 +104,31 @@ TEST(FreeSpace, IsBuiltOnByWallsThatStandElsewhere) {
     EXPECT_EQ(free.conflict(there, test::poseAt(100, 0, 0)), 0);  // nothing to compare
 }
 
+// The rays of a scan pass where the wall would be, end at it, or end before it.
+TEST(RegistrableSubmap, IsSeenThroughWhereAScanLooksFarther) {
+    const Eigen::Isometry3d fromSensor = poseAt(2, 10, 1.5);
+    const auto viewOf = [&](float wall) {
+        return odometry::RangeImage(fromSensor.inverse().cast<float>() * withWallAt(wall), 2);
+    };
+    const RegistrableSubmap map(withWallAt(9.2F));
+    EXPECT_GT(map.seenThrough(viewOf(14.2F), fromSensor), 0.8);
+    EXPECT_EQ(map.seenThrough(viewOf(9.2F), fromSensor), 0);
+    EXPECT_EQ(map.seenThrough(viewOf(5.2F), fromSensor), 0);
+    EXPECT_EQ(map.seenThrough(odometry::RangeImage(), fromSensor), 0);
+}
+
+// A single post is no evidence.
+TEST(FreeSpace, OfFewCellsIsHardlyBuiltOn) {
+    const auto points = withWallAt(5.2F);
+    const FreeSpace free(HeightImage(points), points);
+    Eigen::Matrix3Xf ground = withWallAt(9.2F), post(3, ground.cols());
+    Eigen::Index kept = 0;
+    for (Eigen::Index i = 0; i < ground.cols(); ++i)
+        if (ground(2, i) == 0 || (ground(1, i) > 9.9F && ground(1, i) < 10.2F))
+            post.col(kept++) = ground.col(i);
+    EXPECT_LT(free.conflict(HeightImage(post.leftCols(kept)), poseAt(0, 0, 0)), 0.1);
+}
+
 TEST(FreeSpace, OfNothingIsNotBuiltOn) {
     const Eigen::Matrix3Xf nothing(3, 0);
     const HeightImage none(nothing), wall(withWallAt(5));

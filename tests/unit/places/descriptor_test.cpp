@@ -39,6 +39,57 @@ TEST(HeightImage, LeavesOutTheGround) {
     EXPECT_EQ(post.bands()[0], 2);  // 1 to 2 m above the ground
 }
 
+/** A grid of points 0.25 m apart, with x and y from `low` to `high` at that height. */
+Eigen::Matrix3Xf level(const Eigen::Vector2f& low, const Eigen::Vector2f& high, float z) {
+    const Eigen::Vector2i count = ((high - low) * 4).array().round().cast<int>();
+    Eigen::Matrix3Xf points(3, count.prod());
+    for (int i = 0; i < count.prod(); ++i)
+        points.col(i) << low.x() + 0.25F * static_cast<float>(i % count.x()),
+            low.y() + 0.25F * static_cast<float>(i / count.x()), z;
+    return points;
+}
+
+/** The surfaces together. */
+Eigen::Matrix3Xf together(const std::vector<Eigen::Matrix3Xf>& surfaces) {
+    Eigen::Matrix3Xf all(3, 0);
+    for (const auto& surface : surfaces) {
+        all.conservativeResize(3, all.cols() + surface.cols());
+        all.rightCols(surface.cols()) = surface;
+    }
+    return all;
+}
+
+/** A wall along x at y = 10, from the ground up to `top`. */
+Eigen::Matrix3Xf wall(float top) {
+    Eigen::Matrix3Xf points = level({0, 0}, {20, top}, 10);
+    points.row(1).swap(points.row(2));
+    return points;
+}
+
+// A ceiling is above every room: only the wall and the table stand.
+TEST(HeightImage, LeavesOutTheCeiling) {
+    const auto floor = level({0, 0}, {20, 20}, 0), ceiling = level({0, 0}, {20, 20}, 2.8F),
+               table = level({13, 5}, {14, 6}, 0.8F);
+    const auto room = together({floor, ceiling, table, wall(2.75F)});
+    const auto standing = places::standing(room);
+    EXPECT_EQ(standing.cols(), places::standing(together({floor, table, wall(2.75F)})).cols());
+    EXPECT_EQ(places::aboveGround(room).cols(), standing.cols() + ceiling.cols());
+    const HeightImage image(room);
+    EXPECT_EQ(image.cells().cols(), 40 + 4);
+    EXPECT_TRUE((image.cells().row(1).array() > 9.5 || image.cells().row(0).array() > 12.5).all());
+}
+
+// The top of a high wall, and a slope, are no ceilings.
+TEST(HeightImage, KeepsWhatIsNoCeiling) {
+    const auto floor = level({0, 0}, {20, 20}, 0);
+    Eigen::Matrix3Xf slope = level({0, 0}, {20, 20}, 0);
+    slope.row(2) = 2 + 0.3F * slope.row(0).array();
+    for (const auto& thing : {wall(6), slope}) {
+        const auto all = together({floor, thing});
+        EXPECT_EQ(places::standing(all).cols(), places::aboveGround(all).cols());
+    }
+}
+
 TEST(HeightImage, IsFoundWhereItLies) {
     const Eigen::Isometry3d moved = poseAtDeg(6, -4.3, 2.5, 8);
     const HeightImage here(moved.cast<float>() * yard()), there(yard());

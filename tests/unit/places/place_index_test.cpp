@@ -88,6 +88,25 @@ TEST(PlaceIndex, TellsWhichPlaceItIsAndWhere) {
     EXPECT_GE(found[1].shift.overlap, found[2].shift.overlap);
 }
 
+// A room that is as similar to itself turned round is found both ways round.
+TEST(PlaceIndex, FindsAPlaceAtSeveralHeadings) {
+    const auto once = image(4, 60, 300);
+    Eigen::Matrix2Xd cells(2, 600);
+    cells << once.cells(), -once.cells();
+    auto bands = once.bands();
+    bands.insert(bands.end(), once.bands().begin(), once.bands().end());
+    const HeightImage room(cells, std::move(bands), {}, {});
+    PlaceIndex index;
+    index.add(room);
+    const auto found = index.find(room, 4);
+    ASSERT_EQ(found.size(), 4U);
+    EXPECT_EQ(found[0].shift.overlap, 1);
+    EXPECT_EQ(found[0].shift.yaw, 0);
+    EXPECT_NEAR(found[1].shift.yaw, M_PI, 1e-9);
+    EXPECT_GT(found[1].shift.overlap, 0.9);
+    EXPECT_LT(found[2].shift.overlap, 0.9);
+}
+
 TEST(PlaceIndex, SharesAreWhatCountingGives) {
     const auto place = image(7, 40, 60);
     PlaceIndex index;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "poses.h"
 
 namespace {
@@ -41,6 +43,27 @@ std::vector<Submap> driven(const std::vector<Eigen::Isometry3d>& poses) {
     Drive drive;
     for (const auto& pose : poses) drive.add(pose);
     return drive.finish();
+}
+
+/** A floor about the sensor of so many points on each side, 0.05 m apart. */
+Eigen::Matrix3Xf floorOf(int side) {
+    Eigen::Matrix3Xf points(3, side * side);
+    for (int i = 0; i < side * side; ++i)
+        points.col(i) << static_cast<float>(i % side - side / 2),
+            static_cast<float>(i / side - side / 2), -20;
+    return 0.05F * points;
+}
+
+// 10 m by 10 m at half the spacing. 60 m by 60 m have enough points at the spacing.
+TEST(SubmapBuilder, KeepsMorePointsOfASmallRoom) {
+    const double spacing = places::SubmapOptions().spacing;
+    const auto pointsOf = [](int side) {
+        Drive drive;
+        drive.add(poseAt(0, 0, 0), floorOf(side));
+        return static_cast<double>(drive.finish().at(0).points.cols());
+    };
+    EXPECT_NEAR(pointsOf(200), std::pow(10 / (spacing / 2), 2), 300);
+    EXPECT_NEAR(pointsOf(1200), std::pow(60 / spacing, 2), 1000);
 }
 
 TEST(SubmapBuilder, CutsAStraightDriveBy25m) {

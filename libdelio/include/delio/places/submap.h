@@ -9,7 +9,8 @@
 #include "delio/core/stage_options.h"
 
 namespace delio::places {
-/** Partition of a drive into submaps. */
+/** Partition of a drive into submaps. A submap of fewer than 30 000 points has points at half the
+ *  spacing: it is of a small place, such as a room. */
 struct SubmapOptions : public StageOptions {
     double path = 50;
     double straight = 25;
@@ -45,7 +46,7 @@ struct Submap {
     PathSegment driven;     //!< from the drive's first scan to the key node
     Eigen::Matrix3d level =
         Eigen::Matrix3d::Identity();  //!< rotation, this frame to the vehicle's at the key node
-    Eigen::Matrix3Xf points;          //!< one in `spacing`
+    Eigen::Matrix3Xf points;          //!< one in `spacing`, or in half of it: see SubmapOptions
 };
 
 /** The level frames of submaps, with these poses of the graph's nodes. */
