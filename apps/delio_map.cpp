@@ -169,7 +169,7 @@ Arguments::Arguments()
       spacing(
           "", "spacing",
           "Minimum distance between points, metres; 0: keep all; of an imported cloud 0.05 to 2, "
-          "default 0.3",
+          "default 0.3, of a small cloud 0.15",
           false, 0, &spacings, cmd),
       colourBy("", "color-by", "Value shown by the colours", false, "height", &values, cmd),
       colormap("", "colormap", "Colour map", false, "turbo", &colormaps, cmd),
@@ -448,14 +448,14 @@ void editGraph(Arguments& asked) {
 }
 
 void importMap(Arguments& asked) {
-    constexpr double kSpacing_m = 0.3;
     const std::string cloud = asked.import.getValue(), output = asked.output.getValue();
     cli::refuseOverlap({cloud}, {output});
     cli::refuseExisting(output, asked.force.getValue());
     refuseMissingFolder(output);
     const io::OutputLock lock(output);
-    const auto made =
-        importCloud(cloud, asked.spacing.isSet() ? asked.spacing.getValue() : kSpacing_m, output);
+    const auto spacing =
+        asked.spacing.isSet() ? std::optional(asked.spacing.getValue()) : std::nullopt;
+    const auto made = importCloud(cloud, spacing, output);
     const auto& offset = made.origin.offset;
     if (made.outliers > 0)
         cli::inform("dropped " + std::to_string(made.outliers) +

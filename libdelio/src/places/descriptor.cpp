@@ -183,7 +183,7 @@ class BlockCells {
     }
 
     /** Height of the level surface that covers the block, with nothing below it in most cells;
-     *  infinity if there is none. A wall is no ceiling: its cells lie in a line. */
+     *  infinity without one. A wall is no ceiling: its cells lie in a line. */
     double ceiling() const {
         constexpr double kRoom_m = 1.5, kFlat_m = 0.25, kBelow_m = 0.5, kBroad_m = 0.6;
         constexpr std::size_t kLeast = 8;

@@ -288,9 +288,16 @@ MapContent contentOf(CutCloud& cloud, const CloudOrigin& origin) {
 }
 }  // namespace
 
-ImportFigures importCloud(const std::string& path, double spacing_m, const std::string& map) {
+ImportFigures importCloud(const std::string& path, std::optional<double> spacing_m,
+                          const std::string& map) {
+    constexpr double kSpacing_m = 0.3;
+    constexpr std::size_t kSmall = 200'000;
     ImportFigures figures;
-    auto points = thinned(path, spacing_m, figures);
+    auto points = thinned(path, spacing_m.value_or(kSpacing_m), figures);
+    if (!spacing_m && points.size() < kSmall) {
+        figures = {};
+        points = thinned(path, kSpacing_m / 2, figures);
+    }
     figures.kept = points.size();
     checkDensity(points, path);
     CutCloud cloud(std::move(points));

@@ -62,8 +62,19 @@ bool isSame(const Shift& a, const Shift& b) {
            std::abs(std::remainder(a.yaw - b.yaw, 2 * M_PI)) < kSame_rad;
 }
 
+/** The most similar place of those that can be; without one, the most similar of all. */
+FoundPlace bestOf(const std::vector<FoundPlace>& places) {
+    FoundPlace best;
+    best.reason = "no similar place";
+    for (const auto& place : places) {
+        const bool isFound = place.reason.empty(), hasBest = best.reason.empty();
+        if (isFound != hasBest ? isFound : place.similarity > best.similarity) best = place;
+    }
+    return best;
+}
+
 bool isElsewhere(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-    constexpr double kElsewhere_m = 2, kElsewhere_rad = 20 * kDeg;
+    constexpr double kElsewhere_m = 0.5, kElsewhere_rad = 3 * kDeg;
     const Eigen::Isometry3d apart = a.inverse() * b;
     return apart.translation().norm() > kElsewhere_m || angleOf(apart.linear()) > kElsewhere_rad;
 }
@@ -164,27 +175,46 @@ FoundPlace PlaceSearch::registered(const Hypothesis& hypothesis, const places::D
     return found;
 }
 
+std::vector<FoundPlace> PlaceSearch::registered(const std::vector<Hypothesis>& hypotheses,
+                                                const Seen& seen) {
+    std::vector<std::shared_ptr<const places::DenseSubmap>> grounds;
+    grounds.reserve(hypotheses.size());
+    for (const auto& [place, shift] : hypotheses)
+        grounds.push_back(cache_.at(place, [&, place = place] {
+            return places::DenseSubmap(map_->surroundings(place), descriptors_[place].image);
+        }));
+    std::vector<FoundPlace> places(hypotheses.size());
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+        places[i] = registered(hypotheses[i], *grounds[i], seen);
+    });
+    return places;
+}
+
+/** Where else the cloud may be around a place that was found: rows of posts are similar to
+ *  themselves. */
+std::vector<PlaceSearch::Hypothesis> PlaceSearch::beside(const FoundPlace& found,
+                                                         const Seen& seen) const {
+    constexpr double kReach_m = 4, kApart_m = 0.9;
+    constexpr std::size_t kMost = 5;
+    const Eigen::Isometry3d there = map_->levelFrames()[found.submap].inverse() * found.pose;
+    const double yaw = std::atan2(there(1, 0), there(0, 0));
+    std::vector<Hypothesis> others;
+    for (const auto& shift : shiftsOf(descriptors_[found.submap].image, seen.descriptor.image, yaw,
+                                      there.translation().head<2>(), kReach_m, kApart_m, kMost))
+        if (isElsewhere(poseOf(shift), there)) others.push_back({found.submap, shift});
+    return others;
+}
+
 FoundPlace PlaceSearch::verified(const std::vector<places::PlaceMatch>& matches,
                                  const Eigen::Matrix3Xf& cloud,
                                  const places::Descriptor& descriptor) {
     const Seen seen{descriptor, {cloud, descriptor.image}, {cloud, kCell_deg}};
-    const auto found = hypotheses(matches, descriptor);
-    std::vector<std::shared_ptr<const places::DenseSubmap>> grounds;
-    grounds.reserve(found.size());
-    for (const auto& [place, shift] : found)
-        grounds.push_back(cache_.at(place, [&, place = place] {
-            return places::DenseSubmap(map_->surroundings(place), descriptors_[place].image);
-        }));
-    std::vector<FoundPlace> places(found.size());
-    tbb::parallel_for(std::size_t{0}, found.size(),
-                      [&](std::size_t i) { places[i] = registered(found[i], *grounds[i], seen); });
-    FoundPlace best;
-    best.reason = "no similar place";
-    for (const auto& place : places) {
-        const bool isFound = place.reason.empty(), hasBest = best.reason.empty();
-        if (isFound != hasBest ? isFound : place.similarity > best.similarity) best = place;
-    }
+    auto places = registered(hypotheses(matches, descriptor), seen);
+    FoundPlace best = bestOf(places);
     if (!best.reason.empty()) return best;
+    const auto others = registered(beside(best, seen), seen);
+    places.insert(places.end(), others.begin(), others.end());
+    best = bestOf(places);
     for (const auto& place : places)
         if (place.reason.empty() && isElsewhere(place.pose, best.pose))
             best.rival = std::max(best.rival, place.similarity);

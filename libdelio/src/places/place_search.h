@@ -55,6 +55,8 @@ class PlaceSearch {
     };
     FoundPlace registered(const Hypothesis& hypothesis, const places::DenseSubmap& place,
                           const Seen& seen) const;
+    std::vector<FoundPlace> registered(const std::vector<Hypothesis>& hypotheses, const Seen& seen);
+    std::vector<Hypothesis> beside(const FoundPlace& found, const Seen& seen) const;
     FoundPlace verified(const std::vector<places::PlaceMatch>& matches,
                         const Eigen::Matrix3Xf& cloud, const places::Descriptor& descriptor);
 

@@ -40,7 +40,7 @@ void writePly(const Cloud& cloud, const std::string& path) {
 
 class ImportedTown : public testing::Test {
  protected:
-    ImportFigures import(const Cloud& cloud, double spacing = 0.3) const {
+    ImportFigures import(const Cloud& cloud, std::optional<double> spacing = 0.3) const {
         writePly(cloud, ply_);
         return importCloud(ply_, spacing, path_);
     }
@@ -92,6 +92,14 @@ TEST_F(ImportedTown, ATiltedCloudInUtmToo) {
     EXPECT_EQ(made.origin.offset, Eigen::Vector3d(457000, 5412000, 0));
     EXPECT_NEAR(made.tilt_deg, 5, 0.3);
     expectFound(utm);
+}
+
+TEST_F(ImportedTown, ASmallCloudKeepsMorePoints) {
+    const auto cloud = cloudOfTown(Eigen::Isometry3d::Identity());
+    ASSERT_LT(import(cloud, 0.3).kept, 200'000U);
+    const auto made = importCloud(ply_, {}, path_);
+    EXPECT_EQ(made.points, cloud.size());
+    EXPECT_EQ(made.kept, import(cloud, 0.15).kept);
 }
 
 TEST_F(ImportedTown, EveryPointIsInOneSubmap) {
