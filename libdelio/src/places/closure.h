@@ -56,11 +56,19 @@ class RegistrableSubmap {
      * does not see higher), but at most 70 % of them. */
     double support(const RegistrableSubmap& other, const Eigen::Isometry3d& pose) const;
 
+    /** Fraction of the other's points within 0.15 m of one of this one's, 0 to 1: less than
+     *  support() where only similar things are there. */
+    double closeness(const RegistrableSubmap& other, const Eigen::Isometry3d& pose) const {
+        return map_.shareAt(other.coarse_, pose, kClose_m);
+    }
+
     /** Of what stands here and what a scan saw or saw through, the fraction that it saw through, 0
      *  to 1. `pose`: the scan to this. */
     double seenThrough(const odometry::RangeImage& scan, const Eigen::Isometry3d& pose) const;
 
  private:
+    static constexpr double kClose_m = 0.15;
+
     odometry::LocalMap map_;
     Eigen::Matrix3Xd coarse_, thinned_, standing_;
     VoxelIndex filled_;         //!< by what is above the ground

@@ -62,13 +62,13 @@ bool isSame(const Shift& a, const Shift& b) {
            std::abs(std::remainder(a.yaw - b.yaw, 2 * M_PI)) < kSame_rad;
 }
 
-/** The most similar place of those that can be; without one, the most similar of all. */
+/** The best place of those that can be; without one, the best of all. */
 FoundPlace bestOf(const std::vector<FoundPlace>& places) {
     FoundPlace best;
     best.reason = "no similar place";
     for (const auto& place : places) {
         const bool isFound = place.reason.empty(), hasBest = best.reason.empty();
-        if (isFound != hasBest ? isFound : place.similarity > best.similarity) best = place;
+        if (isFound != hasBest ? isFound : place.score() > best.score()) best = place;
     }
     return best;
 }
@@ -85,7 +85,7 @@ std::vector<OptionField> PlaceSearchOptions::fields() const {
     return {{"min_overlap", &Me::min_overlap,
              "minimum fraction of the scans' structure above the ground that is in the map", 0, 1},
             {"rival", &Me::rival,
-             "maximum similarity of the second-best place, as a fraction of the best one's", 0, 1}};
+             "maximum score of the second-best place, as a fraction of the best one's", 0, 1}};
 }
 
 PlaceSearch::PlaceSearch(std::shared_ptr<const StoredMap> map, const PlaceSearchOptions& options)
@@ -163,6 +163,7 @@ FoundPlace PlaceSearch::registered(const Hypothesis& hypothesis, const places::D
     found.overlap = place.map.support(cloud.map, closure.level);
     found.similarity =
         found.overlap * closure.inlierRatio - 2 * place.map.seenThrough(seen.ranges, closure.level);
+    found.closeness = place.map.closeness(cloud.map, closure.level);
     found.conflict = std::max(place.free.conflict(seen.descriptor.image, closure.level),
                               cloud.free.conflict(image, closure.level.inverse()));
     found.reason = closure.reason;
@@ -217,8 +218,8 @@ FoundPlace PlaceSearch::verified(const std::vector<places::PlaceMatch>& matches,
     best = bestOf(places);
     for (const auto& place : places)
         if (place.reason.empty() && isElsewhere(place.pose, best.pose))
-            best.rival = std::max(best.rival, place.similarity);
-    if (best.rival > options_.rival * best.similarity)
+            best.rival = std::max(best.rival, place.score());
+    if (best.rival > options_.rival * best.score())
         best.reason = "ambiguous: a second place is as similar";
     return best;
 }

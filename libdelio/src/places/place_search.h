@@ -18,9 +18,13 @@ struct FoundPlace {
      * fills many of the same voxels, but its walls are on other planes, and the cloud saw through
      * some. */
     double similarity = 0;
-    double rival = 0;        //!< similarity of the second-best place
+    double closeness = 0;    //!< RegistrableSubmap::closeness() of the cloud to the map
+    double rival = 0;        //!< score() of the second-best place
     std::size_t submap = 0;  //!< of the map, in which it was found
     std::string reason;      //!< empty: it was found
+
+    /** By which places are compared. */
+    double score() const { return similarity * closeness; }
 };
 
 /** Finds a levelled cloud in a stored map without an initial guess. All places and headings are
