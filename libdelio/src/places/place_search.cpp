@@ -15,9 +15,9 @@ constexpr double kDeg = M_PI / 180;
 /** Like places::kMaxFreeSpaceConflict, but stricter, because there is no other information about
  *  the cloud's position. */
 constexpr double kMaxFreeSpaceConflict = 0.2;
-/** The least similarity. Places of another building have up to 0.35, the right ones more, with
- *  another sensor than the map's, too (share/doc/stored_map.md). */
-constexpr double kMinSimilarity = 0.35;
+/** The least similarity. Places of another building rarely have more, the right ones nearly always,
+ * with another sensor than the map's, too (share/doc/stored_map.md). */
+constexpr double kMinSimilarity = 0.4;
 constexpr double kCell_deg = 2;  // of the image that shows what a cloud saw through
 
 Eigen::Isometry3d poseOf(const Shift& shift) {
