@@ -123,11 +123,11 @@ std::vector<PlaceSearch::Hypothesis> PlaceSearch::hypotheses(
     unclear.erase(std::unique(unclear.begin(), unclear.end()), unclear.end());
     std::vector<std::vector<Hypothesis>> found(matches.size() + unclear.size());
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
-        const bool isClear = i < matches.size();
-        const std::size_t place = isClear ? matches[i].place : unclear[i - matches.size()];
+        const bool isMatch = i < matches.size();
+        const std::size_t place = isMatch ? matches[i].place : unclear[i - matches.size()];
         const auto& there = descriptors_[place];
         for (const auto& shift :
-             isClear ? refined(there, seen, matches[i].shift) : atAllHeadings(there, seen))
+             isMatch ? refined(there, seen, matches[i].shift) : atAllHeadings(there, seen))
             found[i].push_back({place, shift});
     });
     std::vector<Hypothesis> all;
