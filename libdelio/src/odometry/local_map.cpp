@@ -298,6 +298,7 @@ PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate
     if (!isNear(found, from.pose) && !isAsPredicted)
         found = byPoints(from, turnCovariance(view.coarse, from));
     found.rotation.unobservedAxes.resize(3, 0);  // points see every rotation
+    found.isByPlanes = found.translation.unobservedAxes.cols() == 0;
     settleUnobserved(view, predicted, motion, found);
     return found;
 }

@@ -45,6 +45,7 @@ PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
       arrivals_(needsTimes(options.scan)),
       map_(LocalMapTuning(), options.map, options.registration, options.pointMap, options.points),
       dynamics_(options.dynamics),
+      speeds_(SpacingTuning().first_speed, 1.25 * options.points.last_kernel),
       prediction_(options.prediction) {}
 
 Step PlaneOdometry::process(const Scan& scan) {
@@ -148,6 +149,7 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
         removeDynamicObjects(voxels, std::move(*sight), placed.pose, view);
     }
     const auto estimate = registerByPlanes(cloud, placed, predicted, since_s, view, step);
+    planesDecide_ = estimate.isByPlanes;
 
     pose_ = estimate.valid ? estimate.pose() : wheels_.carried(pose_, predicted);
     {
@@ -157,7 +159,8 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
         else
             miss(cloud);
         if (left_ && estimate.valid) rejoin(view);
-        if (hasDrifted(estimate, placed.inlierRatio)) beginAnew(cloud);
+        if (!settleSpeed(cloud, estimate) && hasDrifted(estimate, placed.inlierRatio))
+            beginAnew(cloud);
     }
     if (!estimate.valid)
         step.reason = cloud.points.cols() == 0 ? "no points" : "not found in the map";

@@ -14,6 +14,7 @@
 #include "odometry/register_together.h"
 #include "odometry/register_trajectory.h"
 #include "odometry/reported_path.h"
+#include "odometry/search_speed.h"
 #include "odometry/tracking_state.h"
 #include "odometry/wheels.h"
 
@@ -118,11 +119,14 @@ class PlaneOdometry : public Odometry {
     }
 
     // The first scans of a map, once more (pipeline_retrace.cpp).
-    struct Latest;
     void retraceStart(const PointCloud& cloud, const Step& step);
     void retrace(std::size_t count, std::size_t least);
     void turnBack(const PlaneOdometry& ahead, std::size_t first);
-    std::optional<ScanTrajectory> stepBack(const Latest& scan);
+    std::optional<ScanTrajectory> stepBack(const MovingScan& scan);
+
+    // The speed where single scans do not show it (pipeline_speed.cpp).
+    bool settleSpeed(const PointCloud& cloud, const PlaneEstimate& estimate);
+    void restartAt(const std::vector<MovingScan>& scans);
 
     // The stages of track(), in their order.
     void removeDynamicObjects(const VoxelNumbers& voxels, DynamicObjects::Sight sight,
@@ -181,8 +185,7 @@ class PlaneOdometry : public Odometry {
     bool isPlacedByStanding(bool isGuess) const {
         if (!prediction_.hasMotion()) return true;
         if (isLost(state_)) return !isShaken();
-        const bool isSteady = kernel_m() < options().points.first_kernel;
-        return isGuess && isSteady;
+        return (isGuess || !errors().kernel.isKnown() || !planesDecide_) && !isShaken();
     }
     /** Predictions are off by more than any kernel. */
     bool isShaken() const {
@@ -199,6 +202,7 @@ class PlaneOdometry : public Odometry {
     }
 
     PlaceScale place_;
+    bool planesDecide_ = false;  //!< they constrained the latest scan along every axis
     Eigen::Matrix3f upright_ = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
 
     TrackingState state_;
@@ -214,18 +218,11 @@ class PlaneOdometry : public Odometry {
     ReportedPath path_;
     bool isUrgent_ = false;      //!< scans were dropped before this one for lack of time
     double unregistered_s_ = 0;  //!< since the latest scan that was registered
-    /** The latest scan as it came, where its points have times, and its trajectory (sensor to map,
-     *  times from the scan's). */
-    struct Latest {
-        PointCloud cloud;
-        double time_s = 0;
-        ScanTrajectory trajectory{Twist{}};
-    };
-    std::optional<Latest> latest_;
+    std::optional<MovingScan> latest_;  //!< where its points have times
     ScanTrajectory trajectoryOfLatest() const { return placed(pose_, motion_); }
     /** One of the first scans of the map, and its points in the map, where it was tracked. */
     struct BeginningScan {
-        Latest scan;
+        MovingScan scan;
         std::optional<PlacedPoints> points;
         std::size_t track = 0;  //!< Step::track
     };
@@ -234,6 +231,7 @@ class PlaneOdometry : public Odometry {
     std::vector<BeginningScan> beginning_;
     /** The latest scans, where the motion changes faster than it can be predicted. */
     ScanWindow window_;
+    SpeedSearch speeds_;  //!< while single scans do not show the speed
     /** The window holds all scans of the map: each scan more corrects the earlier ones. */
     struct Start {
         double stamp_s = 0;  //!< of the first scan, since the start of the drive

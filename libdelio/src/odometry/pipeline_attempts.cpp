@@ -86,8 +86,13 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAsPredicted(const PointCloud& cloud
     const Extrapolation extrapolation = predictMotion(duration_s);
     const Eigen::Isometry3d extrapolated = pose_ * extrapolation.at(duration_s);
     const auto attempt = [&](bool isGuess) {
-        return attemptBy(cloud, expectation(extrapolated, isGuess, since_s, timeIsKnown),
-                         extrapolation.motion(), step);
+        Expectation expected = expectation(extrapolated, isGuess, since_s, timeIsKnown);
+        Attempt best = attemptBy(cloud, expected, extrapolation.motion(), step);
+        if (!expected.isPlacedByStanding || best.placement.isLikely) return best;
+        // A sensor that tilts further than expected takes the ground for what stands on it.
+        expected.isPlacedByStanding = false;
+        Attempt byAll = attemptBy(cloud, expected, extrapolation.motion(), step);
+        return byAll.isBetterThan(best) ? byAll : best;
     };
     const bool isTogether = timeIsKnown && !cloud.times_s.empty() && !isUrgent_;
     if (!isTogether) endWindow();

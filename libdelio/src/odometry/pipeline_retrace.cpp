@@ -118,10 +118,10 @@ void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
             prediction_.observe(scans[i + 1].points->pose.inverse() * pose,
                                 scans[i + 1].scan.time_s - scans[i].scan.time_s);
     }
-    const Latest& next = scans[first].scan;
+    const MovingScan& next = scans[first].scan;
     pose_ = scans[first].points->pose;
     time_s_ = -next.time_s;
-    Latest latest{reversed(next.cloud), time_s_, reversed(next.trajectory)};
+    MovingScan latest{reversed(next.cloud), time_s_, reversed(next.trajectory)};
     motion_ = latest.trajectory.seenFrom(0);
     reference_ = {undistorted(latest.cloud, motion_).points, pose_, time_s_};
     if (hasTimes(latest.cloud)) latest_ = std::move(latest);
@@ -131,7 +131,7 @@ void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
 /** Registers the scan before the latest one, from where the motion leads and from where it was
  * found before. The sensor's trajectory during it (sensor to map, times from the scan's); nothing
  * where the scan is not found, or fitted clearly better before. */
-std::optional<ScanTrajectory> PlaneOdometry::stepBack(const Latest& scan) {
+std::optional<ScanTrajectory> PlaneOdometry::stepBack(const MovingScan& scan) {
     PointCloud cloud = reversed(scan.cloud);
     const double duration_s = -scan.time_s - time_s_;
     time_s_ = -scan.time_s;

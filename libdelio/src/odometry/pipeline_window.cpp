@@ -93,6 +93,6 @@ void PlaneOdometry::keep(PointCloud cloud, const Step& step) {
     if (options().dynamics.enabled && std::holds_alternative<Tracking>(state_))
         own_.add(cloud.points, upright_, pose_);
     if (cloud.times_s.empty() || step.predicted || step.interrupted || !window_.isEmpty()) return;
-    latest_ = Latest{std::move(cloud), time_s_, trajectoryOfLatest()};
+    latest_ = MovingScan{std::move(cloud), time_s_, trajectoryOfLatest()};
 }
 }  // namespace delio::odometry

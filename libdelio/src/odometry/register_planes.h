@@ -40,6 +40,8 @@ struct PlaneEstimate {
     double inlierRatio = 0;
     /** Along which the planes constrain the translation least: a unit vector of the map's axes. */
     Eigen::Vector3d weakestAxis = Eigen::Vector3d::UnitX();
+    /** The planes alone constrain the translation along every axis. */
+    bool isByPlanes = false;
     bool valid = false;  //!< false: too few correspondences; it is the prediction
 
     /** Sensor to map. */

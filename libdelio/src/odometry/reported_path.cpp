@@ -36,6 +36,24 @@ void ReportedPath::correctSince(double lost_s, double left_s, const Eigen::Isome
         scan->at.pose = last.at.pose * twist.after(scan->stamp_s - last.stamp_s);
 }
 
+void ReportedPath::correct(const std::vector<MovingScan>& scans) {
+    const auto first = std::find_if(scans_.begin(), scans_.end(), [&](const Scan& scan) {
+        return scan.time_s >= scans.front().time_s;
+    });
+    if (first == scans_.end()) return;
+    const Anchor held = first->at;
+    for (const MovingScan& moved : scans)
+        for (auto scan = first; scan != scans_.end(); ++scan)
+            if (scan->time_s == moved.time_s) {
+                scan->at.pose = moved.trajectory.at(scan->stamp_s - moved.time_s);
+                scan->isCorrected = true;
+            }
+    // The first of them stays where it was said to be.
+    const Eigen::Isometry3d moved = first->at.pose * held.pose.inverse();
+    for (auto scan = scans_.begin(); scan != first; ++scan) scan->at.pose = moved * scan->at.pose;
+    moveTo({first->at.pose, held.reported});
+}
+
 void ReportedPath::report(Step& step) {
     constexpr std::size_t kMostScans = 40;
     reported_ = normalised(reported_ * step.increment.pose);

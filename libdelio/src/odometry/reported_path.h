@@ -2,8 +2,9 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <deque>
+#include <vector>
 
-#include "core/scan_trajectory.h"
+#include "odometry/search_speed.h"
 #include "delio/odometry/step.h"
 
 namespace delio::odometry {
@@ -59,6 +60,9 @@ class ReportedPath {
      *  those since `left_s` move by `toLeft` with the map that began there, and the motion between
      *  both was even. */
     void correctSince(double lost_s, double left_s, const Eigen::Isometry3d& toLeft);
+
+    /** Corrects the scans among `scans`, whose trajectories changed; those before move along. */
+    void correct(const std::vector<MovingScan>& scans);
 
     /** Ends the step of the latest scan: adds the corrected poses to it. */
     void report(Step& step);

@@ -1,0 +1,60 @@
+#include <utility>
+
+#include "odometry/pipeline.h"
+#include "odometry/preprocess.h"
+#include "odometry/reporting.h"
+
+namespace delio::odometry {
+/** Where the scene hardly constrains the translation along a horizontal axis, a wrong speed (a
+ *  standstill, above all) confirms itself scan by scan. True where several scans together show
+ *  another one: tracking goes on at that speed. */
+bool PlaneOdometry::settleSpeed(const PointCloud& cloud, const PlaneEstimate& estimate) {
+    constexpr double kVertical = 0.7;  // of the unit axis
+    const Eigen::Vector3d& axis = estimate.weakestAxis;
+    // At a start a vehicle that drives along may be all that shows a speed.
+    constexpr double kThin = 0.01;  // of the planes' weight
+    const bool isDoubtful = !beginning_.empty() && estimate.translation.observability[0] < kThin;
+    const bool isHidden = (isDoubtful || std::holds_alternative<Degenerate>(state_)) &&
+                          place_.scale() >= 1 && !isShaken() && !isUrgent_ &&
+                          !wheels_.haveCarried() &&
+                          std::abs(axis.dot(upAt(pose_))) < kVertical;
+    if (!isHidden) {
+        speeds_.clear();
+        return false;
+    }
+    const double speed_mps = axis.dot(pose_.linear() * prediction_.predict(1).translation());
+    const auto scans =
+        speeds_.add({cloud, time_s_, trajectoryOfLatest()}, {axis, speed_mps, upright_});
+    if (scans) restartAt(*scans);
+    return scans.has_value();
+}
+
+/** A new map of the latest scans, which were placed together. */
+void PlaneOdometry::restartAt(const std::vector<MovingScan>& scans) {
+    endWindow();
+    beginning_.clear();
+    left_.reset();
+    dynamics_.clear();
+    extrapolation_.reset();
+    errors_ = {};
+    inlierRatios_.usual = 0;
+    prediction_.forget();
+    map_.clear(upAt(pose_));
+    waiting_.reset();
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+        const MovingScan& scan = scans[i];
+        insertWaiting();
+        pose_ = scan.trajectory.at(0);
+        motion_ = scan.trajectory.seenFrom(0);
+        ScanView view = undistorted(scan.cloud, motion_);
+        odometry::thin(view, options().spacing.map_spacing, options().spacing.scan_spacing);
+        if (i > 0)
+            prediction_.observe(scans[i - 1].trajectory.at(0).inverse() * pose_,
+                                scan.time_s - scans[i - 1].time_s);
+        reference_ = {view.points, pose_, scan.time_s};
+        waiting_ = PlacedPoints{std::move(view.fine), pose_};
+    }
+    state_ = Tracking{};
+    path_.correct(scans);
+}
+}  // namespace delio::odometry

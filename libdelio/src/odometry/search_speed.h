@@ -1,0 +1,70 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include "core/scan_trajectory.h"
+#include "odometry/preprocess.h"
+
+namespace delio::odometry {
+/** A scan as it came, and the sensor's trajectory during it. */
+struct MovingScan {
+    PointCloud cloud;
+    double time_s = 0;                   //!< of the scan, since the start
+    ScanTrajectory trajectory{Twist{}};  //!< sensor to map, times from the scan's
+};
+
+/** Points of a scan in each of some sectors about the sensor. */
+struct Overlap {
+    static constexpr int kSectors = 12;
+    using Sectors = Eigen::Array<double, kSectors, 1>;
+
+    Sectors count = Sectors::Zero();    //!< all
+    Sectors matched = Sectors::Zero();  //!< those that lie on other scans
+
+    double share() const { return matched.sum() / std::max(count.sum(), 1.); }
+};
+
+/** The speed along an axis that single scans do not show. Two scans are no guide: a sensor's own
+ *  rings lie on each other best where it stands. So a few scans are placed together at every
+ *  speed. Relief, trunks and posts lie on each other at the right one alone: of the speeds at which
+ *  more points do than at those about it, one stands out. */
+class SpeedSearch {
+ public:
+    /** `most_mps`: the highest speed. Points lie on each other within `reach_m`. */
+    SpeedSearch(double most_mps, double reach_m) : most_mps_(most_mps), reach_m_(reach_m) {}
+
+    /** What is known before the scans are placed together. */
+    struct Guess {
+        Eigen::Vector3d axis;     //!< unit vector of the map's frame
+        double speed_mps = 0;     //!< along the axis
+        Eigen::Matrix3f upright;  //!< turns the sensor's z up
+    };
+
+    /** Takes a scan, which follows the latest one. After each few: the scans at the speed that fits
+     *  clearly better than others, the last one where it was. Nothing where they show no speed. */
+    std::optional<std::vector<MovingScan>> add(MovingScan scan, const Guess& guess);
+
+    void clear();
+
+ private:
+    static constexpr std::size_t kTogether = 4;
+    static constexpr unsigned kOften = 3;  //!< a speed that fits best so often is the right one
+
+    std::vector<Overlap> overlapsAlong(const Eigen::Vector3d& forward,
+                                       const Eigen::Matrix3f& upright) const;
+    std::optional<double> speedAlong(const Eigen::Vector3d& forward, double present_mps,
+                                     const Eigen::Matrix3f& upright);
+
+    double most_mps_, reach_m_;
+    std::vector<MovingScan> scans_;  //!< since the same speed fits best
+    Eigen::Vector3d axes_ = Eigen::Vector3d::Zero();  //!< sum of the axes, sensor's frame
+    std::vector<Overlap> overlaps_;                   //!< at each speed, of all scans so far
+    /** The speed that fits best. */
+    struct Likely {
+        double speed_mps = 0;
+        unsigned times = 0;  //!< in a row
+    };
+    Likely likely_;
+};
+}  // namespace delio::odometry
