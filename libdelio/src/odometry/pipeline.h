@@ -180,12 +180,13 @@ class PlaneOdometry : public Odometry {
         return isLost(state_) || std::holds_alternative<Degenerate>(state_) ||
                !prediction_.hasMotion();
     }
-    /** Until the motion is known, and after a loss, the points that stand above the ground place a
-     *  scan. A hand tilts the sensor too much to separate them from the ground. */
+    /** Until the motion is known, after a loss, and where planes do not constrain every axis, the
+     *  points that stand above the ground place a scan. A hand tilts the sensor too much to
+     * separate them from the ground. */
     bool isPlacedByStanding(bool isGuess) const {
         if (!prediction_.hasMotion()) return true;
         if (isLost(state_)) return !isShaken();
-        return (isGuess || !errors().kernel.isKnown() || !planesDecide_) && !isShaken();
+        return (isGuess || !planesDecide_) && !isShaken();
     }
     /** Predictions are off by more than any kernel. */
     bool isShaken() const {
@@ -216,8 +217,8 @@ class PlaneOdometry : public Odometry {
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();  //!< of the latest scan: sensor to map
     ScanTrajectory motion_{Twist{}};  //!< during the latest scan, seen from pose_
     ReportedPath path_;
-    bool isUrgent_ = false;      //!< scans were dropped before this one for lack of time
-    double unregistered_s_ = 0;  //!< since the latest scan that was registered
+    bool isUrgent_ = false;             //!< scans were dropped before this one for lack of time
+    double unregistered_s_ = 0;         //!< since the latest scan that was registered
     std::optional<MovingScan> latest_;  //!< where its points have times
     ScanTrajectory trajectoryOfLatest() const { return placed(pose_, motion_); }
     /** One of the first scans of the map, and its points in the map, where it was tracked. */

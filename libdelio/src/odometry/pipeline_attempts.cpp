@@ -88,7 +88,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptAsPredicted(const PointCloud& cloud
     const auto attempt = [&](bool isGuess) {
         Expectation expected = expectation(extrapolated, isGuess, since_s, timeIsKnown);
         Attempt best = attemptBy(cloud, expected, extrapolation.motion(), step);
-        if (!expected.isPlacedByStanding || best.placement.isLikely) return best;
+        if (isGuess || !expected.isPlacedByStanding || best.placement.isLikely) return best;
         // A sensor that tilts further than expected takes the ground for what stands on it.
         expected.isPlacedByStanding = false;
         Attempt byAll = attemptBy(cloud, expected, extrapolation.motion(), step);

@@ -16,8 +16,7 @@ bool PlaneOdometry::settleSpeed(const PointCloud& cloud, const PlaneEstimate& es
     const bool isDoubtful = !beginning_.empty() && estimate.translation.observability[0] < kThin;
     const bool isHidden = (isDoubtful || std::holds_alternative<Degenerate>(state_)) &&
                           place_.scale() >= 1 && !isShaken() && !isUrgent_ &&
-                          !wheels_.haveCarried() &&
-                          std::abs(axis.dot(upAt(pose_))) < kVertical;
+                          !wheels_.haveCarried() && std::abs(axis.dot(upAt(pose_))) < kVertical;
     if (!isHidden) {
         speeds_.clear();
         return false;

@@ -37,11 +37,20 @@ void ReportedPath::correctSince(double lost_s, double left_s, const Eigen::Isome
 }
 
 void ReportedPath::correct(const std::vector<MovingScan>& scans) {
-    const auto first = std::find_if(scans_.begin(), scans_.end(), [&](const Scan& scan) {
-        return scan.time_s >= scans.front().time_s;
-    });
+    constexpr double kSoon_s = 0.5;
+    const MovingScan& earliest = scans.front();
+    auto first = std::find_if(scans_.begin(), scans_.end(),
+                              [&](const Scan& scan) { return scan.time_s >= earliest.time_s; });
     if (first == scans_.end()) return;
+    // The motion since the scan before was not known, either.
+    const bool isBefore =
+        first != scans_.begin() && std::prev(first)->time_s > earliest.time_s - kSoon_s;
+    if (isBefore) --first;
     const Anchor held = first->at;
+    if (isBefore) {
+        first->at.pose = earliest.trajectory.at(first->stamp_s - earliest.time_s);
+        first->isCorrected = true;
+    }
     for (const MovingScan& moved : scans)
         for (auto scan = first; scan != scans_.end(); ++scan)
             if (scan->time_s == moved.time_s) {

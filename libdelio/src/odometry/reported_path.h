@@ -4,8 +4,8 @@
 #include <deque>
 #include <vector>
 
-#include "odometry/search_speed.h"
 #include "delio/odometry/step.h"
+#include "odometry/search_speed.h"
 
 namespace delio::odometry {
 /** A scan at its stamp. */

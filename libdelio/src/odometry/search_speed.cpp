@@ -160,10 +160,10 @@ Peaks highestOf(const std::vector<Overlap>& overlaps, const IsPossible& isPossib
     return highest;
 }
 
-constexpr double kStep_mps = 1;       // between two speeds that are compared
-constexpr double kLikely = 0.015;     // prominence of a peak that may be the right one
-constexpr double kClear = 0.04;       // and of one that few scans show
-constexpr double kFewSectors = 3.5;   // a vehicle that drives along is in one or two
+constexpr double kStep_mps = 1;      // between two speeds that are compared
+constexpr double kLikely = 0.015;    // prominence of a peak that may be the right one
+constexpr double kClear = 0.04;      // and of one that few scans show
+constexpr double kFewSectors = 3.5;  // a vehicle that drives along is in one or two
 }  // namespace
 
 void SpeedSearch::clear() {

@@ -57,7 +57,7 @@ class SpeedSearch {
                                      const Eigen::Matrix3f& upright);
 
     double most_mps_, reach_m_;
-    std::vector<MovingScan> scans_;  //!< since the same speed fits best
+    std::vector<MovingScan> scans_;                   //!< since the same speed fits best
     Eigen::Vector3d axes_ = Eigen::Vector3d::Zero();  //!< sum of the axes, sensor's frame
     std::vector<Overlap> overlaps_;                   //!< at each speed, of all scans so far
     /** The speed that fits best. */

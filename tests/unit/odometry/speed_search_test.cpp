@@ -20,7 +20,8 @@ test::Scene avenue(std::uint32_t seed) {
     test::Scene scene{{{-300, -300, -3}, {300, 300, -1.8}}};
     for (const double side : {-1, 1})
         for (double x = -100; x < 200; x += 9 + 4 * noise.uniform()) {
-            const double y = side * (7.5 + 1.5 * noise.uniform()), half = 0.2 + 0.1 * noise.uniform();
+            const double y = side * (7.5 + 1.5 * noise.uniform()),
+                         half = 0.2 + 0.1 * noise.uniform();
             scene.push_back({{x - half, y - half, -1.8}, {x + half, y + half, 6}});
         }
     return scene;

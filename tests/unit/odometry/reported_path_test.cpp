@@ -1,0 +1,41 @@
+#include "odometry/reported_path.h"
+
+#include <gtest/gtest.h>
+
+using namespace delio;
+using namespace delio::odometry;
+
+namespace {
+Eigen::Isometry3d at(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); }
+
+/** Reports the next scan of a sensor at `pose`. */
+Step advance(ReportedPath& path, const Eigen::Isometry3d& pose, double time_s) {
+    Step step;
+    step.increment.pose = path.advance({pose, 0, time_s}, path.latest().pose);
+    path.report(step);
+    return step;
+}
+}  // namespace
+
+TEST(ReportedPath, ScansThatMovedAreCorrectedAndTheOneBeforeThem) {
+    ReportedPath path;
+    for (const double time_s : {0.0, 0.1, 0.2, 0.3}) advance(path, at(0), time_s);
+    // The latest three of five scans move on by 1 m each.
+    std::vector<MovingScan> moved;
+    for (const double time_s : {0.2, 0.3, 0.4}) {
+        MovingScan scan;
+        scan.time_s = time_s;
+        const Twist motion{{10, 0, 0}, Eigen::Vector3d::Zero()};
+        scan.trajectory = placed(at(10 * (time_s - 0.4)), ScanTrajectory(motion));
+        moved.push_back(scan);
+    }
+    path.correct(moved);
+    const Step step = advance(path, at(0), 0.4);
+    EXPECT_NEAR(step.increment.pose.translation().x(), 1, 1e-9);
+    ASSERT_EQ(step.corrected.size(), 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto& corrected = step.corrected[i];
+        EXPECT_EQ(corrected.scansAgo, 3 - i);
+        EXPECT_NEAR(corrected.pose.translation().x(), -static_cast<double>(3 - i), 1e-9);
+    }
+}
