@@ -11,7 +11,8 @@ Eigen::Isometry3d at(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x
 /** Reports the next scan of a sensor at `pose`. */
 Step advance(ReportedPath& path, const Eigen::Isometry3d& pose, double time_s) {
     Step step;
-    step.increment.pose = path.advance({pose, 0, time_s}, path.latest().pose);
+    const Eigen::Isometry3d before = path.latest().pose;
+    step.increment.pose = path.advance({pose, 0, time_s}, before);
     path.report(step);
     return step;
 }
@@ -31,7 +32,8 @@ TEST(ReportedPath, ScansThatMovedAreCorrectedAndTheOneBeforeThem) {
     }
     path.correct(moved);
     const Step step = advance(path, at(0), 0.4);
-    EXPECT_NEAR(step.increment.pose.translation().x(), 1, 1e-9);
+    // The scan before was reported where the sensor seemed to stand.
+    EXPECT_NEAR(step.increment.pose.translation().x(), 3, 1e-9);
     ASSERT_EQ(step.corrected.size(), 3);
     for (std::size_t i = 0; i < 3; ++i) {
         const auto& corrected = step.corrected[i];
