@@ -14,7 +14,8 @@ bool PlaneOdometry::settleSpeed(const PointCloud& cloud, const PlaneEstimate& es
     // At a start a vehicle that drives along may be all that shows a speed.
     constexpr double kThin = 0.01;  // of the planes' weight
     const bool isDoubtful = !beginning_.empty() && estimate.translation.observability[0] < kThin;
-    const bool isHidden = (isDoubtful || std::holds_alternative<Degenerate>(state_)) &&
+    const bool isHidden = estimate.valid &&
+                          (isDoubtful || std::holds_alternative<Degenerate>(state_)) &&
                           place_.scale() >= 1 && !isShaken() && !isUrgent_ &&
                           !wheels_.haveCarried() && std::abs(axis.dot(upAt(pose_))) < kVertical;
     if (!isHidden) {
