@@ -45,7 +45,7 @@ PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
       arrivals_(needsTimes(options.scan)),
       map_(LocalMapTuning(), options.map, options.registration, options.pointMap, options.points),
       dynamics_(options.dynamics),
-      speeds_(SpacingTuning().first_speed, 1.25 * options.points.last_kernel),
+      speeds_(std::in_place, SpacingTuning().first_speed, 1.25 * options.points.last_kernel),
       prediction_(options.prediction) {}
 
 Step PlaneOdometry::process(const Scan& scan) {

@@ -232,7 +232,8 @@ class PlaneOdometry : public Odometry {
     std::vector<BeginningScan> beginning_;
     /** The latest scans, where the motion changes faster than it can be predicted. */
     ScanWindow window_;
-    SpeedSearch speeds_;  //!< while single scans do not show the speed
+    /** While single scans do not show the speed. None while scans are retraced. */
+    std::optional<SpeedSearch> speeds_;
     /** The window holds all scans of the map: each scan more corrects the earlier ones. */
     struct Start {
         double stamp_s = 0;  //!< of the first scan, since the start of the drive

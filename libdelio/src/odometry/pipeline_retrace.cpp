@@ -105,6 +105,7 @@ void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
 void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
     upright_ = ahead.upright_;
     takeScale(ahead.place_.scale());
+    speeds_.reset();
     errors_.kernel = ahead.errors_.kernel;
     constexpr std::size_t kSettled = 5;  // scans since the motion is known well
     errors_.unevenness = ahead.errors_.unevenness.ofLatest(kSettled);

@@ -9,6 +9,7 @@ namespace delio::odometry {
  *  standstill, above all) confirms itself scan by scan. True where several scans together show
  *  another one: tracking goes on at that speed. */
 bool PlaneOdometry::settleSpeed(const PointCloud& cloud, const PlaneEstimate& estimate) {
+    if (!speeds_) return false;
     constexpr double kVertical = 0.7;  // of the unit axis
     const Eigen::Vector3d& axis = estimate.weakestAxis;
     // At a start a vehicle that drives along may be all that shows a speed.
@@ -19,12 +20,12 @@ bool PlaneOdometry::settleSpeed(const PointCloud& cloud, const PlaneEstimate& es
                           place_.scale() >= 1 && !isShaken() && !isUrgent_ &&
                           !wheels_.haveCarried() && std::abs(axis.dot(upAt(pose_))) < kVertical;
     if (!isHidden) {
-        speeds_.clear();
+        speeds_->clear();
         return false;
     }
     const double speed_mps = axis.dot(pose_.linear() * prediction_.predict(1).translation());
     const auto scans =
-        speeds_.add({cloud, time_s_, trajectoryOfLatest()}, {axis, speed_mps, upright_});
+        speeds_->add({cloud, time_s_, trajectoryOfLatest()}, {axis, speed_mps, upright_});
     if (scans) restartAt(*scans);
     return scans.has_value();
 }
