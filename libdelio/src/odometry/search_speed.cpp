@@ -148,6 +148,7 @@ struct Peaks {
 template <typename IsPossible>
 Peaks highestOf(const std::vector<Overlap>& overlaps, const IsPossible& isPossible) {
     std::vector<double> shares;
+    shares.reserve(overlaps.size());
     for (const Overlap& overlap : overlaps) shares.push_back(overlap.share());
     Peaks highest;
     for (const Peak& peak : peaksOf(shares)) {
