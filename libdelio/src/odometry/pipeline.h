@@ -9,6 +9,7 @@
 #include "odometry/inertial.h"
 #include "odometry/initial_guess.h"
 #include "odometry/motion_model.h"
+#include "odometry/moving_scan.h"
 #include "odometry/own_vehicle.h"
 #include "odometry/place_scale.h"
 #include "odometry/register_together.h"
@@ -181,8 +182,8 @@ class PlaneOdometry : public Odometry {
                !prediction_.hasMotion();
     }
     /** Until the motion is known, after a loss, and where planes do not constrain every axis, the
-     *  points that stand above the ground place a scan. A hand tilts the sensor too much to
-     * separate them from the ground. */
+     *  points that stand above the ground place a scan. A hand that swings tilts the sensor too
+     *  much to tell them from the ground. */
     bool isPlacedByStanding(bool isGuess) const {
         if (!prediction_.hasMotion()) return true;
         if (isLost(state_)) return !isShaken();

@@ -1,8 +1,6 @@
 #include <utility>
 
 #include "odometry/pipeline.h"
-#include "odometry/preprocess.h"
-#include "odometry/reporting.h"
 
 namespace delio::odometry {
 /** Where the scene hardly constrains the translation along a horizontal axis, a wrong speed (a

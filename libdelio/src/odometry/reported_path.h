@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "delio/odometry/step.h"
-#include "odometry/search_speed.h"
+#include "odometry/moving_scan.h"
 
 namespace delio::odometry {
 /** A scan at its stamp. */

@@ -9,7 +9,6 @@
 #include "odometry/above_ground.h"
 #include "odometry/deskew.h"
 #include "odometry/point_map.h"
-#include "odometry/register_points.h"
 #include "odometry/tuning.h"
 
 namespace delio::odometry {

@@ -1,19 +1,12 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <optional>
 #include <vector>
 
-#include "core/scan_trajectory.h"
-#include "odometry/preprocess.h"
+#include "odometry/moving_scan.h"
 
 namespace delio::odometry {
-/** A scan as it came, and the sensor's trajectory during it. */
-struct MovingScan {
-    PointCloud cloud;
-    double time_s = 0;                   //!< of the scan, since the start
-    ScanTrajectory trajectory{Twist{}};  //!< sensor to map, times from the scan's
-};
-
 /** Points of a scan in each of some sectors about the sensor. */
 struct Overlap {
     static constexpr int kSectors = 12;
