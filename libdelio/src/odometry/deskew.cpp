@@ -4,9 +4,9 @@
 #include <tbb/parallel_for.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/scan_trajectory.h"
-#include "core/voxel_grid.h"
 #include "odometry/above_ground.h"
 #include "odometry/tuning.h"
 
@@ -65,8 +65,48 @@ void thinForPoints(ScanView& view, const Eigen::Matrix3f& upright, double spacin
     view.coarse = standing.cast<double>();
 }
 
-void thin(ScanView& view, double map_spacing, double scan_spacing) {
-    view.fine = voxelCentroids(unmarked(view.points, view.dynamic), map_spacing);
-    view.thinned = voxelCentroids(view.fine, scan_spacing).cast<double>();
+void thinForMap(ScanView& view, double spacing) {
+    view.voxels = numberVoxels(view.points, spacing);
+    view.fine = centroidsOf(view.points, view.voxels);
+}
+
+void thinForPlanes(ScanView& view, double spacing) {
+    view.fineVoxels = numberVoxels(view.fine, spacing);
+    view.thinned = centroidsOf(view.fine, view.fineVoxels).cast<double>();
+}
+
+namespace {
+/** 1 for each voxel whose points are dynamic. */
+std::vector<std::uint8_t> dynamicVoxels(const ScanView& view) {
+    std::vector<std::uint8_t> dynamic(static_cast<std::size_t>(view.voxels.voxels));
+    for (std::size_t i = 0; i < view.dynamic.size(); ++i)
+        dynamic[view.voxels.ofPoint[i]] = view.dynamic[i];
+    return dynamic;
+}
+}  // namespace
+
+VoxelNumbers planeVoxels(const ScanView& view) {
+    constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+    const auto dynamic = dynamicVoxels(view);
+    std::vector<std::uint32_t> ofVoxel(dynamic.size(), kNone);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < ofVoxel.size(); ++i)
+        if (!dynamic[i]) ofVoxel[i] = view.fineVoxels.ofPoint[kept++];
+    VoxelNumbers numbers{std::vector<std::uint32_t>(view.voxels.ofPoint.size()),
+                         view.fineVoxels.voxels};
+    for (std::size_t i = 0; i < numbers.ofPoint.size(); ++i)
+        numbers.ofPoint[i] = ofVoxel[view.voxels.ofPoint[i]];
+    return numbers;
+}
+
+ScanView undistortedAgain(const PointCloud& cloud, const ScanTrajectory& trajectory,
+                          const ScanView& view) {
+    ScanView again = undistorted(cloud, trajectory);
+    again.dynamic = view.dynamic;
+    again.voxels = view.voxels;
+    again.fineVoxels = view.fineVoxels;
+    again.fine = unmarked(centroidsOf(again.points, again.voxels), dynamicVoxels(view));
+    again.thinned = centroidsOf(again.fine, again.fineVoxels).cast<double>();
+    return again;
 }
 }  // namespace delio::odometry

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/scan_trajectory.h"
+#include "core/voxel_grid.h"
 #include "odometry/preprocess.h"
 
 namespace delio::odometry {
@@ -23,7 +24,9 @@ Eigen::Matrix3Xf deskew(const Eigen::Matrix3Xf& points, const std::vector<float>
 struct ScanView {
     Eigen::Matrix3Xf points;            //!< all
     std::vector<std::uint8_t> dynamic;  //!< 1 for each of them that belongs to a dynamic object
-    Eigen::Matrix3Xf fine;              //!< thinned for the map
+    VoxelNumbers voxels;                //!< of all points
+    Eigen::Matrix3Xf fine;              //!< thinned for the map: centroids of the static voxels
+    VoxelNumbers fineVoxels;            //!< of `fine`
     Eigen::Matrix3Xd thinned;           //!< thinned for registration by planes
     Eigen::Matrix3Xd coarse;            //!< thinned for registration by points
     Eigen::Matrix3Xd level;  //!< all, thinned: where `coarse` has no ground, they level the scan
@@ -42,7 +45,18 @@ Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std:
  * sensor's z up. */
 void thinForPoints(ScanView& view, const Eigen::Matrix3f& upright, double spacing, bool byStanding);
 
-/** Thins the static points: centroids of voxels of `map_spacing` for the map, and of these in turn
- *  by `scan_spacing` for registration. */
-void thin(ScanView& view, double map_spacing, double scan_spacing);
+/** Thins the points for the map: view.fine are the centroids of voxels of `spacing` metres. */
+void thinForMap(ScanView& view, double spacing);
+
+/** Thins view.fine for registration by planes: centroids of voxels of `spacing` metres. */
+void thinForPlanes(ScanView& view, double spacing);
+
+/** The voxel of thinForPlanes() that each point is in; a dynamic point is in none, which is
+ *  UINT32_MAX. */
+VoxelNumbers planeVoxels(const ScanView& view);
+
+/** The same scan, undistorted by a trajectory that hardly differs. Its points share the voxels that
+ *  they share in `view`, which is thinned for the map and for planes. Dynamic ones are left out. */
+ScanView undistortedAgain(const PointCloud& cloud, const ScanTrajectory& trajectory,
+                          const ScanView& view);
 }  // namespace delio::odometry

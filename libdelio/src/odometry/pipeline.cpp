@@ -137,7 +137,7 @@ bool PlaneOdometry::isLostAfter(const Step& step) const {
 /** The method: a scan against the map of earlier scans. */
 void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) {
     const double since_s = time_s_ - reference_.time_s;
-    auto& [predicted, extrapolated, motion, view, voxels, sight, placement] = attempt;
+    auto& [predicted, extrapolated, motion, view, sight, placement] = attempt;
     motion_ = motion;
     const PointEstimate& placed = placement.estimate;
     step.searched = placement.searched;
@@ -146,7 +146,7 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
     const bool hasSight = sight && placed.valid;
     if (hasSight) {
         const StageTimer timer(step, "dynamic");
-        removeDynamicObjects(voxels, std::move(*sight), placed.pose, view);
+        removeDynamicObjects(std::move(*sight), placed.pose, view);
     }
     const auto estimate = registerByPlanes(cloud, placed, predicted, since_s, view, step);
     planesDecide_ = estimate.isByPlanes;
@@ -169,12 +169,12 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
 }
 
 /** From the thinned scan, whose pose is known by points. */
-void PlaneOdometry::removeDynamicObjects(const VoxelNumbers& voxels, DynamicObjects::Sight sight,
+void PlaneOdometry::removeDynamicObjects(DynamicObjects::Sight sight,
                                          const Eigen::Isometry3d& pose, ScanView& view) {
     const auto dynamic = dynamics_.detect(std::move(sight), pose * inverseOf(upright_), time_s_);
     map_.erase(dynamics_.unmasked());
     for (std::size_t i = 0; i < view.dynamic.size(); ++i)
-        view.dynamic[i] = dynamic[voxels.ofPoint[i]];
+        view.dynamic[i] = dynamic[view.voxels.ofPoint[i]];
     view.fine = unmarked(view.fine, dynamic);
 }
 
@@ -183,7 +183,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
                                               ScanView& view, Step& step) {
     const StageTimer timer(step, "planes");
     if (!placed.valid) return predictedEstimate(predicted);
-    view.thinned = voxelCentroids(view.fine, options().spacing.scan_spacing).cast<double>();
+    thinForPlanes(view, options().spacing.scan_spacing);
     auto found = map_.registerPlanes(view, placed, predicted, motion());
     wheels_.carry(pose_, found);
     if (step.deskewed && !step.interrupted && window_.isEmpty()) {
@@ -344,7 +344,7 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     constexpr double kDense = 0.2;
     const bool isSkewed = window_.isEmpty() && !cloud.times_s.empty() && !usesGyro_;
     ScanView view = undistorted(cloud, isSkewed ? ScanTrajectory(Twist{}) : motion_);
-    odometry::thin(view, kDense * options().spacing.map_spacing, options().spacing.scan_spacing);
+    thinForMap(view, kDense * options().spacing.map_spacing);
     map_.clear(upAt(pose_));
     waiting_.reset();
     start_.reset();

@@ -1,7 +1,6 @@
 #pragma once
 #include <optional>
 
-#include "core/voxel_grid.h"
 #include "delio/core/odometry_options.h"
 #include "delio/odometry/odometry.h"
 #include "odometry/arrivals.h"
@@ -71,7 +70,6 @@ class PlaneOdometry : public Odometry {
         Eigen::Isometry3d extrapolated = Eigen::Isometry3d::Identity();
         ScanTrajectory motion{Twist{}};  //!< that it was de-skewed by
         ScanView view;
-        VoxelNumbers voxels;
         std::optional<DynamicObjects::Sight> sight;
         Placement placement;
 
@@ -102,7 +100,7 @@ class PlaneOdometry : public Odometry {
     Extrapolation predictMotion(double duration_s);
     Expectation expectation(const Eigen::Isometry3d& predicted, bool isGuess, double since_s,
                             bool timeIsKnown) const;
-    VoxelNumbers thin(ScanView& view, bool byStanding);
+    void thin(ScanView& view, bool byStanding);
     Placement registerByPoints(const ScanView& view, const Expectation& expected,
                                std::optional<DynamicObjects::Sight>& sight, Step& step) const;
 
@@ -130,8 +128,8 @@ class PlaneOdometry : public Odometry {
     void restartAt(const std::vector<MovingScan>& scans);
 
     // The stages of track(), in their order.
-    void removeDynamicObjects(const VoxelNumbers& voxels, DynamicObjects::Sight sight,
-                              const Eigen::Isometry3d& pose, ScanView& view);
+    void removeDynamicObjects(DynamicObjects::Sight sight, const Eigen::Isometry3d& pose,
+                              ScanView& view);
     PlaneEstimate registerByPlanes(const PointCloud& cloud, const PointEstimate& placed,
                                    const Eigen::Isometry3d& predicted, double since_s,
                                    ScanView& view, Step& step);

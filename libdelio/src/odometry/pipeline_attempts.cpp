@@ -159,7 +159,7 @@ PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
     }
     {
         const StageTimer timer(step, "thinning");
-        attempt.voxels = thin(attempt.view, expected.isPlacedByStanding);
+        thin(attempt.view, expected.isPlacedByStanding);
     }
     attempt.placement = registerByPoints(attempt.view, expected, attempt.sight, step);
     auto& estimate = attempt.placement.estimate;
@@ -238,17 +238,14 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, bool 
     return expected;
 }
 
-/** Thins the scan, while the one before it enters the map; says which points became which. */
-VoxelNumbers PlaneOdometry::thin(ScanView& view, bool byStanding) {
+/** Thins the scan, while the one before it enters the map. */
+void PlaneOdometry::thin(ScanView& view, bool byStanding) {
     const auto& spacings = options().spacing;
-    VoxelNumbers voxels;
     tbb::parallel_invoke([&] { insertWaiting(); },
                          [&] {
-                             voxels = numberVoxels(view.points, spacings.map_spacing);
-                             view.fine = centroidsOf(view.points, voxels);
+                             thinForMap(view, spacings.map_spacing);
                              thinForPoints(view, upright_, spacings.point_spacing, byStanding);
                          });
-    return voxels;
 }
 
 /** Meanwhile segments and free space of the scan are found, where these are needed (`sight`). */

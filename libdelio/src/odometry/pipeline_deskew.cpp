@@ -24,7 +24,7 @@ void PlaneOdometry::deskewFirst(const PointCloud& first, const ScanTrajectory& t
     for (auto& [scan, points, track] : beginning_)
         if (scan.time_s == reference_.time_s) scan.trajectory = placed(reference_.pose, trajectory);
     ScanView view = undistorted(first, trajectory);
-    odometry::thin(view, options().spacing.map_spacing, options().spacing.scan_spacing);
+    thinForMap(view, options().spacing.map_spacing);
     map_.clear(upAt(reference_.pose));
     map_.addScan(view.fine, reference_.pose);
     reference_.points = std::move(view.points);

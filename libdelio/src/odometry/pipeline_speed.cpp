@@ -46,7 +46,7 @@ void PlaneOdometry::restartAt(const std::vector<MovingScan>& scans) {
         pose_ = scan.trajectory.at(0);
         motion_ = scan.trajectory.seenFrom(0);
         ScanView view = undistorted(scan.cloud, motion_);
-        odometry::thin(view, options().spacing.map_spacing, options().spacing.scan_spacing);
+        thinForMap(view, options().spacing.map_spacing);
         if (i > 0)
             prediction_.observe(scans[i - 1].trajectory.at(0).inverse() * pose_,
                                 scan.time_s - scans[i - 1].time_s);

@@ -66,7 +66,7 @@ void PlaneOdometry::beginMapAgain() {
     for (std::size_t i = 0; i + 1 < scans.size(); ++i) {
         pose_ = trajectory.at(scans[i].time_s);
         ScanView view = undistorted(scans[i].cloud, trajectory.seenFrom(scans[i].time_s));
-        odometry::thin(view, options().spacing.map_spacing, options().spacing.scan_spacing);
+        thinForMap(view, options().spacing.map_spacing);
         map_.addScan(view.fine, pose_);
         reference_ = {view.points, pose_, scans[i].time_s};
     }

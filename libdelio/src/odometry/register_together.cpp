@@ -343,10 +343,8 @@ TimedScan timedScanOf(const PointCloud& cloud, double time_s) {
     const auto [least, most] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
     scan.first_s = time_s + double{*least};
     scan.last_s = time_s + double{*most};
-    ScanView all;
-    all.points = cloud.points;
-    all.dynamic.resize(cloud.times_s.size());
-    scan.points = sampled(pickedOf(cloud, all, kSpacing_m), kMostPoints);
+    scan.points =
+        sampled(firstOfVoxels(cloud, numberVoxels(cloud.points, kSpacing_m)), kMostPoints);
     for (auto& point_s : scan.points.times_s) point_s += time_s;
 
     NormalsOptions options;

@@ -153,19 +153,15 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
     }
 }
 
-TimedPoints pickedOf(const PointCloud& cloud, const ScanView& view, double spacing) {
-    const auto voxels = numberVoxels(view.points, spacing);
+TimedPoints firstOfVoxels(const PointCloud& cloud, const VoxelNumbers& voxels) {
     TimedPoints picked{Eigen::Matrix3Xd(3, voxels.voxels), {}};
     std::uint32_t met = 0;
     for (std::size_t i = 0; i < voxels.ofPoint.size(); ++i) {
         if (voxels.ofPoint[i] != met) continue;
-        ++met;
-        if (view.dynamic[i]) continue;
-        picked.points.col(static_cast<Eigen::Index>(picked.times_s.size())) =
+        picked.points.col(static_cast<Eigen::Index>(met++)) =
             cloud.points.col(static_cast<Eigen::Index>(i)).cast<double>();
         picked.times_s.push_back(double{cloud.times_s[i]});
     }
-    picked.points.conservativeResize(3, static_cast<Eigen::Index>(picked.times_s.size()));
     return picked;
 }
 
@@ -188,17 +184,15 @@ ScanTrajectory refinedTrajectory(const PlaneMap& map, const ScanTrajectory& star
                                  const Unevenness& unevenness, double kernel,
                                  const ScaledOptions& options) {
     const double most_m = options.spacing.acceleration * since_s * since_s;
-    return registerTrajectory(map, pickedOf(cloud, view, options.spacing.scan_spacing), start,
-                              since_s, unevenness.prior(most_m), kernel, options.registration);
+    return registerTrajectory(map, firstOfVoxels(cloud, planeVoxels(view)), start, since_s,
+                              unevenness.prior(most_m), kernel, options.registration);
 }
 
 std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
                                               const KnownEnds& known, const LocalMap& map,
                                               const PointCloud& cloud, const ScanView& view,
                                               const ScaledOptions& options) {
-    ScanView again = undistorted(cloud, trajectory.seenFrom(0));
-    again.dynamic = view.dynamic;
-    thin(again, options.spacing.map_spacing, options.spacing.scan_spacing);
+    ScanView again = undistortedAgain(cloud, trajectory.seenFrom(0), view);
     thinForPoints(again, known.upright, options.spacing.point_spacing, known.byStanding);
     const auto placed =
         map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));

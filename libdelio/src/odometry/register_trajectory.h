@@ -45,8 +45,8 @@ struct KnownEnds {
     Motion motion = Motion::kUnknown;  //!< before `reference`
 };
 
-/** Static points, the first one in each voxel of `spacing` metres. */
-TimedPoints pickedOf(const PointCloud& cloud, const ScanView& view, double spacing);
+/** The first point in each voxel. */
+TimedPoints firstOfVoxels(const PointCloud& cloud, const VoxelNumbers& voxels);
 
 /** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to
  *  map, times from the scan's. */
