@@ -149,7 +149,7 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
         removeDynamicObjects(std::move(*sight), placed.pose, view);
     }
     const auto estimate = registerByPlanes(cloud, placed, predicted, since_s, view, step);
-    planesDecide_ = estimate.isByPlanes;
+    planeMatches_ = estimate.isByPlanes ? estimate.translation.matches : 0;
 
     pose_ = estimate.valid ? estimate.pose() : wheels_.carried(pose_, predicted);
     {
@@ -184,12 +184,26 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     const StageTimer timer(step, "planes");
     if (!placed.valid) return predictedEstimate(predicted);
     thinForPlanes(view, options().spacing.scan_spacing);
-    auto found = map_.registerPlanes(view, placed, predicted, motion());
-    wheels_.carry(pose_, found);
-    if (step.deskewed && !step.interrupted && window_.isEmpty()) {
-        deskewAgain(cloud, since_s, placed.inlierRatio, view, found);
+    const bool isDeskewed = step.deskewed && !step.interrupted && window_.isEmpty();
+    const auto again = [&](const Eigen::Isometry3d& pose, const Eigen::Isometry3d& expected) {
+        return deskewAgain(cloud, since_s, placed.inlierRatio, pose, expected, view);
+    };
+    constexpr std::size_t kMany = 1000;
+    const bool isSteady = std::holds_alternative<Tracking>(state_) && planeMatches_ >= kMany && !isShaken();
+    std::optional<ScanOnTrajectory> deskewed;
+    if (isDeskewed && isSteady && !getenv("NOSKIP")) deskewed = again(placed.pose, predicted);
+    PlaneEstimate found;
+    if (!deskewed || !deskewed->estimate.isByPlanes) {
+        found = map_.registerPlanes(view, placed, predicted, motion());
         wheels_.carry(pose_, found);
+        if (isDeskewed) deskewed = again(found.pose(), found.pose());
     }
+    if (!deskewed) return found;
+    found = deskewed->estimate;
+    wheels_.carry(pose_, found);
+    view = std::move(deskewed->view);
+    motion_ = deskewed->trajectory.seenFrom(0);
+    extrapolation_ = Extrapolation(motion_, since_s / 8);
     return found;
 }
 

@@ -49,6 +49,7 @@ class PlaneOdometry : public Odometry {
     explicit PlaneOdometry(const PlaneOdometryOptions& options);
 
     Step process(const Scan& scan) override;
+    void settle() override { insertWaiting(); }
     void addImu(const ImuSample& sample) override { gyro_.add(sample); }
     std::optional<ImuReport> imuReport() const override { return gyro_.report(); }
     void addOdometry(const OdometrySample& sample) override { wheels_.add(sample); }
@@ -147,8 +148,10 @@ class PlaneOdometry : public Odometry {
     bool isObserved(const Step& step) const;
 
     // De-skewing by the motion that was found (pipeline_deskew.cpp).
-    void deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio, ScanView& view,
-                     PlaneEstimate& estimate);
+    std::optional<ScanOnTrajectory> deskewAgain(const PointCloud& cloud, double since_s,
+                                                double inlierRatio, const Eigen::Isometry3d& pose,
+                                                const Eigen::Isometry3d& predicted,
+                                                const ScanView& view);
     std::optional<ScanTrajectory> trajectoryByGyro(const KnownEnds& known,
                                                    const PointCloud& cloud) const;
     ScanTrajectory refined(const ScanTrajectory& start, const KnownEnds& known,
@@ -185,7 +188,7 @@ class PlaneOdometry : public Odometry {
     bool isPlacedByStanding(bool isGuess) const {
         if (!prediction_.hasMotion()) return true;
         if (isLost(state_)) return !isShaken();
-        return (isGuess || !planesDecide_) && !isShaken();
+        return (isGuess || planeMatches_ == 0) && !isShaken();
     }
     /** Predictions are off by more than any kernel. */
     bool isShaken() const {
@@ -202,7 +205,8 @@ class PlaneOdometry : public Odometry {
     }
 
     PlaceScale place_;
-    bool planesDecide_ = false;  //!< they constrained the latest scan along every axis
+    /** Of the latest scan; 0: the planes did not constrain it along every axis. */
+    std::size_t planeMatches_ = 0;
     Eigen::Matrix3f upright_ = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
 
     TrackingState state_;

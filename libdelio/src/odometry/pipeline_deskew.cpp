@@ -79,11 +79,14 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewByMotion(const KnownEnds& k
 /** De-skews the scan by the motion that was found and registers it again: by a motion of varying
  *  speed, or by one of constant speed where clearly fewer points fit then. Where that does not fit
  *  either, the scan stays de-skewed by the prediction. `inlierRatio`: that of the scan as it is. */
-void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double inlierRatio,
-                                ScanView& view, PlaneEstimate& estimate) {
+std::optional<ScanOnTrajectory> PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s,
+                                                           double inlierRatio,
+                                                           const Eigen::Isometry3d& pose,
+                                                           const Eigen::Isometry3d& predicted,
+                                                           const ScanView& view) {
     const KnownEnds known{
-        reference_.pose, since_s, estimate.pose(), upright_, isPlacedByStanding(isGuessing()),
-        motion()};
+        reference_.pose, since_s,  pose,     upright_, isPlacedByStanding(isGuessing()),
+        motion(),        predicted};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->inlierRatio >= inlierRatio - kInlierNoise;
     };
@@ -94,10 +97,7 @@ void PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s, double 
         found = deskewPair(*first->skewed, known, cloud, view);
     else
         found = deskewByMotion(known, inlierRatio, cloud, view);
-    if (!found || (!isPair && !fits(found))) return;
-    estimate = found->estimate;
-    view = std::move(found->view);
-    motion_ = found->trajectory.seenFrom(0);
-    extrapolation_ = Extrapolation(motion_, since_s / 8);
+    if (!isPair && !fits(found)) return {};
+    return found;
 }
 }  // namespace delio::odometry

@@ -43,6 +43,8 @@ struct KnownEnds {
     Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
     bool byStanding = false;           //!< points above the ground place the scan
     Motion motion = Motion::kUnknown;  //!< before `reference`
+    /** At the scan's time, along axes that the scan does not show. */
+    Eigen::Isometry3d predicted = Eigen::Isometry3d::Identity();
 };
 
 /** The first point in each voxel. */

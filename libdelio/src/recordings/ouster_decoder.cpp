@@ -25,6 +25,7 @@ class OusterDecoder : public PacketDecoder {
     bool add(const std::uint8_t* payload, std::size_t bytes, double received_s) override;
     void finish() override;
     std::optional<Scan> take() override;
+    bool endedWhole() const override { return !frame_; }
     bool addImu(const std::uint8_t* payload, std::size_t bytes) override {
         return addOusterImu(info_, payload, bytes, imu_);
     }
@@ -37,6 +38,7 @@ class OusterDecoder : public PacketDecoder {
     bool isRestarted(const OusterIds& ids) const {
         return packets_ > 0 && ids.serial != 0 && ids.serial == info_.ids.serial;
     }
+    bool isLate(std::uint16_t number) const;
     void leaveOut(const OusterIds& ids);
     Error foreign() const;
     void endFrame(bool partial);
@@ -45,6 +47,7 @@ class OusterDecoder : public PacketDecoder {
     std::string name_;
     OusterScans maker_;
     std::optional<OusterFrame> frame_;
+    std::optional<std::uint16_t> latestFrame_;  //!< number of that one, or of the one before
     bool first_ = true;        //!< the recording may begin within this frame
     std::size_t packets_ = 0;  //!< of this sensor
     OusterIds foreignIds_;     //!< of the first packet of another sensor
@@ -84,6 +87,16 @@ std::vector<std::string> OusterDecoder::findings() const {
     return findings;
 }
 
+/** True for a column of a turn that has ended. Numbers wrap after 65535. A slightly older one is
+ *  late; a much older one means a restart. */
+bool OusterDecoder::isLate(std::uint16_t number) const {
+    constexpr int kLate = 16;
+    if (!latestFrame_) return false;
+    const auto ahead =
+        static_cast<std::int16_t>(static_cast<std::uint16_t>(number - *latestFrame_));
+    return ahead <= (frame_ ? -1 : 0) && ahead > -kLate;
+}
+
 bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double received_s) {
     if (!takes(bytes))
         throw Error("an Ouster packet of " + std::to_string(bytes) + " bytes; '" + name_ +
@@ -100,22 +113,21 @@ bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double r
             throw Error("an Ouster packet has column " + std::to_string(packet.place(column)) +
                         "; '" + name_ + "' has " + std::to_string(info_.columns));
         const std::uint16_t number = packet.frameOf(column);
+        if (isLate(number)) continue;
         if (frame_ && number != frame_->number) {
-            // Numbers wrap after 65535. A slightly older one is late; a much older one means a
-            // restart.
-            constexpr int kLate = 16;
-            const auto ahead =
-                static_cast<std::int16_t>(static_cast<std::uint16_t>(number - frame_->number));
-            if (ahead < 0 && ahead > -kLate) continue;
             endFrame(first_);
             first_ = false;
         }
         if (!frame_) {
+            latestFrame_ = number;
             frame_.emplace(info_);
             frame_->number = number;
             frame_->received_s = received_s;
         }
         packet.copyTo(*frame_, column);
+        if (frame_->count < info_.columns) continue;
+        endFrame(false);
+        first_ = false;
     }
     return true;
 }

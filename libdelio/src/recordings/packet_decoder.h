@@ -34,6 +34,10 @@ class PacketDecoder {
      *  seconds); the index is the caller's. */
     virtual std::optional<Scan> take() = 0;
 
+    /** True where the scan that was taken last ended with the last packet, which it holds. False:
+     *  that packet is of the next turn. */
+    virtual bool endedWhole() const { return false; }
+
     /** A payload of the sensor's address that is no data packet; false where it holds no sample of
      *  the sensor's IMU. */
     virtual bool addImu(const std::uint8_t* /*payload*/, std::size_t /*bytes*/) { return false; }

@@ -41,6 +41,7 @@ void Playback::processAll(Run& run, const OnScan& onScan) {
         const RunRow row = run.process(*now_.scan, read_ms_);
         const auto latency = latency_ms();
         if (onScan) onScan(row, {now_.fraction, latency});
+        if (latency) run.settle();
         if (isLast || isInterrupted()) break;
         Stopwatch watch;
         now_ = next.get();

@@ -22,6 +22,7 @@ void LiveSlam::run() {
             for (const ImuSample& sample : item->imu) slam_->addImu(sample);
             for (const OdometrySample& sample : item->odometry) slam_->addOdometry(sample);
             slam_->process(item->scan);
+            slam_->settle();
         } catch (const std::exception& e) {
             refusal = plainMessage(e);
         }

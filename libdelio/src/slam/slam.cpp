@@ -72,6 +72,11 @@ void Slam::tell(const SlamScan& scan, ScanReport& report) {
     }
 }
 
+void Slam::settle() {
+    requireOpen();
+    odometry_->settle();
+}
+
 void Slam::addImu(const ImuSample& sample) {
     requireOpen();
     odometry_->addImu(sample);

@@ -20,6 +20,10 @@ class Odometry {
      *  surfaces) gives the prediction, and says so. */
     virtual Step process(const Scan& scan) = 0;
 
+    /** Does what the next process() would do first. Not needed: it shortens the time from the next
+     *  scan to its pose, for a program that waits for a live sensor. The results are the same. */
+    virtual void settle() {}
+
     /** Takes a sample of the drive's IMU. Samples are used by their stamps: those up to 0.1 s after
      *  the last point of a scan have to be added before process() gets the scan, in any order;
      *  later ones wait, up to 200 000 of them. Not to be called during process(). An odometry that

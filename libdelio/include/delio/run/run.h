@@ -84,6 +84,8 @@ class Run {
 
     /** Processes the next scan, which took `read_ms` to read. */
     RunRow process(const Scan& scan, double read_ms = 0);
+    /** See Odometry::settle(). */
+    void settle() { slam_.settle(); }
 
     /** Takes GNSS fixes of the drive, with stamps as its scans have them; before finish(). */
     void add(const earth::Fixes& fixes);

@@ -78,6 +78,9 @@ class Slam {
      *  not finite, which is an Error, trajectory and listeners are as they were before. */
     ScanReport process(const Scan& scan);
 
+    /** See Odometry::settle(). */
+    void settle();
+
     /** Takes a sample of the drive's IMU: see Odometry::addImu(). */
     void addImu(const ImuSample& sample);
 
