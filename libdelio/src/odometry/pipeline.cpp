@@ -169,8 +169,8 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
 }
 
 /** From the thinned scan, whose pose is known by points. */
-void PlaneOdometry::removeDynamicObjects(DynamicObjects::Sight sight,
-                                         const Eigen::Isometry3d& pose, ScanView& view) {
+void PlaneOdometry::removeDynamicObjects(DynamicObjects::Sight sight, const Eigen::Isometry3d& pose,
+                                         ScanView& view) {
     const auto dynamic = dynamics_.detect(std::move(sight), pose * inverseOf(upright_), time_s_);
     map_.erase(dynamics_.unmasked());
     for (std::size_t i = 0; i < view.dynamic.size(); ++i)
@@ -188,10 +188,9 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     const auto again = [&](const Eigen::Isometry3d& pose, const Eigen::Isometry3d& expected) {
         return deskewAgain(cloud, since_s, placed.inlierRatio, pose, expected, view);
     };
-    constexpr std::size_t kMany = 1000;
-    const bool isSteady = std::holds_alternative<Tracking>(state_) && planeMatches_ >= kMany && !isShaken();
     std::optional<ScanOnTrajectory> deskewed;
-    if (isDeskewed && isSteady && !getenv("NOSKIP")) deskewed = again(placed.pose, predicted);
+    // From the pose by points, many planes lead to the same pose as from the one by planes.
+    if (isDeskewed && haveManyPlanes()) deskewed = again(placed.pose, predicted);
     PlaneEstimate found;
     if (!deskewed || !deskewed->estimate.isByPlanes) {
         found = map_.registerPlanes(view, placed, predicted, motion());

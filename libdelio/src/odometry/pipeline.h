@@ -194,6 +194,11 @@ class PlaneOdometry : public Odometry {
     bool isShaken() const {
         return errors().kernel.isKnown() && kernel_m() >= options().points.first_kernel;
     }
+    /** The latest scan was tracked, and many planes constrained it. */
+    bool haveManyPlanes() const {
+        constexpr std::size_t kMany = 1000;
+        return std::holds_alternative<Tracking>(state_) && planeMatches_ >= kMany && !isShaken();
+    }
     double kernel_m() const {
         return errors().kernel.width(options().points.least_kernel, options().points.first_kernel);
     }

@@ -85,7 +85,7 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewAgain(const PointCloud& clo
                                                            const Eigen::Isometry3d& predicted,
                                                            const ScanView& view) {
     const KnownEnds known{
-        reference_.pose, since_s,  pose,     upright_, isPlacedByStanding(isGuessing()),
+        reference_.pose, since_s,  pose, upright_, isPlacedByStanding(isGuessing()),
         motion(),        predicted};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->inlierRatio >= inlierRatio - kInlierNoise;

@@ -26,15 +26,6 @@ constexpr double kInterval_s = 0.02;  //!< between poses of the trajectory
 
 std::size_t numberOf(Index i) { return static_cast<std::size_t>(i); }
 
-/** At most `most` of the points, evenly over their order. */
-TimedPoints sampled(const TimedPoints& all, Index most) {
-    TimedPoints few{sample(all.points, most), {}};
-    const Index stride = std::max<Index>(1, (all.points.cols() + most - 1) / most);
-    for (Index i = 0; i < few.points.cols(); ++i)
-        few.times_s.push_back(all.times_s[numberOf(i * stride)]);
-    return few;
-}
-
 /** A pose of the trajectory between two of its knots. */
 struct Between {
     Index knot = 0;    //!< the earlier one

@@ -165,6 +165,14 @@ TimedPoints firstOfVoxels(const PointCloud& cloud, const VoxelNumbers& voxels) {
     return picked;
 }
 
+TimedPoints sampled(const TimedPoints& all, Eigen::Index most) {
+    TimedPoints few{sample(all.points, most), {}};
+    const Eigen::Index stride = std::max<Eigen::Index>(1, (all.points.cols() + most - 1) / most);
+    for (Eigen::Index i = 0; i < few.points.cols(); ++i)
+        few.times_s.push_back(all.times_s[static_cast<std::size_t>(i * stride)]);
+    return few;
+}
+
 ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud) {
     constexpr unsigned kParts = 8;
     const auto [least, most] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
@@ -184,8 +192,10 @@ ScanTrajectory refinedTrajectory(const PlaneMap& map, const ScanTrajectory& star
                                  const Unevenness& unevenness, double kernel,
                                  const ScaledOptions& options) {
     const double most_m = options.spacing.acceleration * since_s * since_s;
-    return registerTrajectory(map, firstOfVoxels(cloud, planeVoxels(view)), start, since_s,
-                              unevenness.prior(most_m), kernel, options.registration);
+    constexpr Eigen::Index kMostPoints = 5000;
+    const auto points = sampled(firstOfVoxels(cloud, planeVoxels(view)), kMostPoints);
+    return registerTrajectory(map, points, start, since_s, unevenness.prior(most_m), kernel,
+                              options.registration);
 }
 
 std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,

@@ -50,6 +50,9 @@ struct KnownEnds {
 /** The first point in each voxel. */
 TimedPoints firstOfVoxels(const PointCloud& cloud, const VoxelNumbers& voxels);
 
+/** At most `most` of the points, evenly over their order. */
+TimedPoints sampled(const TimedPoints& all, Eigen::Index most);
+
 /** At one twist from the one pose to the other and on, until the last point of `cloud`. Sensor to
  *  map, times from the scan's. */
 ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud);

@@ -48,9 +48,9 @@ class OusterDecoder : public PacketDecoder {
     OusterScans maker_;
     std::optional<OusterFrame> frame_;
     std::optional<std::uint16_t> latestFrame_;  //!< number of that one, or of the one before
-    bool first_ = true;        //!< the recording may begin within this frame
-    std::size_t packets_ = 0;  //!< of this sensor
-    OusterIds foreignIds_;     //!< of the first packet of another sensor
+    bool first_ = true;                         //!< the recording may begin within this frame
+    std::size_t packets_ = 0;                   //!< of this sensor
+    OusterIds foreignIds_;                      //!< of the first packet of another sensor
     Happened foreign_;
     std::deque<Scan> scans_;
     std::vector<OusterImu> imu_;  //!< that nobody took yet

@@ -138,6 +138,18 @@ TEST_P(EitherOdometry, PointsThatAreNotFiniteAreCountedAndNoMore) {
     expectPose(steps[1].increment.pose, stepTo(truth, 1), kMetres, kDegrees);
 }
 
+TEST_P(EitherOdometry, SettlingAfterEachScanChangesNothing) {
+    const auto scans = scansOf(drive(4));
+    const auto steps = stepsOf(scans, quick(GetParam()));
+    const auto odometry = makeOdometry(quick(GetParam()));
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+        const Step step = odometry->process(scans[i]);
+        odometry->settle();
+        EXPECT_EQ(step.increment.pose.matrix(), steps[i].increment.pose.matrix());
+        EXPECT_EQ(step.used.points, steps[i].used.points);
+    }
+}
+
 TEST_P(EitherOdometry, OneAndTwoThreadsGiveTheSameBytes) {
     const auto scans = scansOf(drive(4));
     const auto with = [&](std::size_t threads) {

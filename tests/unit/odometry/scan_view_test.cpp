@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <limits>
+#include <vector>
+
 #include "ring_scan.h"
 
 using namespace delio;
@@ -56,7 +60,8 @@ TEST(ScanView, PointsWithTimesComeToWhereTheyAreAtTheStamp) {
 
 TEST(ScanView, OfNoPointsIsEmpty) {
     ScanView view = undistorted({}, Twist{});
-    thin(view, 0.25, 0.5);
+    thinForMap(view, 0.25);
+    thinForPlanes(view, 0.5);
     EXPECT_EQ(view.points.cols() + view.fine.cols() + view.thinned.cols(), 0);
     EXPECT_TRUE(view.dynamic.empty());
 }
@@ -71,23 +76,57 @@ TEST(ScanView, UnmarkedPointsKeepTheirOrder) {
     EXPECT_EQ(unmarked(Eigen::Matrix3Xf(3, 0), {}).cols(), 0);
 }
 
-TEST(ScanView, ThinningTakesCentroidsOfStaticPointsTwice) {
-    ScanView view;
-    // On a line: voxels of a metre, then of four.
-    view.points.resize(3, 6);
-    view.points << 0.2F, 0.4F, 1.5F, 0.9F, 6.5F, 2.5F,  //
-        0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 0.5F,             //
-        0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 0.5F;
-    view.dynamic = {0, 0, 0, 1, 0, 1};  // 0.9 and 2.5 drive
-    const auto before = view.points;
-    thin(view, 1, 4);
-    EXPECT_EQ(view.points, before);
+/** On a line: voxels of a metre, then of four. The points at 6.5 and 6.7 are dynamic. */
+ScanView viewOfALine(const odometry::PointCloud& cloud) {
+    ScanView view = undistorted(cloud, Twist{});
+    thinForMap(view, 1);
+    view.dynamic = {0, 0, 0, 0, 1, 1, 0};
+    view.fine = unmarked(view.fine, {0, 0, 1, 0});
+    thinForPlanes(view, 4);
+    return view;
+}
+
+odometry::PointCloud line() {
+    odometry::PointCloud cloud;
+    cloud.points.resize(3, 7);
+    cloud.points << 0.2F, 0.4F, 1.5F, 0.9F, 6.5F, 6.7F, 8.5F,  //
+        0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 0.5F,              //
+        0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 0.5F;
+    cloud.times_s = {0, 1, 2, 3, 4, 5, 6};
+    return cloud;
+}
+
+TEST(ScanView, ThinningTakesCentroidsTwice) {
+    const odometry::PointCloud cloud = line();
+    const ScanView view = viewOfALine(cloud);
+    EXPECT_EQ(view.points, cloud.points);
     ASSERT_EQ(view.fine.cols(), 3);
-    EXPECT_FLOAT_EQ(view.fine(0, 0), 0.3F);
+    EXPECT_FLOAT_EQ(view.fine(0, 0), 0.5F);
     EXPECT_FLOAT_EQ(view.fine(0, 1), 1.5F);
-    EXPECT_FLOAT_EQ(view.fine(0, 2), 6.5F);
+    EXPECT_FLOAT_EQ(view.fine(0, 2), 8.5F);
     ASSERT_EQ(view.thinned.cols(), 2);
-    EXPECT_NEAR(view.thinned(0, 0), 0.9, 1e-6);  // of the centroids: not (0.2 + 0.4 + 1.5) / 3
-    EXPECT_NEAR(view.thinned(0, 1), 6.5, 1e-6);
+    EXPECT_NEAR(view.thinned(0, 0), 1, 1e-6);  // of the centroids: not (0.2 + 0.4 + 0.9 + 1.5) / 4
+    EXPECT_NEAR(view.thinned(0, 1), 8.5, 1e-6);
+}
+
+TEST(ScanView, VoxelsForPlanesLeaveDynamicPointsOut) {
+    const auto voxels = planeVoxels(viewOfALine(line()));
+    constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+    EXPECT_EQ(voxels.ofPoint, (std::vector<std::uint32_t>{0, 0, 0, 0, kNone, kNone, 1}));
+    EXPECT_EQ(voxels.voxels, 2);
+}
+
+TEST(ScanView, PointsKeepTheirVoxelsWhenUndistortedAgain) {
+    const odometry::PointCloud cloud = line();
+    const ScanView view = viewOfALine(cloud),
+                   again = undistortedAgain(cloud, movingAt({0.1, 0, 0}, {0, 0, 0}), view);
+    EXPECT_EQ(again.points, undistorted(cloud, movingAt({0.1, 0, 0}, {0, 0, 0})).points);
+    EXPECT_EQ(again.dynamic, view.dynamic);
+    ASSERT_EQ(again.fine.cols(), 3);
+    EXPECT_FLOAT_EQ(again.fine(0, 0), (0.2F + 0.5F + 1.2F) / 3);
+    EXPECT_FLOAT_EQ(again.fine(0, 1), 1.7F);
+    EXPECT_FLOAT_EQ(again.fine(0, 2), 9.1F);
+    ASSERT_EQ(again.thinned.cols(), 2);
+    EXPECT_NEAR(again.thinned(0, 0), (1.9 / 3 + 1.7) / 2, 1e-6);
 }
 }  // namespace

@@ -117,6 +117,29 @@ TEST(PacketsOuster, BadColumnsLatePacketsAndHalfTurns) {
     EXPECT_EQ(scans[2].points->size(), 16U * 256);
 }
 
+TEST(PacketsOuster, AWholeTurnIsAScanWithItsLastPacket) {
+    const OusterToy toy;
+    const auto decoder = decoderOf(toy);
+    addTurn(*decoder, toy, 5, 31);
+    EXPECT_FALSE(decoder->take());
+    const Bytes last = toy.packet(5, 31);
+    decoder->add(last.data(), last.size(), kNow_s);
+    const auto whole = decoder->take();
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(whole->points->size(), 32U * 256);
+    EXPECT_TRUE(decoder->endedWhole());
+    // A packet that comes twice begins no scan.
+    decoder->add(last.data(), last.size(), kNow_s);
+    addTurn(*decoder, toy, 6, 30);
+    EXPECT_FALSE(decoder->take());
+    addTurn(*decoder, toy, 7, 1);
+    const auto part = decoder->take();
+    ASSERT_TRUE(part);
+    EXPECT_EQ(part->points->size(), 30U * 256);
+    EXPECT_FALSE(decoder->endedWhole());
+    EXPECT_TRUE(finish(*decoder).empty());
+}
+
 std::string faultOf(io::PacketDecoder& decoder) {
     try {
         decoder.finish();
