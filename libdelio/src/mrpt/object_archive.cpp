@@ -95,6 +95,8 @@ std::optional<ObjectArchive::Counts> countsIn(std::string_view className, FileOf
     const bool isPart = is("::TCamera") || is("::CImage") || is("::TMapGenericParams") ||
                         className.find("::CPose") != className.npos;
     if (isPart) return {};
+    if (is("::CCamera")) return {};  // after it comes the number of the viewport's objects
+    if (is("::COpenGLViewport")) return Counts{kAll, kMany, true};
     if (file == FileOf::Scene) return countsInScene(className);
     if (is("::CObservationVelodyneScan")) return Counts{kAll, kPacketsOrPoints, true};
     if (is("::CObservationComment")) return Counts{kAll, kPoints, true};  // its text

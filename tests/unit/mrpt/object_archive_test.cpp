@@ -241,6 +241,31 @@ TEST_F(ObjectArchive, ASceneHoldsViewports) {
         }
 }
 
+/** MRPT makes room for as many objects as a viewport claims to have. */
+TEST_F(ObjectArchive, AViewportHasNoMoreObjectsThanItsFileCanHold) {
+    const auto scene = mrpt::opengl::COpenGLScene::Create();
+    scene->insert(mrpt::opengl::CBox::Create());
+    std::string bytes = bytesOf({scene});
+    const auto box = bytes.find(bytesOf({mrpt::opengl::CBox::Create()}).substr(0, 15));
+    const std::uint32_t claimed = 0x10000000;
+    ASSERT_LT(box, bytes.size());
+    ASSERT_EQ(bytes.substr(box - 4, 4), std::string("\1\0\0\0", 4));
+    std::memcpy(&bytes[box - 4], &claimed, sizeof(claimed));
+    const std::string file = folder_ / "a.3Dscene";
+    test::writeText(file, bytes);
+    const test::MemoryLimit limit(900);
+    io::GzInput in(file);
+    io::ObjectArchive archive(in, io::FileOf::Scene);
+    try {
+        archive.next();
+        ADD_FAILURE() << "read";
+    } catch (const std::exception& e) {
+        EXPECT_NE(std::string(e.what()).find("claims more than the file can hold"),
+                  std::string::npos)
+            << e.what();
+    }
+}
+
 /** A scan is found in its folder, through a link of its owner's as well, and nowhere else. */
 TEST_F(ObjectArchive, NamesOfExternalFilesDoNotLeadOutOfTheirFolder) {
     std::filesystem::create_directories(folder_ / "a_Images");

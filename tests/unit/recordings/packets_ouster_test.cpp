@@ -415,7 +415,7 @@ Bytes imuPacket(std::uint64_t time_ns) {
 TEST(PacketsOuster, SamplesOfItsImuHaveTheClockOfTheScans) {
     const OusterToy toy;
     const auto decoder = decoderOf(toy);
-    addTurn(*decoder, toy, 1);
+    addTurn(*decoder, toy, 1, 31);
     const Bytes early = imuPacket(0);
     EXPECT_TRUE(decoder->addImu(early.data(), early.size()));
     EXPECT_TRUE(decoder->takeImu().empty());  // no scan shows the clock yet
