@@ -117,39 +117,65 @@ ScanTrajectory bent(const ScanTrajectory& trajectory, const Coefficients& step, 
 }
 }  // namespace
 
+TimedPoints sampled(const TimedPoints& all, Eigen::Index most) {
+    TimedPoints few{sample(all.points, most), {}};
+    const Eigen::Index stride = std::max<Eigen::Index>(1, (all.points.cols() + most - 1) / most);
+    for (Eigen::Index i = 0; i < few.points.cols(); ++i)
+        few.times_s.push_back(all.times_s[static_cast<std::size_t>(i * stride)]);
+    return few;
+}
+
+namespace {
+/** What the iterations have come to. */
+struct Bending {
+    ScanTrajectory trajectory;
+    Coefficients sinceStart = Coefficients::Zero();
+};
+
+/** With one kernel. False where too few points lie on planes. */
+bool bend(const PlaneMap& map, const TimedPoints& scan, double since_s, const Coefficients& known,
+          double width, const PlaneRegistrationOptions& options, Bending& now) {
+    constexpr unsigned kIterations = 6;
+    constexpr double kConverged = 1e-4, kRough = 1e-3, kLeastFactor = 0.01;
+    const auto [least, most] = std::minmax_element(scan.times_s.begin(), scan.times_s.end());
+    Eigen::Matrix3Xd placed(3, scan.points.cols());
+    Matcher matcher(map, placed, plane_tuning::kPointSigma_m);
+    for (unsigned i = 0; i < kIterations; ++i) {
+        const PoseTable poses(now.trajectory, *least, *most);
+        place(scan, poses, placed);
+        const auto matches = matcher.at(Eigen::Isometry3d::Identity(), width);
+        if (matches.size() < options.min_matches) return false;
+        auto equations = equationsOf(matches, scan, poses, since_s).sums;
+        // As in registerToPlanes(): points of one surface err together.
+        const double factor =
+            std::max(equations.cost / static_cast<double>(matches.size()), kLeastFactor) /
+            plane_tuning::kIndependentRatio;
+        equations.information.diagonal() += factor * known;
+        equations.gradient += factor * known.cwiseProduct(now.sinceStart);
+        const Coefficients step = -equations.information.ldlt().solve(equations.gradient);
+        now.trajectory = bent(now.trajectory, step, since_s);
+        now.sinceStart += step;
+        if (step.norm() < (width > options.last_kernel ? kRough : kConverged)) break;
+    }
+    return true;
+}
+}  // namespace
+
 ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
                                   const ScanTrajectory& trajectory, double since_s,
                                   const TrajectoryPrior& prior, double kernel,
                                   const PlaneRegistrationOptions& options) {
-    constexpr unsigned kIterations = 6;  // with one kernel
-    constexpr double kConverged = 1e-4, kRough = 1e-3, kLeastFactor = 0.01;
+    // While the kernel is wide, the planes that are not met yet err more than the points.
+    constexpr Eigen::Index kFew = 4000;
     if (scan.times_s.empty()) return trajectory;
-    const auto [least, most] = std::minmax_element(scan.times_s.begin(), scan.times_s.end());
     const Coefficients known = informationOf(prior);
-    Eigen::Matrix3Xd placed(3, scan.points.cols());
-    Matcher matcher(map, placed, plane_tuning::kPointSigma_m);
-    ScanTrajectory now = trajectory;
-    Coefficients sinceStart = Coefficients::Zero();
+    const TimedPoints few = sampled(scan, kFew);
+    Bending now{trajectory};
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        for (unsigned i = 0; i < kIterations; ++i) {
-            const PoseTable poses(now, *least, *most);
-            place(scan, poses, placed);
-            const auto matches = matcher.at(Eigen::Isometry3d::Identity(), width);
-            if (matches.size() < options.min_matches) return trajectory;
-            auto equations = equationsOf(matches, scan, poses, since_s).sums;
-            // As in registerToPlanes(): points of one surface err together.
-            const double factor =
-                std::max(equations.cost / static_cast<double>(matches.size()), kLeastFactor) /
-                plane_tuning::kIndependentRatio;
-            equations.information.diagonal() += factor * known;
-            equations.gradient += factor * known.cwiseProduct(sinceStart);
-            const Coefficients step = -equations.information.ldlt().solve(equations.gradient);
-            now = bent(now, step, since_s);
-            sinceStart += step;
-            if (step.norm() < (width > options.last_kernel ? kRough : kConverged)) break;
-        }
-        if (width <= options.last_kernel) return now;
+        const bool isLast = width <= options.last_kernel;
+        if (!bend(map, isLast ? scan : few, since_s, known, width, options, now)) return trajectory;
+        if (isLast) return now.trajectory;
     }
 }
 
@@ -163,14 +189,6 @@ TimedPoints firstOfVoxels(const PointCloud& cloud, const VoxelNumbers& voxels) {
         picked.times_s.push_back(double{cloud.times_s[i]});
     }
     return picked;
-}
-
-TimedPoints sampled(const TimedPoints& all, Eigen::Index most) {
-    TimedPoints few{sample(all.points, most), {}};
-    const Eigen::Index stride = std::max<Eigen::Index>(1, (all.points.cols() + most - 1) / most);
-    for (Eigen::Index i = 0; i < few.points.cols(); ++i)
-        few.times_s.push_back(all.times_s[static_cast<std::size_t>(i * stride)]);
-    return few;
 }
 
 ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud) {
@@ -192,10 +210,8 @@ ScanTrajectory refinedTrajectory(const PlaneMap& map, const ScanTrajectory& star
                                  const Unevenness& unevenness, double kernel,
                                  const ScaledOptions& options) {
     const double most_m = options.spacing.acceleration * since_s * since_s;
-    constexpr Eigen::Index kMostPoints = 5000;
-    const auto points = sampled(firstOfVoxels(cloud, planeVoxels(view)), kMostPoints);
-    return registerTrajectory(map, points, start, since_s, unevenness.prior(most_m), kernel,
-                              options.registration);
+    return registerTrajectory(map, firstOfVoxels(cloud, planeVoxels(view)), start, since_s,
+                              unevenness.prior(most_m), kernel, options.registration);
 }
 
 std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
