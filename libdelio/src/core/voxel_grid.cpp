@@ -37,7 +37,7 @@ VoxelNumbers numberVoxels(const Eigen::Matrix3Xf& points, double size) {
                      static_cast<float>(1 / size), keys.data() + first);
     });
     VoxelIndex numbers;
-    constexpr std::size_t kTypical = 4;  // points a voxel
+    constexpr std::size_t kTypical = 2;  // points a voxel
     numbers.reserve(count / kTypical);
     VoxelNumbers result;
     result.ofPoint.resize(count);

@@ -54,10 +54,12 @@ void OwnVehicle::add(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upri
     const auto low = sorted.begin() +
                      static_cast<std::ptrdiff_t>(kGroundShare * static_cast<double>(sorted.size()));
     std::nth_element(sorted.begin(), low, sorted.end());
-    std::set<Voxel> voxels;
+    std::vector<Voxel> voxels;
     for (std::size_t i = 0; i < near.size(); ++i)
         if (heights[i] > *low + kAboveGround_m)
-            voxels.insert(voxelKey(points.col(near[i]).cast<double>(), kVoxel_m));
+            voxels.push_back(voxelKey(points.col(near[i]).cast<double>(), kVoxel_m));
+    std::sort(voxels.begin(), voxels.end());
+    voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
     for (const Voxel voxel : voxels) ++counts_[voxel];
     if (++scans_ >= kScans) judge();
 }
