@@ -50,6 +50,7 @@ PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
 
 Step PlaneOdometry::process(const Scan& scan) {
     requireConsistent(scan);
+    findOwn();
     Step step;
     step.times_ms = noTimes();
     PointCloud cloud = prepare(scan, step);

@@ -49,7 +49,7 @@ class PlaneOdometry : public Odometry {
     explicit PlaneOdometry(const PlaneOdometryOptions& options);
 
     Step process(const Scan& scan) override;
-    void settle() override { insertWaiting(); }
+    void settle() override;
     void addImu(const ImuSample& sample) override { gyro_.add(sample); }
     std::optional<ImuReport> imuReport() const override { return gyro_.report(); }
     void addOdometry(const OdometrySample& sample) override { wheels_.add(sample); }
@@ -113,6 +113,7 @@ class PlaneOdometry : public Odometry {
     void settleWindow(const Step& step);
     void endWindow();
     void keep(PointCloud cloud, const Step& step);
+    void findOwn();
     bool isSecondScan() const {
         const auto* first = std::get_if<FirstScan>(&state_);
         return first && first->skewed;
@@ -228,6 +229,7 @@ class PlaneOdometry : public Odometry {
     bool isUrgent_ = false;             //!< scans were dropped before this one for lack of time
     double unregistered_s_ = 0;         //!< since the latest scan that was registered
     std::optional<MovingScan> latest_;  //!< where its points have times
+    bool mayShowOwn_ = false;           //!< the own vehicle was not sought in the latest scan yet
     ScanTrajectory trajectoryOfLatest() const { return placed(pose_, motion_); }
     /** One of the first scans of the map, and its points in the map, where it was tracked. */
     struct BeginningScan {

@@ -90,9 +90,21 @@ void PlaneOdometry::endWindow() {
 /** The scan as it came, for a window that may begin with it, and to find the own vehicle in it. */
 void PlaneOdometry::keep(PointCloud cloud, const Step& step) {
     latest_.reset();
-    if (options().dynamics.enabled && std::holds_alternative<Tracking>(state_))
-        own_.add(cloud.points, upright_, pose_);
-    if (cloud.times_s.empty() || step.predicted || step.interrupted || !window_.isEmpty()) return;
+    const bool showsOwn = options().dynamics.enabled && std::holds_alternative<Tracking>(state_);
+    if (cloud.times_s.empty() || step.predicted || step.interrupted || !window_.isEmpty()) {
+        if (showsOwn) own_.add(cloud.points, upright_, pose_);
+        return;
+    }
     latest_ = MovingScan{std::move(cloud), time_s_, trajectoryOfLatest()};
+    mayShowOwn_ = showsOwn;
+}
+
+void PlaneOdometry::findOwn() {
+    if (std::exchange(mayShowOwn_, false)) own_.add(latest_->cloud.points, upright_, pose_);
+}
+
+void PlaneOdometry::settle() {
+    insertWaiting();
+    findOwn();
 }
 }  // namespace delio::odometry
