@@ -85,8 +85,8 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewAgain(const PointCloud& clo
                                                            const Eigen::Isometry3d& predicted,
                                                            const ScanView& view) {
     const KnownEnds known{
-        reference_.pose, since_s,  pose, upright_, isPlacedByStanding(isGuessing()),
-        motion(),        predicted};
+        reference_.pose, since_s,  pose,     upright_, isPlacedByStanding(isGuessing()),
+        isShaken(),      motion(), predicted};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->inlierRatio >= inlierRatio - kInlierNoise;
     };

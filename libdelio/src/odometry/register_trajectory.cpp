@@ -165,11 +165,13 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
                                   const ScanTrajectory& trajectory, double since_s,
                                   const TrajectoryPrior& prior, double kernel,
                                   const PlaneRegistrationOptions& options) {
-    // While the kernel is wide, the planes that are not met yet err more than the points.
+    // Of a steady motion, few points show enough while the kernel is wide; of a swing, all are
+    // needed.
     constexpr Eigen::Index kFew = 4000;
+    constexpr double kSwing_m = 1;  // predictions are off by more
     if (scan.times_s.empty()) return trajectory;
     const Coefficients known = informationOf(prior);
-    const TimedPoints few = sampled(scan, kFew);
+    const TimedPoints few = sampled(scan, kernel < kSwing_m ? kFew : scan.points.cols());
     Bending now{trajectory};
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
@@ -218,7 +220,15 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
                                               const KnownEnds& known, const LocalMap& map,
                                               const PointCloud& cloud, const ScanView& view,
                                               const ScaledOptions& options) {
-    ScanView again = undistortedAgain(cloud, trajectory.seenFrom(0), view);
+    ScanView again;
+    if (known.isSwing) {  // the points of a voxel were put there by a prediction that is far off
+        again = undistorted(cloud, trajectory.seenFrom(0));
+        again.dynamic = view.dynamic;
+        again.fine =
+            voxelCentroids(unmarked(again.points, again.dynamic), options.spacing.map_spacing);
+        thinForPlanes(again, options.spacing.scan_spacing);
+    } else
+        again = undistortedAgain(cloud, trajectory.seenFrom(0), view);
     thinForPoints(again, known.upright, options.spacing.point_spacing, known.byStanding);
     const auto placed =
         map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));

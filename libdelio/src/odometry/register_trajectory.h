@@ -42,6 +42,7 @@ struct KnownEnds {
     Eigen::Isometry3d pose;       //!< at the scan's time, likewise
     Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
     bool byStanding = false;           //!< points above the ground place the scan
+    bool isSwing = false;              //!< predictions are off by more than any kernel
     Motion motion = Motion::kUnknown;  //!< before `reference`
     /** At the scan's time, along axes that the scan does not show. */
     Eigen::Isometry3d predicted = Eigen::Isometry3d::Identity();
