@@ -186,18 +186,13 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     if (!placed.valid) return predictedEstimate(predicted);
     thinForPlanes(view, options().spacing.scan_spacing);
     const bool isDeskewed = step.deskewed && !step.interrupted && window_.isEmpty();
-    const auto again = [&](const Eigen::Isometry3d& pose, const Eigen::Isometry3d& expected) {
-        return deskewAgain(cloud, since_s, placed.inlierRatio, pose, expected, view);
-    };
-    std::optional<ScanOnTrajectory> deskewed;
-    // From the pose by points, many planes lead to the same pose as from the one by planes.
-    if (isDeskewed && haveManyPlanes()) deskewed = again(placed.pose, predicted);
-    PlaneEstimate found;
-    if (!deskewed || !deskewed->estimate.isByPlanes) {
-        found = map_.registerPlanes(view, placed, predicted, motion());
-        wheels_.carry(pose_, found);
-        if (isDeskewed) deskewed = again(found.pose(), found.pose());
-    }
+    // That scan is registered again, by all points: where planes are many, few points lead there.
+    constexpr Eigen::Index kFew = 4000;
+    if (isDeskewed && haveManyPlanes()) view.thinned = sample(view.thinned, kFew);
+    auto found = map_.registerPlanes(view, placed, predicted, motion());
+    wheels_.carry(pose_, found);
+    if (!isDeskewed) return found;
+    auto deskewed = deskewAgain(cloud, since_s, placed.inlierRatio, found.pose(), view);
     if (!deskewed) return found;
     found = deskewed->estimate;
     wheels_.carry(pose_, found);

@@ -151,7 +151,6 @@ class PlaneOdometry : public Odometry {
     // De-skewing by the motion that was found (pipeline_deskew.cpp).
     std::optional<ScanOnTrajectory> deskewAgain(const PointCloud& cloud, double since_s,
                                                 double inlierRatio, const Eigen::Isometry3d& pose,
-                                                const Eigen::Isometry3d& predicted,
                                                 const ScanView& view);
     std::optional<ScanTrajectory> trajectoryByGyro(const KnownEnds& known,
                                                    const PointCloud& cloud) const;

@@ -82,11 +82,10 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewByMotion(const KnownEnds& k
 std::optional<ScanOnTrajectory> PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s,
                                                            double inlierRatio,
                                                            const Eigen::Isometry3d& pose,
-                                                           const Eigen::Isometry3d& predicted,
                                                            const ScanView& view) {
     const KnownEnds known{
-        reference_.pose, since_s,  pose,     upright_, isPlacedByStanding(isGuessing()),
-        isShaken(),      motion(), predicted};
+        reference_.pose, since_s, pose, upright_, isPlacedByStanding(isGuessing()),
+        isShaken(),      motion()};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->inlierRatio >= inlierRatio - kInlierNoise;
     };

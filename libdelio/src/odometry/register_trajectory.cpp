@@ -233,7 +233,7 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
     const auto placed =
         map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));
     if (!placed.valid) return {};
-    auto estimate = map.registerPlanes(again, placed, known.predicted, known.motion);
+    auto estimate = map.registerPlanes(again, placed, known.pose, known.motion);
     return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.inlierRatio};
 }
 

@@ -44,8 +44,6 @@ struct KnownEnds {
     bool byStanding = false;           //!< points above the ground place the scan
     bool isSwing = false;              //!< predictions are off by more than any kernel
     Motion motion = Motion::kUnknown;  //!< before `reference`
-    /** At the scan's time, along axes that the scan does not show. */
-    Eigen::Isometry3d predicted = Eigen::Isometry3d::Identity();
 };
 
 /** The first point in each voxel. */

@@ -62,8 +62,8 @@ TEST(PlaneOdometry, CorrectsTheFirstScansOnceMoreHaveFollowed) {
         EXPECT_LT(test::metresBetween(poses[0], Isometry3d::Identity()), 1e-9);
         before_m += flight.errorOf(asItCame);
         after_m += flight.errorOf({poses.begin(), poses.begin() + kCorrected - 1});
-        EXPECT_LT(flight.errorOf(poses), 0.02) << phase_s;
+        EXPECT_LT(flight.errorOf(poses), 0.03) << phase_s;
     }
-    EXPECT_LT(after_m, 0.6 * before_m);
+    EXPECT_LT(after_m, 0.8 * before_m);
 }
 }  // namespace
