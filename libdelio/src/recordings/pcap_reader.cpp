@@ -291,6 +291,7 @@ std::optional<Scan> PcapReader::next() {
         if (auto scan = decoder_->take()) {
             scan->index = count_++;
             pointTimes_ = pointTimes_ || !scan->times_s.empty();
+            // The packet that ends a turn may be the next turn's first one.
             packets_->endScan(scan->index,
                               ended_ || decoder_->endedWhole() ? latest_s_ : before_s_);
             return scan;
