@@ -68,6 +68,8 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     PointCloud cloud;
     cloud.points.resize(3, all);
     cloud.indices.resize(x.size());
+    if (numbered) cloud.rings.resize(x.size());
+    if (timed) cloud.times_s.resize(x.size());
     Eigen::Index kept = 0;
     for (Eigen::Index i = 0; i < all; ++i) {
         const auto k = static_cast<std::size_t>(i);
@@ -81,12 +83,14 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
         point[0] = x[k] * factors[i];
         point[1] = y[k] * factors[i];
         point[2] = heights[i];
-        if (numbered) cloud.rings.push_back(scan.rings[k]);
-        if (timed) cloud.times_s.push_back(scan.times_s[k]);
+        if (numbered) cloud.rings[static_cast<std::size_t>(kept)] = scan.rings[k];
+        if (timed) cloud.times_s[static_cast<std::size_t>(kept)] = scan.times_s[k];
         cloud.indices[static_cast<std::size_t>(kept)] = static_cast<std::uint32_t>(k);
         ++kept;
     }
     cloud.indices.resize(static_cast<std::size_t>(kept));
+    if (numbered) cloud.rings.resize(static_cast<std::size_t>(kept));
+    if (timed) cloud.times_s.resize(static_cast<std::size_t>(kept));
     cloud.points.conservativeResize(3, kept);
     if (options.deskew && scan.times_s.empty() && options.sweep_s > 0)
         cloud.times_s = azimuthTimes(cloud.points, options.sweep_s);

@@ -10,26 +10,25 @@
 #include "delio/core/geometry.h"
 
 namespace delio::odometry {
-namespace {
-/** Points farther from a plane than so many kernel widths do not belong to it. */
-constexpr double kReach = 3;
-}  // namespace
-
 Matcher::Matcher(const PlaneMap& map, const Eigen::Matrix3Xd& points, double point_sigma)
     : map_(map),
       points_(points),
       point_sigma_(point_sigma),
       latest_(static_cast<std::size_t>(points.cols())) {}
 
-/** Where a block's points are, and the planes about them. What is asked of the map first is asked
- * of it for all of them before the next: memory is slow, and many places can be waited for at once.
- */
-Matcher::Placed Matcher::findPlanes(std::size_t block, const Eigen::Isometry3d& pose) {
+Matcher::Placed Matcher::placedBy(const Eigen::Isometry3d& pose, std::size_t block) const {
     const std::size_t first = block * kBlock;
     Placed placed =
         pose.linear() * points_.middleCols(static_cast<Eigen::Index>(first),
                                            static_cast<Eigen::Index>(endOf(block) - first));
     placed.colwise() += pose.translation();
+    return placed;
+}
+
+/** The planes about a block's points. What is asked of the map first is asked of it for all of them
+ * before the next: memory is slow, and many places can be waited for at once. */
+void Matcher::findPlanes(std::size_t block, const Placed& placed) {
+    const std::size_t first = block * kBlock;
     std::vector<std::size_t> moved;
     for (std::size_t i = first; i < endOf(block); ++i) {
         const std::uint64_t voxel = map_.voxelAt(placed.col(static_cast<Eigen::Index>(i - first)));
@@ -40,30 +39,20 @@ Matcher::Placed Matcher::findPlanes(std::size_t block, const Eigen::Isometry3d& 
     }
     for (const std::size_t i : moved) map_.prefetchPlanes(latest_[i].voxel);
     for (const std::size_t i : moved) latest_[i].plane = map_.inVoxel(latest_[i].voxel);
-    return placed;
-}
-
-Correspondences Matcher::matchesOf(std::size_t block, const Placed& placed, double kernel) const {
-    Correspondences matches;
-    matches.reserve(kBlock);
-    for (std::size_t i = block * kBlock; i < endOf(block); ++i) {
-        const Plane* plane = latest_[i].plane;
-        if (!plane) continue;
-        const Eigen::Vector3d at = placed.col(static_cast<Eigen::Index>(i - block * kBlock));
-        const double r = plane->normal().dot(at - plane->mean);
-        if (std::abs(r) > kReach * kernel) continue;
-        const double robust = 1 / (1 + r * r / (kernel * kernel));
-        matches.push_back({points_.col(static_cast<Eigen::Index>(i)), plane->normal(), plane->mean,
-                           robust * robust / (plane->varianceAt(at) + point_sigma_ * point_sigma_),
-                           plane->tilt(), i});
-    }
-    return matches;
 }
 
 Correspondences Matcher::at(const Eigen::Isometry3d& pose, double kernel) {
     std::vector<Correspondences> found(blocks());
     tbb::parallel_for(std::size_t{0}, blocks(), [&](std::size_t block) {
-        found[block] = matchesOf(block, findPlanes(block, pose), kernel);
+        const Placed placed = placedBy(pose, block);
+        findPlanes(block, placed);
+        auto& matches = found[block];
+        matches.reserve(kBlock);
+        forMatches(block, placed, kernel,
+                   [&](std::size_t i, const auto&, const Plane& plane, double weight) {
+                       matches.push_back({points_.col(static_cast<Eigen::Index>(i)), plane.normal(),
+                                          plane.mean, weight, plane.tilt(), i});
+                   });
     });
     Correspondences all;
     all.reserve(latest_.size());
@@ -77,7 +66,8 @@ double Matcher::shareAt(const Eigen::Isometry3d& pose, double kernel) {
     };
     std::vector<Share> shares(blocks());
     tbb::parallel_for(std::size_t{0}, blocks(), [&](std::size_t block) {
-        const Placed placed = findPlanes(block, pose);
+        const Placed placed = placedBy(pose, block);
+        findPlanes(block, placed);
         Share share;
         for (Eigen::Index i = 0; i < placed.cols(); ++i) {
             const Plane* plane = latest_[block * kBlock + static_cast<std::size_t>(i)].plane;
@@ -96,17 +86,23 @@ double Matcher::shareAt(const Eigen::Isometry3d& pose, double kernel) {
     return all.count > 0 ? all.sum / all.count : 0;
 }
 
-PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Isometry3d& pose,
-                                 const Prior& prior) {
+namespace {
+/** By rotation (right tangent) and by translation. */
+NormalEquations<6> equationsOf(const Correspondences& matches, const Eigen::Isometry3d& pose) {
     const Eigen::Matrix3d R = pose.linear();
     const Eigen::Vector3d t = pose.translation();
     using Equations = NormalEquations<6>;
-    const auto equations =
-        sumOver<Equations>(matches, [&](const Correspondence& match, Equations& sum) {
-            Vector6 jacobian;  // by rotation and by translation
-            jacobian << match.point.cross(R.transpose() * match.normal), match.normal;
-            sum.add(jacobian, match.residual(R, t), match.weight);
-        });
+    return sumOver<Equations>(matches, [&](const Correspondence& match, Equations& sum) {
+        Vector6 jacobian;
+        jacobian << match.point.cross(R.transpose() * match.normal), match.normal;
+        sum.add(jacobian, match.residual(R, t), match.weight);
+    });
+}
+
+PlaneRotation rotationFrom(const NormalEquations<6>& equations, const Eigen::Isometry3d& pose,
+                           const Prior& prior) {
+    const Eigen::Matrix3d R = pose.linear();
+    const Eigen::Vector3d t = pose.translation();
     PlaneRotation result;
     result.weight = equations.weight;
     const Matrix6& H = equations.information;
@@ -124,6 +120,12 @@ PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Is
     const Eigen::Matrix3d all = result.information + prior.rotation;
     result.step = -all.completeOrthogonalDecomposition().solve(gradient);
     return result;
+}
+}  // namespace
+
+PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Isometry3d& pose,
+                                 const Prior& prior) {
+    return rotationFrom(equationsOf(matches, pose), pose, prior);
 }
 
 PlaneTranslation translationFromPlanes(const Correspondences& matches,
@@ -166,18 +168,11 @@ Eigen::Vector3d stepFromPlanes(const Correspondences& matches, const Eigen::Isom
 namespace {
 constexpr double kDeg = M_PI / 180;
 
-/** Variance factor of the weights, as it turned out. Points of one surface err together, so that
- *  only a share of them counts. */
-double varianceFactor(const Correspondences& matches, const Eigen::Isometry3d& pose) {
-    const Eigen::Matrix3d R = pose.linear();
-    const Eigen::Vector3d t = pose.translation();
-    const double weighted = sumOver<double>(matches, [&](const Correspondence& match, double& sum) {
-        const double r = match.residual(R, t);
-        sum += match.weight * r * r;
-    });
+/** Variance factor of the weights, from the sum of weighted squares. Points of one surface err
+ *  together, so that only a share of them counts. */
+double varianceFactor(double cost, std::size_t matches) {
     constexpr double kLeast = 0.01;  // of simulated scans without any noise
-    return std::max(weighted / static_cast<double>(matches.size()), kLeast) /
-           plane_tuning::kIndependentRatio;
+    return std::max(cost / static_cast<double>(matches), kLeast) / plane_tuning::kIndependentRatio;
 }
 
 /** What an iteration has come to. */
@@ -207,8 +202,9 @@ bool iterate(const FindMatches& find, const Prior& known, double kernel,
         ++iterations;
         matches = find(pose, kernel);
         if (matches.size() < options.min_matches) return false;
-        const Prior prior = known.times(varianceFactor(matches, pose));
-        const auto turn = rotationFromPlanes(matches, pose, prior);
+        const auto equations = equationsOf(matches, pose);
+        const Prior prior = known.times(varianceFactor(equations.cost, matches.size()));
+        const auto turn = rotationFrom(equations, pose, prior);
         pose.linear() = normalised(Eigen::Matrix3d(pose.linear() * rotationExp(turn.step)));
         const Eigen::Vector3d move = stepFromPlanes(matches, pose, prior);
         pose.translation() += move;
@@ -255,9 +251,10 @@ Eigen::Matrix3d lostToRotation(const PlaneRotation& turn, const PlaneTranslation
 void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const Prior& known,
             PlaneEstimate& estimate) {
     const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity(), R = pose.linear();
-    const double noise = varianceFactor(matches, pose);
+    const auto equations = equationsOf(matches, pose);
+    const double noise = varianceFactor(equations.cost, matches.size());
     const Prior prior = known.times(noise);
-    const auto turn = rotationFromPlanes(matches, pose, prior);
+    const auto turn = rotationFrom(equations, pose, prior);
     const auto move = translationFromPlanes(matches, pose, prior);
     auto& rotation = estimate.rotation;
     rotation.rotation = R;

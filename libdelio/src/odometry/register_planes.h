@@ -1,9 +1,11 @@
 #pragma once
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -87,7 +89,7 @@ using Correspondences = std::vector<Correspondence>;
 class Matcher {
  public:
     /** Keeps references to the map, which must not change, and to the points (metres, the sensor's
-     *  frame), whose coordinates may change between two calls but not their number.
+     *  frame).
      *  `point_sigma`: of a measured point, metres. Not for several threads at once. */
     Matcher(const PlaneMap& map, const Eigen::Matrix3Xd& points, double point_sigma);
 
@@ -96,11 +98,34 @@ class Matcher {
      *  of the points. */
     Correspondences at(const Eigen::Isometry3d& pose, double kernel);
 
+    /** The same for points that placeOne(i) places, each by its number (metres, the map's frame):
+     *  the sum over addOne(i, placed, plane, weight, sum), the same bytes for any number of
+     * threads.
+     *  @tparam Sum is nothing where it is made, and has += */
+    template <typename Sum, typename PlaceOne, typename AddOne>
+    Sum sumAt(const PlaceOne& placeOne, double kernel, const AddOne& addOne) {
+        std::vector<Sum> sums(blocks());
+        tbb::parallel_for(std::size_t{0}, blocks(), [&](std::size_t block) {
+            Placed placed(3, static_cast<Eigen::Index>(endOf(block) - block * kBlock));
+            for (std::size_t i = block * kBlock; i < endOf(block); ++i)
+                placed.col(static_cast<Eigen::Index>(i - block * kBlock)) = placeOne(i);
+            findPlanes(block, placed);
+            forMatches(block, placed, kernel,
+                       [&](std::size_t i, const Eigen::Vector3d& at, const Plane& plane,
+                           double weight) { addOne(i, at, plane, weight, sums[block]); });
+        });
+        Sum all;
+        for (const Sum& sum : sums) all += sum;
+        return all;
+    }
+
     /** How well those points that fall into voxels with a plane lie on it at `pose`, 0 to 1. What
      *  is seen for the first time does not count. */
     double shareAt(const Eigen::Isometry3d& pose, double kernel);
 
  private:
+    /** Points farther from a plane than so many kernel widths do not belong to it. */
+    static constexpr double kReach = 3;
     /** So many points, one after the other, are looked up together. */
     static constexpr std::size_t kBlock = 512;
     std::size_t blocks() const { return (latest_.size() + kBlock - 1) / kBlock; }
@@ -109,8 +134,23 @@ class Matcher {
     }
     /** Of a block's points, metres, the map's frame. */
     using Placed = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kBlock>;
-    Placed findPlanes(std::size_t block, const Eigen::Isometry3d& pose);
-    Correspondences matchesOf(std::size_t block, const Placed& placed, double kernel) const;
+    Placed placedBy(const Eigen::Isometry3d& pose, std::size_t block) const;
+    void findPlanes(std::size_t block, const Placed& placed);
+    /** visit(i, placed, plane, weight) for each of a block's points that is next to a plane. */
+    template <typename Visit>
+    void forMatches(std::size_t block, const Placed& placed, double kernel,
+                    const Visit& visit) const {
+        for (std::size_t i = block * kBlock; i < endOf(block); ++i) {
+            const Plane* plane = latest_[i].plane;
+            if (!plane) continue;
+            const Eigen::Vector3d at = placed.col(static_cast<Eigen::Index>(i - block * kBlock));
+            const double r = plane->normal().dot(at - plane->mean);
+            if (std::abs(r) > kReach * kernel) continue;
+            const double robust = 1 / (1 + r * r / (kernel * kernel));
+            visit(i, at, *plane,
+                  robust * robust / (plane->varianceAt(at) + point_sigma_ * point_sigma_));
+        }
+    }
 
     const PlaneMap& map_;
     const Eigen::Matrix3Xd& points_;

@@ -1,6 +1,5 @@
 #include "odometry/register_trajectory.h"
 
-#include <tbb/parallel_for.h>
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -45,8 +44,6 @@ Coefficients informationOf(const TrajectoryPrior& prior) {
  *  together as six unknowns, the motion at that time. */
 class Equations {
  public:
-    NormalEquations<6 * kDegree> sums;
-
     void add(double time_s, double since_s, const Vector6& jacobian, double residual,
              double weight) {
         constexpr double kTogether = 1.0 / 256;  // of the time between the scans
@@ -57,51 +54,57 @@ class Equations {
             shares_ = sharesAt((slot + 0.5) * kTogether * since_s, since_s);
         }
         together_.add(jacobian, residual, weight);
-    }
-    /** Adds what is still apart. */
-    void close() {
-        for (Eigen::Index i = 0; i < kDegree; ++i) {
-            sums.gradient.segment<6>(6 * i) += shares_[i] * together_.gradient;
-            for (Eigen::Index j = 0; j < kDegree; ++j)
-                sums.information.block<6, 6>(6 * i, 6 * j) +=
-                    shares_[i] * shares_[j] * together_.information;
-        }
-        sums.weight += together_.weight;
-        sums.cost += together_.cost;
-        together_ = {};
+        ++count_;
     }
     void operator+=(Equations other) {
         close();
         other.close();
-        sums += other.sums;
+        sums_ += other.sums_;
+        count_ += other.count_;
+    }
+    /** The sums, and of how many points. */
+    std::pair<NormalEquations<6 * kDegree>, std::size_t> closed() && {
+        close();
+        return {sums_, count_};
     }
 
  private:
+    /** Adds what is still apart. */
+    void close() {
+        for (Eigen::Index i = 0; i < kDegree; ++i) {
+            sums_.gradient.segment<6>(6 * i) += shares_[i] * together_.gradient;
+            for (Eigen::Index j = 0; j < kDegree; ++j)
+                sums_.information.block<6, 6>(6 * i, 6 * j) +=
+                    shares_[i] * shares_[j] * together_.information;
+        }
+        sums_.weight += together_.weight;
+        sums_.cost += together_.cost;
+        together_ = {};
+    }
+
+    NormalEquations<6 * kDegree> sums_;
+    std::size_t count_ = 0;  //!< of points
     NormalEquations<6> together_;
     double slot_ = NAN;
     Shares shares_ = Shares::Zero();
 };
 
-/** Of points that are in the map's frame already. */
-Equations equationsOf(const Correspondences& matches, const TimedPoints& scan,
-                      const PoseTable& poses, double since_s) {
-    auto all = sumOver<Equations>(matches, [&](const Correspondence& match, Equations& sum) {
-        const double time_s = scan.times_s[match.index],
-                     residual = match.normal.dot(match.point - match.mean);
-        Vector6 jacobian;
-        jacobian << (match.point - poses.placeAt(time_s)).cross(match.normal), match.normal;
-        sum.add(time_s, since_s, jacobian, residual, match.weight);
-    });
-    all.close();
-    return all;
-}
-
-/** In the map's frame. */
-void place(const TimedPoints& scan, const PoseTable& poses, Eigen::Matrix3Xd& placed) {
-    tbb::parallel_for(std::size_t{0}, scan.times_s.size(), [&](std::size_t i) {
-        const auto k = static_cast<Eigen::Index>(i);
-        placed.col(k) = poses.at(scan.times_s[i]) * scan.points.col(k);
-    });
+/** Of the points next to planes, with a kernel of that width. */
+Equations equationsOf(Matcher& matcher, const TimedPoints& scan, const PoseTable& poses,
+                      double since_s, double width) {
+    return matcher.sumAt<Equations>(
+        [&](std::size_t i) -> Eigen::Vector3d {
+            return poses.at(scan.times_s[i]) * scan.points.col(static_cast<Eigen::Index>(i));
+        },
+        width,
+        [&](std::size_t i, const Eigen::Vector3d& placed, const Plane& plane, double weight,
+            Equations& sum) {
+            const double time_s = scan.times_s[i];
+            const Eigen::Vector3d normal = plane.normal();
+            Vector6 jacobian;
+            jacobian << (placed - poses.placeAt(time_s)).cross(normal), normal;
+            sum.add(time_s, since_s, jacobian, normal.dot(placed - plane.mean), weight);
+        });
 }
 
 ScanTrajectory bent(const ScanTrajectory& trajectory, const Coefficients& step, double since_s) {
@@ -138,17 +141,14 @@ bool bend(const PlaneMap& map, const TimedPoints& scan, double since_s, const Co
     constexpr unsigned kIterations = 6;
     constexpr double kConverged = 1e-4, kRough = 1e-3, kLeastFactor = 0.01;
     const auto [least, most] = std::minmax_element(scan.times_s.begin(), scan.times_s.end());
-    Eigen::Matrix3Xd placed(3, scan.points.cols());
-    Matcher matcher(map, placed, plane_tuning::kPointSigma_m);
+    Matcher matcher(map, scan.points, plane_tuning::kPointSigma_m);
     for (unsigned i = 0; i < kIterations; ++i) {
         const PoseTable poses(now.trajectory, *least, *most);
-        place(scan, poses, placed);
-        const auto matches = matcher.at(Eigen::Isometry3d::Identity(), width);
-        if (matches.size() < options.min_matches) return false;
-        auto equations = equationsOf(matches, scan, poses, since_s).sums;
+        auto [equations, matches] = equationsOf(matcher, scan, poses, since_s, width).closed();
+        if (matches < options.min_matches) return false;
         // As in registerToPlanes(): points of one surface err together.
         const double factor =
-            std::max(equations.cost / static_cast<double>(matches.size()), kLeastFactor) /
+            std::max(equations.cost / static_cast<double>(matches), kLeastFactor) /
             plane_tuning::kIndependentRatio;
         equations.information.diagonal() += factor * known;
         equations.gradient += factor * known.cwiseProduct(now.sinceStart);
@@ -165,15 +165,17 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
                                   const ScanTrajectory& trajectory, double since_s,
                                   const TrajectoryPrior& prior, double kernel,
                                   const PlaneRegistrationOptions& options) {
-    // Of a steady motion, few points show enough while the kernel is wide; of a swing, all are
-    // needed.
+    // A steady motion is nearly known, and few points show enough while the kernel is wide. Of a
+    // swing, all points are needed.
     constexpr Eigen::Index kFew = 4000;
     constexpr double kSwing_m = 1;  // predictions are off by more
     if (scan.times_s.empty()) return trajectory;
+    const bool isSwing = kernel >= kSwing_m;
     const Coefficients known = informationOf(prior);
-    const TimedPoints few = sampled(scan, kernel < kSwing_m ? kFew : scan.points.cols());
+    const TimedPoints few = sampled(scan, isSwing ? scan.points.cols() : kFew);
+    const double first = isSwing ? kernel : std::min(kernel, 2 * options.last_kernel);
     Bending now{trajectory};
-    for (double width = std::max(kernel, options.last_kernel);;
+    for (double width = std::max(first, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
         const bool isLast = width <= options.last_kernel;
         if (!bend(map, isLast ? scan : few, since_s, known, width, options, now)) return trajectory;
