@@ -109,4 +109,14 @@ ScanView undistortedAgain(const PointCloud& cloud, const ScanTrajectory& traject
     again.thinned = centroidsOf(again.fine, again.fineVoxels).cast<double>();
     return again;
 }
+
+ScanView undistortedAnew(const PointCloud& cloud, const ScanTrajectory& trajectory,
+                         const std::vector<std::uint8_t>& dynamic, double mapSpacing,
+                         double planeSpacing) {
+    ScanView view = undistorted(cloud, trajectory);
+    view.dynamic = dynamic;
+    view.fine = voxelCentroids(unmarked(view.points, view.dynamic), mapSpacing);
+    thinForPlanes(view, planeSpacing);
+    return view;
+}
 }  // namespace delio::odometry

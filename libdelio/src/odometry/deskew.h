@@ -59,4 +59,11 @@ VoxelNumbers planeVoxels(const ScanView& view);
  *  they share in `view`, which is thinned for the map and for planes. Dynamic ones are left out. */
 ScanView undistortedAgain(const PointCloud& cloud, const ScanTrajectory& trajectory,
                           const ScanView& view);
+
+/** The same for any trajectory, along which points of one voxel may part. Its voxels are new:
+ *  their edges are `mapSpacing`, and `planeSpacing` for the planes (metres). `dynamic`: 1 for each
+ *  point that is left out. */
+ScanView undistortedAnew(const PointCloud& cloud, const ScanTrajectory& trajectory,
+                         const std::vector<std::uint8_t>& dynamic, double mapSpacing,
+                         double planeSpacing);
 }  // namespace delio::odometry

@@ -192,7 +192,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     auto found = map_.registerPlanes(view, placed, predicted, motion());
     wheels_.carry(pose_, found);
     if (!isDeskewed) return found;
-    auto deskewed = deskewAgain(cloud, since_s, placed.inlierRatio, found.pose(), view);
+    auto deskewed = deskewAgain(cloud, since_s, placed.inlierRatio, predicted, found.pose(), view);
     if (!deskewed) return found;
     found = deskewed->estimate;
     wheels_.carry(pose_, found);

@@ -150,7 +150,9 @@ class PlaneOdometry : public Odometry {
 
     // De-skewing by the motion that was found (pipeline_deskew.cpp).
     std::optional<ScanOnTrajectory> deskewAgain(const PointCloud& cloud, double since_s,
-                                                double inlierRatio, const Eigen::Isometry3d& pose,
+                                                double inlierRatio,
+                                                const Eigen::Isometry3d& predicted,
+                                                const Eigen::Isometry3d& pose,
                                                 const ScanView& view);
     std::optional<ScanTrajectory> trajectoryByGyro(const KnownEnds& known,
                                                    const PointCloud& cloud) const;

@@ -81,11 +81,15 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewByMotion(const KnownEnds& k
  *  either, the scan stays de-skewed by the prediction. `inlierRatio`: that of the scan as it is. */
 std::optional<ScanOnTrajectory> PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s,
                                                            double inlierRatio,
+                                                           const Eigen::Isometry3d& predicted,
                                                            const Eigen::Isometry3d& pose,
                                                            const ScanView& view) {
+    constexpr double kNear = 0.4;  // of the voxels' edge
+    const bool isNear =
+        !isShaken() && stepBetween(predicted, pose).norm() < kNear * options().spacing.map_spacing;
     const KnownEnds known{
         reference_.pose, since_s, pose, upright_, isPlacedByStanding(isGuessing()),
-        isShaken(),      motion()};
+        isNear,          motion()};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->inlierRatio >= inlierRatio - kInlierNoise;
     };

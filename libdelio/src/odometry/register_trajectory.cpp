@@ -222,15 +222,11 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
                                               const KnownEnds& known, const LocalMap& map,
                                               const PointCloud& cloud, const ScanView& view,
                                               const ScaledOptions& options) {
-    ScanView again;
-    if (known.isSwing) {  // the points of a voxel were put there by a prediction that is far off
-        again = undistorted(cloud, trajectory.seenFrom(0));
-        again.dynamic = view.dynamic;
-        again.fine =
-            voxelCentroids(unmarked(again.points, again.dynamic), options.spacing.map_spacing);
-        thinForPlanes(again, options.spacing.scan_spacing);
-    } else
-        again = undistortedAgain(cloud, trajectory.seenFrom(0), view);
+    const ScanTrajectory motion = trajectory.seenFrom(0);
+    ScanView again = known.isNearPrediction
+                         ? undistortedAgain(cloud, motion, view)
+                         : undistortedAnew(cloud, motion, view.dynamic, options.spacing.map_spacing,
+                                           options.spacing.scan_spacing);
     thinForPoints(again, known.upright, options.spacing.point_spacing, known.byStanding);
     const auto placed =
         map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));

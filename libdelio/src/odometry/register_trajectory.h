@@ -42,7 +42,7 @@ struct KnownEnds {
     Eigen::Isometry3d pose;       //!< at the scan's time, likewise
     Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
     bool byStanding = false;           //!< points above the ground place the scan
-    bool isSwing = false;              //!< predictions are off by more than any kernel
+    bool isNearPrediction = false;     //!< by which the scan was de-skewed first
     Motion motion = Motion::kUnknown;  //!< before `reference`
 };
 

@@ -129,4 +129,19 @@ TEST(ScanView, PointsKeepTheirVoxelsWhenUndistortedAgain) {
     ASSERT_EQ(again.thinned.cols(), 2);
     EXPECT_NEAR(again.thinned(0, 0), (1.9 / 3 + 1.7) / 2, 1e-6);
 }
+
+// At 1 m/s the points at 0.2, 0.4 and 0.9, which shared a voxel, come to 0.2, 1.4 and 3.9.
+TEST(ScanView, VoxelsAreNewWhereAnotherMotionPartsTheirPoints) {
+    const odometry::PointCloud cloud = line();
+    const Twist motion = movingAt({1, 0, 0}, {0, 0, 0});
+    const ScanView view = viewOfALine(cloud),
+                   anew = undistortedAnew(cloud, motion, view.dynamic, 1, 4);
+    EXPECT_EQ(anew.points, undistorted(cloud, motion).points);
+    EXPECT_EQ(anew.dynamic, view.dynamic);
+    ASSERT_EQ(anew.fine.cols(), 4);
+    const Eigen::RowVector4f expected(0.2F, 1.4F, (3.5F + 3.9F) / 2, 14.5F);
+    EXPECT_LT((anew.fine.row(0) - expected).norm(), 1e-5F);
+    ASSERT_EQ(anew.thinned.cols(), 2);
+    EXPECT_NEAR(anew.thinned(0, 0), (0.2 + 1.4 + 3.7) / 3, 1e-6);
+}
 }  // namespace
