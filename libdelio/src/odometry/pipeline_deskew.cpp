@@ -84,9 +84,8 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewAgain(const PointCloud& clo
                                                            const Eigen::Isometry3d& predicted,
                                                            const Eigen::Isometry3d& pose,
                                                            const ScanView& view) {
-    constexpr double kNear = 0.4;  // of the voxels' edge
     const bool isNear =
-        !isShaken() && stepBetween(predicted, pose).norm() < kNear * options().spacing.map_spacing;
+        !isShaken() && stepBetween(predicted, pose).norm() < options().spacing.map_spacing;
     const KnownEnds known{
         reference_.pose, since_s, pose, upright_, isPlacedByStanding(isGuessing()),
         isNear,          motion()};
