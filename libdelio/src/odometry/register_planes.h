@@ -89,8 +89,7 @@ using Correspondences = std::vector<Correspondence>;
 class Matcher {
  public:
     /** Keeps references to the map, which must not change, and to the points (metres, the sensor's
-     *  frame).
-     *  `point_sigma`: of a measured point, metres. Not for several threads at once. */
+     *  frame). `point_sigma`: of a measured point, metres. Not for several threads at once. */
     Matcher(const PlaneMap& map, const Eigen::Matrix3Xd& points, double point_sigma);
 
     /** Points next to a plane of the map at `pose` (sensor to map), with robust weights
@@ -98,9 +97,9 @@ class Matcher {
      *  of the points. */
     Correspondences at(const Eigen::Isometry3d& pose, double kernel);
 
-    /** The same for points that placeOne(i) places, each by its number (metres, the map's frame):
-     *  the sum over addOne(i, placed, plane, weight, sum), the same bytes for any number of
-     * threads.
+    /** The same for points that placeOne(i) places (metres, the map's frame), summed up at once:
+     *  addOne(i, placed, plane, weight, sum) for each point i next to a plane. The same bytes for
+     *  any number of threads.
      *  @tparam Sum is nothing where it is made, and has += */
     template <typename Sum, typename PlaceOne, typename AddOne>
     Sum sumAt(const PlaceOne& placeOne, double kernel, const AddOne& addOne) {
@@ -114,7 +113,7 @@ class Matcher {
                        [&](std::size_t i, const Eigen::Vector3d& at, const Plane& plane,
                            double weight) { addOne(i, at, plane, weight, sums[block]); });
         });
-        Sum all;
+        Sum all{};
         for (const Sum& sum : sums) all += sum;
         return all;
     }

@@ -212,6 +212,19 @@ TEST(Matcher, FindsTheSameAsOneThatKnowsNoEarlierPose) {
             EXPECT_EQ(found[i].weight, wanted[i].weight);
         }
         EXPECT_EQ(matcher.shareAt(pose, kKernel), anew.shareAt(pose, kKernel));
+        double cost = 0;
+        for (const auto& match : wanted) {
+            const double r = match.residual(pose.linear(), pose.translation());
+            cost += match.weight * r * r;
+        }
+        const auto sum = matcher.sumAt<double>(
+            [&](std::size_t i) -> Eigen::Vector3d {
+                return pose * points.col(static_cast<Eigen::Index>(i));
+            },
+            kKernel,
+            [](std::size_t, const Eigen::Vector3d& at, const odometry::Plane& plane, double weight,
+               double& all) { all += weight * std::pow(plane.normal().dot(at - plane.mean), 2); });
+        EXPECT_NEAR(sum, cost, 1e-9 * cost);
     }
 }
 

@@ -45,7 +45,7 @@ struct Flight {
 // The eighth scan corrects them.
 TEST(PlaneOdometry, CorrectsTheFirstScansOnceMoreHaveFollowed) {
     double before_m = 0, after_m = 0;
-    for (const double phase_s : {0.0, 0.3, 0.6, 0.9}) {
+    for (const double phase_s : {0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.2, 1.35}) {
         const Flight flight{phase_s};
         odometry::PlaneOdometry odometry(Options::ofProfile("accurate").planes);
         std::vector<Isometry3d> asItCame, poses;
