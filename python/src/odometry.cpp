@@ -73,7 +73,7 @@ void bindPoses(StepClass& step) {
             "corrected",
             [](const PythonStep& of) {
                 py::list poses;
-                for (const auto& [scansAgo, pose] : of.step.corrected)
+                for (const auto& [scansAgo, pose, registered] : of.step.corrected)
                     poses.append(py::make_tuple(scansAgo, arrayOf(pose)));
                 return poses;
             },

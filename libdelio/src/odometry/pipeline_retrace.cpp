@@ -49,8 +49,7 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
     const auto isTracked = [](const BeginningScan& scan) { return scan.points.has_value(); };
     const auto tracked = static_cast<std::size_t>(
         std::find_if_not(beginning_.rbegin(), beginning_.rend(), isTracked) - beginning_.rbegin());
-    const bool isHopeful = tracked > 0 || !prediction_.hasMotion() || beginning_.size() < kFirst;
-    if (beginning_.size() >= kMost || !isHopeful) return beginning_.clear();
+    if (beginning_.size() >= kMost) return beginning_.clear();
     if (tracked + 1 < kFirst + kLater) return;
     // Scans that need no de-skewing are registered well from the second one on.
     const bool wasTracked = tracked + 1 >= beginning_.size();
@@ -82,6 +81,7 @@ void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
         ReportedPath::Scan& scan = past[known + i];
         while (k < count && beginning_[k + 1].scan.time_s <= scan.stamp_s) ++k;
         scan.at.pose = atStamp(trajectories[k], scan.stamp_s - beginning_[k].scan.time_s);
+        scan.isRegistered = true;
     }
     const Eigen::Isometry3d moved =
         trajectories[first].at(0) * beginning_[first].scan.trajectory.at(0).inverse();
@@ -143,7 +143,7 @@ std::optional<ScanTrajectory> PlaneOdometry::stepBack(const MovingScan& scan) {
     const ScanTrajectory before = reversed(scan.trajectory);
     Attempt asBefore = attemptBy(cloud, expectation(before.at(0), false, duration_s, true),
                                  before.seenFrom(0), step);
-    const bool wasBetter = asBefore.isBetterThan(attempt);
+    const bool wasBetter = !attempt.placement.isLikely && asBefore.isBetterThan(attempt);
     if (wasBetter) endWindow();
     track(cloud, std::move(wasBetter ? asBefore : attempt), step);
     if (!step.reason.empty()) return {};

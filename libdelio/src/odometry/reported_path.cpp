@@ -55,7 +55,7 @@ void ReportedPath::correct(const std::vector<MovingScan>& scans) {
         for (auto scan = first; scan != scans_.end(); ++scan)
             if (scan->time_s == moved.time_s) {
                 scan->at.pose = moved.trajectory.at(scan->stamp_s - moved.time_s);
-                scan->isCorrected = true;
+                scan->isCorrected = scan->isRegistered = true;
             }
     // The first of them stays where it was said to be.
     const Eigen::Isometry3d moved = first->at.pose * held.pose.inverse();
@@ -70,7 +70,8 @@ void ReportedPath::report(Step& step) {
         if (!std::exchange(scans_[i].isCorrected, false)) continue;
         const Eigen::Isometry3d fromHere = normalised(latest_.pose.inverse() * scans_[i].at.pose);
         scans_[i].at.reported = reported_ * fromHere;
-        step.corrected.push_back({scans_.size() - i, fromHere});
+        step.corrected.push_back(
+            {scans_.size() - i, fromHere, std::exchange(scans_[i].isRegistered, false)});
     }
     scans_.push_back({latest_.time_s, latest_.sinceStart_s(), anchor()});
     if (scans_.size() > kMostScans) scans_.pop_front();

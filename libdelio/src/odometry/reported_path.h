@@ -31,10 +31,11 @@ class ReportedPath {
  public:
     /** An earlier scan. */
     struct Scan {
-        double time_s = 0;         //!< of the scan, since the start
-        double stamp_s = 0;        //!< its stamp, likewise
-        Anchor at;                 //!< at the stamp
-        bool isCorrected = false;  //!< by the latest scan
+        double time_s = 0;          //!< of the scan, since the start
+        double stamp_s = 0;         //!< its stamp, likewise
+        Anchor at;                  //!< at the stamp
+        bool isCorrected = false;   //!< by the latest scan
+        bool isRegistered = false;  //!< at the pose that the latest scan corrects
     };
 
     const Stamped& latest() const { return latest_; }

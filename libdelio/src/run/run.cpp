@@ -154,6 +154,8 @@ RunRow Run::process(const Scan& scan, double read_ms) {
             "scan %zu is not later than the previous one: trajectory_tum.txt is not written",
             scan.index));
     }
+    for (const auto& corrected : report.step.corrected)
+        if (corrected.registered) rows.at(rows.size() - corrected.scansAgo).lost = false;
     rows.push_back(row);
     try {
         if (rows_) rows_->add(row, slam_.trajectory().poses.back());

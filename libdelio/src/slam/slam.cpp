@@ -113,7 +113,7 @@ ScanReport Slam::process(const Scan& scan) {
     if (nodes_ > 0) {
         told.increment = ofVehicle(report.step.increment, sensorPose_, scan.sensorPose);
         told.pose = poses.back() * told.increment.pose;
-        for (const auto& [scansAgo, pose] : report.step.corrected)
+        for (const auto& [scansAgo, pose, registered] : report.step.corrected)
             told.corrected.push_back({nodes_ - scansAgo, told.pose * scan.sensorPose * pose *
                                                              scan.sensorPose.inverse()});
     }

@@ -57,7 +57,7 @@ TEST(PlaneOdometry, AStartThatShowsNoMotionIsCorrectedOnceItIsKnown) {
     for (std::size_t i = 0; i < kScans; ++i) {
         const Step step = odometry.process(scanAt(i, noise));
         poses.push_back(i == 0 ? Isometry3d::Identity() : poses.back() * step.increment.pose);
-        for (const auto& [scansAgo, pose] : step.corrected)
+        for (const auto& [scansAgo, pose, registered] : step.corrected)
             poses.at(i - scansAgo) = poses[i] * pose;
         newMaps += step.track > track;
         track = step.track;

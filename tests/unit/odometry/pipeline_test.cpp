@@ -277,7 +277,7 @@ TEST(PlaneOdometry, TheStampMayLieOutsideTheScan) {
             const auto result = odometry.process(scan);
             EXPECT_FALSE(result.predicted) << i;
             if (i > 0) poses.push_back(poses.back() * result.increment.pose);
-            for (const auto& [scansAgo, pose] : result.corrected)
+            for (const auto& [scansAgo, pose, registered] : result.corrected)
                 poses[i - scansAgo] = poses[i] * pose;
         }
         for (std::size_t i = 1; i < poses.size(); ++i) {

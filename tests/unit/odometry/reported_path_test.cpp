@@ -38,6 +38,7 @@ TEST(ReportedPath, ScansThatMovedAreCorrectedAndTheOneBeforeThem) {
     for (std::size_t i = 0; i < 3; ++i) {
         const auto& corrected = step.corrected[i];
         EXPECT_EQ(corrected.scansAgo, 3 - i);
+        EXPECT_EQ(corrected.registered, i > 0) << "the scan before them only moves along";
         EXPECT_NEAR(corrected.pose.translation().x(), -static_cast<double>(3 - i), 1e-9);
     }
 }

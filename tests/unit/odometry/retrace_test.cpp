@@ -52,7 +52,7 @@ TEST(PlaneOdometry, CorrectsTheFirstScansOnceMoreHaveFollowed) {
         for (std::size_t i = 0; i < kScans; ++i) {
             const Step step = odometry.process(flight.scan(i));
             poses.push_back(i == 0 ? Isometry3d::Identity() : poses.back() * step.increment.pose);
-            for (const auto& [scansAgo, pose] : step.corrected) {
+            for (const auto& [scansAgo, pose, registered] : step.corrected) {
                 ASSERT_LE(scansAgo, i);
                 poses[i - scansAgo] = poses[i] * pose;
             }

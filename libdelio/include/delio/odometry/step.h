@@ -55,6 +55,7 @@ class ScanFeatures {
 struct CorrectedPose {
     std::size_t scansAgo = 0;                                //!< 1: the scan before
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor's frame then to that now
+    bool registered = false;  //!< it was registered there: where it was lost, it is found
 };
 
 /** A named value. */
