@@ -357,9 +357,9 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     map_.clear(upAt(pose_));
     waiting_.reset();
     start_.reset();
-    const bool isRetraced = window_.isEmpty() && !usesGyro_;
-    if (prediction_.hasMotion() || !isRetraced) beginning_.clear();
-    if (isRetraced) beginning_.push_back({{cloud, time_s_, Twist{}}, {}, track_});
+    if (prediction_.hasMotion() || usesGyro_) beginning_.clear();
+    if (window_.isEmpty() && !usesGyro_)
+        beginning_.push_back({{cloud, time_s_, Twist{}}, {}, track_});
     dynamics_.clear();
     inlierRatios_.usual = 0;
     map_.addScan(view.fine, pose_);

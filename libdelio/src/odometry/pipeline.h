@@ -245,6 +245,7 @@ class PlaneOdometry : public Odometry {
     ScanWindow window_;
     /** While single scans do not show the speed. None while scans are retraced. */
     std::optional<SpeedSearch> speeds_;
+    unsigned shownSpeeds_ = 0;  //!< scans in a row up to the latest one that show the speed
     /** The window holds all scans of the map: each scan more corrects the earlier ones. */
     struct Start {
         double stamp_s = 0;  //!< of the first scan, since the start of the drive

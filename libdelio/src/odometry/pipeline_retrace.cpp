@@ -133,6 +133,7 @@ void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
  * found before. The sensor's trajectory during it (sensor to map, times from the scan's); nothing
  * where the scan is not found, or fitted clearly better before. */
 std::optional<ScanTrajectory> PlaneOdometry::stepBack(const MovingScan& scan) {
+    constexpr double kClearlyBetter = 1.2;
     PointCloud cloud = reversed(scan.cloud);
     const double duration_s = -scan.time_s - time_s_;
     time_s_ = -scan.time_s;
@@ -143,7 +144,11 @@ std::optional<ScanTrajectory> PlaneOdometry::stepBack(const MovingScan& scan) {
     const ScanTrajectory before = reversed(scan.trajectory);
     Attempt asBefore = attemptBy(cloud, expectation(before.at(0), false, duration_s, true),
                                  before.seenFrom(0), step);
-    const bool wasBetter = !attempt.placement.isLikely && asBefore.isBetterThan(attempt);
+    // Scans that were taken for those of a sensor that stood lie on each other better.
+    const double least =
+        attempt.placement.isLikely ? kClearlyBetter * attempt.placement.estimate.inlierRatio : 0;
+    const bool wasBetter =
+        asBefore.isBetterThan(attempt) && asBefore.placement.estimate.inlierRatio > least;
     if (wasBetter) endWindow();
     track(cloud, std::move(wasBetter ? asBefore : attempt), step);
     if (!step.reason.empty()) return {};

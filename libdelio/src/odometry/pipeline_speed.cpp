@@ -10,18 +10,26 @@ bool PlaneOdometry::settleSpeed(const PointCloud& cloud, const PlaneEstimate& es
     if (!speeds_) return false;
     constexpr double kVertical = 0.7;  // of the unit axis
     const Eigen::Vector3d& axis = estimate.weakestAxis;
-    // At a start a vehicle that drives along may be all that shows a speed.
-    constexpr double kThin = 0.01;  // of the planes' weight
-    const bool isDoubtful = !beginning_.empty() && estimate.translation.observability[0] < kThin;
+    // A vehicle that drives along may be all that shows a speed, above all at a start. Posts that
+    // are evenly spaced show many.
+    constexpr double kThin = 0.01, kThinAtFirst = 0.03;  // of the planes' weight
+    constexpr double kFewSectors = 2;                    // that such a vehicle covers
+    const double observability = estimate.translation.observability[0];
+    const double speed_mps = axis.dot(pose_.linear() * prediction_.predict(1).translation());
+    const bool isDoubtful =
+        (observability < kThinAtFirst && !beginning_.empty()) ||
+        (observability < kThin && estimate.weakestSpread < kFewSectors) ||
+        std::abs(speed_mps) > options().spacing.first_speed;
     const bool isHidden = estimate.valid &&
                           (isDoubtful || std::holds_alternative<Degenerate>(state_)) &&
                           place_.scale() >= 1 && !isShaken() && !isUrgent_ &&
                           !wheels_.haveCarried() && std::abs(axis.dot(upAt(pose_))) < kVertical;
-    if (!isHidden) {
+    constexpr unsigned kPatience = 4;
+    shownSpeeds_ = isHidden ? 0 : shownSpeeds_ + 1;
+    if (!estimate.valid || shownSpeeds_ > kPatience) {
         speeds_->clear();
         return false;
     }
-    const double speed_mps = axis.dot(pose_.linear() * prediction_.predict(1).translation());
     const auto scans =
         speeds_->add({cloud, time_s_, trajectoryOfLatest()}, {axis, speed_mps, upright_});
     if (scans) restartAt(*scans);
@@ -31,7 +39,8 @@ bool PlaneOdometry::settleSpeed(const PointCloud& cloud, const PlaneEstimate& es
 /** A new map of the latest scans, which were placed together. */
 void PlaneOdometry::restartAt(const std::vector<MovingScan>& scans) {
     endWindow();
-    beginning_.clear();
+    // Since when the speed was wrong is not known, except at a start.
+    if (beginning_.empty()) track_ = ++latestTrack_;
     left_.reset();
     dynamics_.clear();
     extrapolation_.reset();
@@ -52,8 +61,14 @@ void PlaneOdometry::restartAt(const std::vector<MovingScan>& scans) {
                                 scan.time_s - scans[i - 1].time_s);
         reference_ = {view.points, pose_, scan.time_s};
         waiting_ = PlacedPoints{std::move(view.fine), pose_};
+        for (BeginningScan& first : beginning_)
+            if (first.scan.time_s == scan.time_s) first = {scan, waiting_, track_};
     }
     state_ = Tracking{};
-    path_.correct(scans);
+    // The scans before have to be registered again, too: see retraceStart().
+    const Eigen::Isometry3d moved = path_.correct(scans);
+    for (auto& [scan, points, track] : beginning_)
+        if (scan.time_s < scans.front().time_s)
+            scan.trajectory = placed(moved * scan.trajectory.at(0), scan.trajectory.seenFrom(0));
 }
 }  // namespace delio::odometry

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "delio/core/geometry.h"
+#include "odometry/sectors.h"
 
 namespace delio::odometry {
 Matcher::Matcher(const PlaneMap& map, const Eigen::Matrix3Xd& points, double point_sigma)
@@ -268,6 +269,11 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
     translation.observability = shares(move.information, move.weight);
     estimate.weakestAxis =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(move.information).eigenvectors().col(0);
+    Sectors shown = Sectors::Zero();
+    for (const auto& match : matches)
+        shown[sectorOf(match.point)] +=
+            match.weight * std::pow(match.normal.dot(estimate.weakestAxis), 2);
+    estimate.weakestSpread = spreadOf(shown);
     // Normals are known from no more independent points than residuals are; and where an edge was
     // taken for a plane, worse.
     constexpr double kEdges = 3;

@@ -36,12 +36,12 @@ void ReportedPath::correctSince(double lost_s, double left_s, const Eigen::Isome
         scan->at.pose = last.at.pose * twist.after(scan->stamp_s - last.stamp_s);
 }
 
-void ReportedPath::correct(const std::vector<MovingScan>& scans) {
+Eigen::Isometry3d ReportedPath::correct(const std::vector<MovingScan>& scans) {
     constexpr double kSoon_s = 0.5;
     const MovingScan& earliest = scans.front();
     auto first = std::find_if(scans_.begin(), scans_.end(),
                               [&](const Scan& scan) { return scan.time_s >= earliest.time_s; });
-    if (first == scans_.end()) return;
+    if (first == scans_.end()) return Eigen::Isometry3d::Identity();
     // The motion since the scan before was not known, either.
     const bool isBefore =
         first != scans_.begin() && std::prev(first)->time_s > earliest.time_s - kSoon_s;
@@ -61,6 +61,7 @@ void ReportedPath::correct(const std::vector<MovingScan>& scans) {
     const Eigen::Isometry3d moved = first->at.pose * held.pose.inverse();
     for (auto scan = scans_.begin(); scan != first; ++scan) scan->at.pose = moved * scan->at.pose;
     moveTo({first->at.pose, held.reported});
+    return moved;
 }
 
 void ReportedPath::report(Step& step) {

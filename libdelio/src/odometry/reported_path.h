@@ -62,8 +62,9 @@ class ReportedPath {
      *  both was even. */
     void correctSince(double lost_s, double left_s, const Eigen::Isometry3d& toLeft);
 
-    /** Corrects the scans among `scans`, whose trajectories changed; those before move along. */
-    void correct(const std::vector<MovingScan>& scans);
+    /** Corrects the scans among `scans`, whose trajectories changed. Returns how those before move
+     *  along. */
+    Eigen::Isometry3d correct(const std::vector<MovingScan>& scans);
 
     /** Ends the step of the latest scan: adds the corrected poses to it. */
     void report(Step& step);

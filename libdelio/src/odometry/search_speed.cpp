@@ -2,7 +2,10 @@
 
 #include <tbb/parallel_for.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "core/voxel_grid.h"
@@ -78,23 +81,72 @@ Eigen::Matrix3Xd inMap(const MovingScan& scan) {
     return (pose.linear() * points).colwise() + pose.translation();
 }
 
-int sectorOf(const Eigen::Vector3f& point) {
-    const double turn = std::atan2(point.y(), point.x()) / (2 * M_PI) + 0.5;
-    return std::min(static_cast<int>(turn * Overlap::kSectors), Overlap::kSectors - 1);
+/** Points of a scan at each speed, in the map. */
+struct PointsAtSpeeds {
+    Eigen::Matrix3Xd atRest, per_mps;
+
+    Eigen::Matrix3Xd at(double speed_mps) const { return atRest + speed_mps * per_mps; }
+};
+
+/** The points of each scan if the sensor moved along the unit vector `forward` (sensor's frame). */
+std::vector<PointsAtSpeeds> atSpeedsAlong(const Eigen::Vector3d& forward,
+                                          const std::vector<MovingScan>& scans) {
+    const auto resting = movedAt(Eigen::Vector3d::Zero(), scans), moved = movedAt(forward, scans);
+    std::vector<PointsAtSpeeds> points(scans.size());
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+        points[i].atRest = inMap(resting[i]);
+        points[i].per_mps = inMap(moved[i]) - points[i].atRest;
+    }
+    return points;
 }
 
-/** A point counts the less the farther it is from the nearest one, up to `reach` metres. */
-Overlap overlapOf(const std::vector<MovingScan>& scans, double reach) {
+/** Vertical columns about points (metres, the map's frame), at least `reach` wide. */
+class Columns {
+ public:
+    Columns(const Eigen::Matrix3Xd& points, double reach)
+        : centre_(points.rowwise().mean()), grid_(reach, kRadius_m), isNear_(grid_.size() + 1, 0) {
+        for (Eigen::Index i = 0; i < points.cols(); ++i) {
+            const std::size_t cell = cellOf(points.col(i));
+            if (cell < grid_.size())
+                grid_.forNeighbours(cell, [&](std::size_t near) { isNear_[near] = 1; });
+        }
+    }
+    /** The points that lie in them. */
+    Eigen::Matrix3Xd of(Eigen::Matrix3Xd points) const {
+        Eigen::Index count = 0;
+        for (Eigen::Index i = 0; i < points.cols(); ++i)
+            if (isNear_[cellOf(points.col(i))] != 0) points.col(count++) = points.col(i);
+        points.conservativeResize(3, count);
+        return points;
+    }
+
+ private:
+    static constexpr double kRadius_m = 120;
+
+    std::size_t cellOf(const Eigen::Vector3d& point) const {
+        const Eigen::Vector3f seen = (point - centre_).cast<float>();
+        return grid_.at(seen.x(), seen.y());
+    }
+
+    Eigen::Vector3d centre_;
+    LevelGrid grid_;
+    std::vector<std::uint8_t> isNear_;  //!< of each cell, and of points outside
+};
+
+/** Of the last scan's points, whose `sectors` are known, with those of the others. A point counts
+ *  the less the farther it is from the nearest one, up to `reach` metres. */
+Overlap overlapAt(double speed_mps, const std::vector<PointsAtSpeeds>& scans,
+                  const std::vector<int>& sectors, double reach) {
     PointMapOptions options;
     options.voxel_size = 0.5;
     options.spacing = 0.1;
     PointMap map(options);
-    for (std::size_t i = 0; i + 1 < scans.size(); ++i) map.add(inMap(scans[i]));
-    const Eigen::Matrix3Xf& asSeen = scans.back().cloud.points;
-    const Eigen::Matrix3Xd points = inMap(scans.back());
+    const Eigen::Matrix3Xd points = scans.back().at(speed_mps);
+    const Columns columns(points, reach);
+    for (std::size_t i = 0; i + 1 < scans.size(); ++i) map.add(columns.of(scans[i].at(speed_mps)));
     Overlap overlap;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const int sector = sectorOf(asSeen.col(i));
+        const int sector = sectors[static_cast<std::size_t>(i)];
         ++overlap.count[sector];
         const auto nearest = map.nearest(points.col(i), reach);
         const double off = (nearest.point - points.col(i)).norm() / reach;
@@ -103,67 +155,38 @@ Overlap overlapOf(const std::vector<MovingScan>& scans, double reach) {
     return overlap;
 }
 
-/** A speed at which more points lie on the others than at those about it. */
-struct Peak {
-    int at = 0;
-    int before = 0, after = 0;  //!< the lowest shares to either side, up to where more points do
-    double prominence = 0;      //!< above the higher one of these
-};
+constexpr double kStep_mps = 1;  // between two speeds that are compared
 
-std::vector<Peak> peaksOf(const std::vector<double>& shares) {
-    const auto count = static_cast<int>(shares.size());
-    const auto shareOf = [&](int i) { return shares[static_cast<std::size_t>(i)]; };
-    std::vector<Peak> peaks;
-    for (int i = 1; i + 1 < count; ++i) {
-        if (shareOf(i) <= shareOf(i - 1) || shareOf(i) < shareOf(i + 1)) continue;
-        Peak peak{i, i, i};
-        for (int k = i; k >= 0 && shareOf(k) <= shareOf(i); --k)
-            if (shareOf(k) < shareOf(peak.before)) peak.before = k;
-        for (int k = i; k < count && shareOf(k) <= shareOf(i); ++k)
-            if (shareOf(k) < shareOf(peak.after)) peak.after = k;
-        peak.prominence = shareOf(i) - std::max(shareOf(peak.before), shareOf(peak.after));
-        peaks.push_back(peak);
-    }
-    return peaks;
-}
+/** By how much the share of points that lie on other scans is higher at each speed (row) than at
+ *  those about it, in each sector (column). Neither a sector with many points nor one with a high
+ *  share, such as a wall or a vehicle that drives along, outvotes the others. */
+using Votes = Eigen::Array<double, Eigen::Dynamic, kSectors>;
 
-/** How many sectors contribute to the peak: a vehicle that drives along is in one or two. */
-double sectorsOf(const Peak& peak, const std::vector<Overlap>& overlaps) {
-    const auto shares = [&](int i) {
+Votes votesOf(const std::vector<Overlap>& overlaps) {
+    constexpr Eigen::Index kAbout = 5;  // speeds to either side
+    constexpr double kMost = 0.05, kMany = 100;
+    const auto speeds = static_cast<Eigen::Index>(overlaps.size());
+    Votes shares(speeds, kSectors), votes = shares;
+    Sectors count = Sectors::Zero();
+    for (Eigen::Index i = 0; i < speeds; ++i) {
         const Overlap& overlap = overlaps[static_cast<std::size_t>(i)];
-        return (overlap.matched / overlap.count.max(1)).eval();
-    };
-    const Overlap::Sectors gain = shares(peak.at) - shares(peak.before).max(shares(peak.after)),
-                           &count = overlaps[static_cast<std::size_t>(peak.at)].count;
-    const Overlap::Sectors points = (gain * count).max(0);
-    return points.square().sum() > 0 ? std::pow(points.sum(), 2) / points.square().sum() : 0;
-}
-
-/** Of the speeds that `isPossible`, those with the two highest peaks. */
-struct Peaks {
-    Peak best, second;
-};
-
-template <typename IsPossible>
-Peaks highestOf(const std::vector<Overlap>& overlaps, const IsPossible& isPossible) {
-    std::vector<double> shares;
-    shares.reserve(overlaps.size());
-    for (const Overlap& overlap : overlaps) shares.push_back(overlap.share());
-    Peaks highest;
-    for (const Peak& peak : peaksOf(shares)) {
-        if (!isPossible(peak.at)) continue;
-        if (peak.prominence > highest.best.prominence)
-            highest.second = std::exchange(highest.best, peak);
-        else if (peak.prominence > highest.second.prominence)
-            highest.second = peak;
+        shares.row(i) = overlap.matched / overlap.count.max(1);
+        count += overlap.count / static_cast<double>(speeds);
     }
-    return highest;
+    const Sectors weights = (count / kMany).min(1);
+    std::array<double, 2 * kAbout + 1> about{};
+    for (Eigen::Index sector = 0; sector < kSectors; ++sector)
+        for (Eigen::Index i = 0; i < speeds; ++i) {
+            for (Eigen::Index k = -kAbout; k <= kAbout; ++k)
+                about[static_cast<std::size_t>(k + kAbout)] =
+                    shares(std::clamp<Eigen::Index>(i + k, 0, speeds - 1), sector);
+            std::nth_element(about.begin(), about.begin() + kAbout, about.end());
+            const double gain = std::min(shares(i, sector) - about[kAbout], kMost);
+            votes(i, sector) = weights[sector] / std::max(weights.sum(), 1.) * gain;
+        }
+    return votes;
 }
 
-constexpr double kStep_mps = 1;      // between two speeds that are compared
-constexpr double kLikely = 0.015;    // prominence of a peak that may be the right one
-constexpr double kClear = 0.04;      // and of one that few scans show
-constexpr double kFewSectors = 3.5;  // a vehicle that drives along is in one or two
 }  // namespace
 
 void SpeedSearch::clear() {
@@ -205,17 +228,42 @@ std::vector<Overlap> SpeedSearch::overlapsAlong(const Eigen::Vector3d& forward,
     for (MovingScan& scan : scans) scan.cloud = thinned(scan.cloud, kSpacing);
     scans.back().cloud = standing(scans.back().cloud, upright, kMost);
     if (scans.back().cloud.points.cols() < kFewest) return {};
+    const auto points = atSpeedsAlong(forward, scans);
+    const Eigen::Matrix3Xf& last = scans.back().cloud.points;
+    std::vector<int> sectors;
+    for (Eigen::Index i = 0; i < last.cols(); ++i) sectors.push_back(sectorOf(last.col(i)));
     std::vector<Overlap> overlaps(static_cast<std::size_t>(2 * most_mps_ / kStep_mps) + 1);
     tbb::parallel_for(std::size_t{0}, overlaps.size(), [&](std::size_t i) {
         const double speed_mps = static_cast<double>(i) * kStep_mps - most_mps_;
-        overlaps[i] = overlapOf(movedAt(speed_mps * forward, scans), reach_m_);
+        overlaps[i] = overlapAt(speed_mps, points, sectors, reach_m_);
     });
     return overlaps;
 }
 
+/** How far (m/s) the highest share of points is from the speed with that number, which is near. */
+double SpeedSearch::offsetOfPeak(Eigen::Index near) const {
+    constexpr Eigen::Index kFar = 2;  // many votes in a row may be the highest possible
+    const auto share = [&](Eigen::Index i) {
+        return overlaps_[static_cast<std::size_t>(i)].share();
+    };
+    const auto last = static_cast<Eigen::Index>(overlaps_.size()) - 1;
+    Eigen::Index at = near;
+    for (Eigen::Index i = std::max<Eigen::Index>(near - kFar, 0); i <= std::min(near + kFar, last);
+         ++i)
+        if (share(i) > share(at)) at = i;
+    const double offset = static_cast<double>(at - near);
+    if (at == 0 || at == last) return kStep_mps * offset;
+    const double before = share(at - 1), after = share(at + 1),
+                 curvature = before - 2 * share(at) + after;
+    const bool isPeak = share(at) > before && share(at) >= after;
+    return kStep_mps * (offset + (isPeak ? (before - after) / (2 * curvature) : 0));
+}
+
 std::optional<double> SpeedSearch::speedAlong(const Eigen::Vector3d& forward, double present_mps,
                                               const Eigen::Matrix3f& upright) {
-    constexpr double kForget = 0.6, kSame_mps = 3, kAlias_m = 0.8;
+    constexpr double kForget = 0.6, kSame_mps = 3, kAlias_m = 0.8, kLeast = 0.01, kClear = 1.4;
+    constexpr double kManySectors = 4.5;  // a vehicle that drives along is in one or two
+    constexpr double kNoSpeed = std::numeric_limits<double>::infinity();
     const auto now = overlapsAlong(forward, upright);
     if (now.empty()) {
         clear();
@@ -226,33 +274,32 @@ std::optional<double> SpeedSearch::speedAlong(const Eigen::Vector3d& forward, do
         overlaps_[i].count = kForget * overlaps_[i].count + now[i].count;
         overlaps_[i].matched = kForget * overlaps_[i].matched + now[i].matched;
     }
-    const auto speedAt = [&](int i) { return i * kStep_mps - most_mps_; };
-    const auto isSame = [](double a_mps, double b_mps) {
-        return std::abs(a_mps - b_mps) < kSame_mps;
+    const Votes votes = votesOf(overlaps_);
+    const Eigen::ArrayXd sums = votes.rowwise().sum();
+    const auto speedAt = [&](Eigen::Index i) {
+        return static_cast<double>(i) * kStep_mps - most_mps_;
     };
     // A sensor's own rings lie on each other where it seems to stand.
     const double duration_s = scans_.back().time_s - (scans_.end() - kTogether)->time_s,
                  alias_mps = kAlias_m * (kTogether - 1) / duration_s;
-    const auto isPossible = [&](int i) {
-        return std::abs(speedAt(i)) >= alias_mps && !isSame(speedAt(i), present_mps);
+    const auto bestBut = [&](double speed_mps) {
+        Eigen::Index best = 0;
+        for (Eigen::Index i = 1; i + 1 < sums.size(); ++i)
+            if (sums[i] > sums[i - 1] && sums[i] >= sums[i + 1] &&
+                std::abs(speedAt(i)) >= alias_mps &&
+                std::abs(speedAt(i) - speed_mps) >= kSame_mps &&
+                (best == 0 || sums[i] > sums[best]))
+                best = i;
+        return best;
     };
-    const auto [best, second] = highestOf(overlaps_, isPossible);
-    const double best_mps = speedAt(best.at);
-    const bool isLikely = best.prominence > kLikely && second.prominence < best.prominence / 2 &&
-                          sectorsOf(best, overlaps_) > kFewSectors &&
-                          isSame(best_mps, speedAt(highestOf(now, isPossible).best.at));
-    const bool isAgain = isSame(best_mps, likely_.speed_mps);
+    const Eigen::Index best = bestBut(kNoSpeed), second = bestBut(speedAt(best));
+    const double best_mps = speedAt(best);
+    const bool isLikely = best > 0 && sums[best] > kLeast &&
+                          sums[best] > kClear * (second > 0 ? sums[second] : 0) &&
+                          spreadOf(votes.row(best).max(0)) > kManySectors;
+    const bool isAgain = std::abs(best_mps - likely_.speed_mps) < kSame_mps;
     likely_ = {best_mps, !isLikely ? 0 : isAgain ? likely_.times + 1 : 1};
-    const bool isClear = best.prominence > kClear && second.prominence < best.prominence / 3;
-    if (likely_.times < (isClear ? kOften - 1 : kOften)) return {};
-
-    const auto shareAt = [&](int i) { return overlaps_[static_cast<std::size_t>(i)].share(); };
-    const auto present = static_cast<int>(std::lround((present_mps + most_mps_) / kStep_mps));
-    const bool isPresentShown = std::abs(present_mps) >= alias_mps && present >= 0 &&
-                                present < static_cast<int>(overlaps_.size()) &&
-                                shareAt(best.at) < shareAt(present) + kClear / 2;
-    if (isPresentShown) return {};
-    const double before = shareAt(best.at - 1), after = shareAt(best.at + 1);
-    return best_mps + kStep_mps * (before - after) / (2 * (before - 2 * shareAt(best.at) + after));
+    if (likely_.times < kOften || std::abs(best_mps - present_mps) < kSame_mps) return {};
+    return best_mps + offsetOfPeak(best);
 }
 }  // namespace delio::odometry

@@ -5,13 +5,11 @@
 #include <vector>
 
 #include "odometry/moving_scan.h"
+#include "odometry/sectors.h"
 
 namespace delio::odometry {
 /** Points of a scan in each of some sectors about the sensor. */
 struct Overlap {
-    static constexpr int kSectors = 12;
-    using Sectors = Eigen::Array<double, kSectors, 1>;
-
     Sectors count = Sectors::Zero();    //!< all
     Sectors matched = Sectors::Zero();  //!< those that lie on other scans
 
@@ -46,6 +44,7 @@ class SpeedSearch {
 
     std::vector<Overlap> overlapsAlong(const Eigen::Vector3d& forward,
                                        const Eigen::Matrix3f& upright) const;
+    double offsetOfPeak(Eigen::Index near) const;
     std::optional<double> speedAlong(const Eigen::Vector3d& forward, double present_mps,
                                      const Eigen::Matrix3f& upright);
 
