@@ -53,16 +53,21 @@ TEST(PlaneOdometry, AStartThatShowsNoMotionIsCorrectedOnceItIsKnown) {
     test::Noise noise;
     odometry::PlaneOdometry odometry(Options::ofProfile("accurate").planes);
     std::vector<Isometry3d> poses;
+    std::vector<bool> lost;
     std::size_t newMaps = 0, track = 0;
     for (std::size_t i = 0; i < kScans; ++i) {
         const Step step = odometry.process(scanAt(i, noise));
         poses.push_back(i == 0 ? Isometry3d::Identity() : poses.back() * step.increment.pose);
-        for (const auto& [scansAgo, pose, registered] : step.corrected)
+        lost.push_back(step.lost);
+        for (const auto& [scansAgo, pose, registered] : step.corrected) {
             poses.at(i - scansAgo) = poses[i] * pose;
+            if (registered) lost.at(i - scansAgo) = false;
+        }
         newMaps += step.track > track;
         track = step.track;
     }
     EXPECT_EQ(newMaps, 1U);
+    EXPECT_EQ(std::count(lost.begin(), lost.end(), true), 0);
     EXPECT_EQ(track, 0U);
     for (std::size_t i = 0; i < kScans; ++i)
         EXPECT_LT(test::metresBetween(poses[i], truthAt(i)), 0.1) << i;

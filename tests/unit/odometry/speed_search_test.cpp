@@ -75,6 +75,38 @@ TEST_P(SpeedSearches, FindTheSpeedOfScansThatSeemToStand) {
 }
 INSTANTIATE_TEST_SUITE_P(OfCars, SpeedSearches, testing::Values(-12, 11.3, 20, 33.7));
 
+// A lorry that drives along shows most of the points: it has no more votes than any other
+// direction.
+TEST(SpeedSearch, FindsTheSpeedBesideALorry) {
+    for (const std::uint32_t seed : {1, 2, 3}) {
+        const auto at = [&](double time_s) {
+            auto scene = avenue(seed);
+            const double rear = 20 * time_s - 3;
+            scene.push_back({{rear, 2, -1.6}, {rear + 9, 4.5, 1.5}});
+            return scene;
+        };
+        const auto found = search(at, 20, 12);
+        ASSERT_TRUE(found) << seed;
+        EXPECT_NEAR(velocityOf(*found).x(), 20, 0.5) << seed;
+    }
+}
+
+// Posts every 2 m lie on each other at 10 and 50 m/s, too.
+TEST(SpeedSearch, DoesNotTakeEvenlySpacedPostsForEachOther) {
+    std::size_t right = 0;
+    for (const std::uint32_t seed : {4, 5, 6}) {
+        auto scene = avenue(seed);
+        for (const double y : {-4.0, 4.0})
+            for (double x = -100; x < 200; x += 2)
+                scene.push_back({{x - 0.05, y - 0.05, -1.8}, {x + 0.05, y + 0.05, -1}});
+        const auto found = search([&](double) { return scene; }, 30, 24);
+        if (!found) continue;
+        EXPECT_NEAR(velocityOf(*found).x(), 30, 0.5) << seed;
+        ++right;
+    }
+    EXPECT_GE(right, 1U);
+}
+
 TEST(SpeedSearch, FindsNoSpeedOfASensorThatStands) {
     for (const std::uint32_t seed : {1, 2, 3}) {
         const auto scene = avenue(seed);
