@@ -1,6 +1,7 @@
 #include "odometry/pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "odometry/preprocess.h"
@@ -315,8 +316,15 @@ void PlaneOdometry::skip(const PointCloud& cloud, const Interval& interval, Step
 /** Of a scan at pose_. */
 void PlaneOdometry::report(const PlaneEstimate& estimate, ScanView& view, Step& step) const {
     const auto dynamic = std::count(view.dynamic.begin(), view.dynamic.end(), std::uint8_t{1});
-    step.increment = incrementOf(estimate.rotation, estimate.translation);
-    step.quality = qualityOf(estimate.rotation, estimate.translation);
+    TranslationEstimate translation = estimate.translation;
+    if (mayFollowVehicle(estimate)) {
+        const Eigen::Vector3d& axis = estimate.weakestAxis;
+        translation.unobservedAxes = axis;
+        translation.covariance +=
+            std::pow(options().registration.prior_sigma, 2) * axis * axis.transpose();
+    }
+    step.increment = incrementOf(estimate.rotation, translation);
+    step.quality = qualityOf(estimate.rotation, translation);
     step.predicted = !step.reason.empty();
     const auto points = std::max<double>(1, static_cast<double>(view.dynamic.size()));
     step.details.emplace_back("dynamic", static_cast<double>(dynamic));

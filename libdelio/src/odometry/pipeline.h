@@ -126,6 +126,7 @@ class PlaneOdometry : public Odometry {
     std::optional<ScanTrajectory> stepBack(const MovingScan& scan);
 
     // The speed where single scans do not show it (pipeline_speed.cpp).
+    bool mayFollowVehicle(const PlaneEstimate& estimate) const;
     bool settleSpeed(const PointCloud& cloud, const PlaneEstimate& estimate);
     void restartAt(const std::vector<MovingScan>& scans);
 

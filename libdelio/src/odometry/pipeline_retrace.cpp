@@ -33,8 +33,9 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
     constexpr std::size_t kFirst = 4, kLater = 4, kMost = 32;
     if (beginning_.empty()) return;
     if (beginning_.back().scan.time_s != time_s_) {
-        const bool isMissing = !step.reason.empty() && prediction_.hasMotion();
-        if (isMissing || isUrgent_ || left_ ||
+        const bool isSkipped = !step.reason.empty() && missesOf(state_) == 0,
+                   isMissing = !step.reason.empty() && prediction_.hasMotion();
+        if (isSkipped || isMissing || isUrgent_ || left_ ||
             hasTimes(cloud) != hasTimes(beginning_.back().scan.cloud))
             return beginning_.clear();
         const bool isTracking = std::holds_alternative<Tracking>(state_) && waiting_;
@@ -133,7 +134,6 @@ void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
  * found before. The sensor's trajectory during it (sensor to map, times from the scan's); nothing
  * where the scan is not found, or fitted clearly better before. */
 std::optional<ScanTrajectory> PlaneOdometry::stepBack(const MovingScan& scan) {
-    constexpr double kClearlyBetter = 1.2;
     PointCloud cloud = reversed(scan.cloud);
     const double duration_s = -scan.time_s - time_s_;
     time_s_ = -scan.time_s;
@@ -145,10 +145,7 @@ std::optional<ScanTrajectory> PlaneOdometry::stepBack(const MovingScan& scan) {
     Attempt asBefore = attemptBy(cloud, expectation(before.at(0), false, duration_s, true),
                                  before.seenFrom(0), step);
     // Scans that were taken for those of a sensor that stood lie on each other better.
-    const double least =
-        attempt.placement.isLikely ? kClearlyBetter * attempt.placement.estimate.inlierRatio : 0;
-    const bool wasBetter =
-        asBefore.isBetterThan(attempt) && asBefore.placement.estimate.inlierRatio > least;
+    const bool wasBetter = !attempt.placement.isLikely && asBefore.isBetterThan(attempt);
     if (wasBetter) endWindow();
     track(cloud, std::move(wasBetter ? asBefore : attempt), step);
     if (!step.reason.empty()) return {};

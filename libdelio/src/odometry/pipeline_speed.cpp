@@ -3,23 +3,33 @@
 #include "odometry/pipeline.h"
 
 namespace delio::odometry {
+namespace {
+constexpr double kVertical = 0.7;  // of a unit axis
+}  // namespace
+
+/** True where the planes that show the translation along a horizontal axis are few and lie in one
+ *  direction: they may be those of a vehicle that drives along. */
+bool PlaneOdometry::mayFollowVehicle(const PlaneEstimate& estimate) const {
+    constexpr double kThin = 0.05;     // of the planes' weight
+    constexpr double kFewSectors = 2;  // that such a vehicle covers
+    const auto& translation = estimate.translation;
+    const double observability = translation.observability[0];
+    return translation.unobservedAxes.cols() == 0 && observability > 0 && observability < kThin &&
+           estimate.weakestSpread < kFewSectors && place_.scale() >= 1 &&
+           std::abs(estimate.weakestAxis.dot(upAt(pose_))) < kVertical;
+}
+
 /** Where the scene hardly constrains the translation along a horizontal axis, a wrong speed (a
  *  standstill, above all) confirms itself scan by scan. True where several scans together show
  *  another one: tracking goes on at that speed. */
 bool PlaneOdometry::settleSpeed(const PointCloud& cloud, const PlaneEstimate& estimate) {
     if (!speeds_) return false;
-    constexpr double kVertical = 0.7;  // of the unit axis
     const Eigen::Vector3d& axis = estimate.weakestAxis;
-    // A vehicle that drives along may be all that shows a speed, above all at a start. Posts that
-    // are evenly spaced show many.
-    constexpr double kThin = 0.01, kThinAtFirst = 0.03;  // of the planes' weight
-    constexpr double kFewSectors = 2;                    // that such a vehicle covers
-    const double observability = estimate.translation.observability[0];
+    constexpr double kThinAtFirst = 0.03;  // of the planes' weight
     const double speed_mps = axis.dot(pose_.linear() * prediction_.predict(1).translation());
     const bool isDoubtful =
-        (observability < kThinAtFirst && !beginning_.empty()) ||
-        (observability < kThin && estimate.weakestSpread < kFewSectors) ||
-        std::abs(speed_mps) > options().spacing.first_speed;
+        (estimate.translation.observability[0] < kThinAtFirst && !beginning_.empty()) ||
+        mayFollowVehicle(estimate) || std::abs(speed_mps) > options().spacing.first_speed;
     const bool isHidden = estimate.valid &&
                           (isDoubtful || std::holds_alternative<Degenerate>(state_)) &&
                           place_.scale() >= 1 && !isShaken() && !isUrgent_ &&
