@@ -5,6 +5,7 @@
 namespace delio::odometry {
 namespace {
 constexpr double kVertical = 0.7;  // of a unit axis
+constexpr double kRooms = 0.5;     // scale of places that no vehicle drives through, at most
 }  // namespace
 
 /** True where the planes that show the translation along a horizontal axis are few and lie in one
@@ -15,7 +16,7 @@ bool PlaneOdometry::mayFollowVehicle(const PlaneEstimate& estimate) const {
     const auto& translation = estimate.translation;
     const double observability = translation.observability[0];
     return translation.unobservedAxes.cols() == 0 && observability > 0 && observability < kThin &&
-           estimate.weakestSpread < kFewSectors && place_.scale() >= 1 &&
+           estimate.weakestSpread < kFewSectors && place_.scale() > kRooms &&
            std::abs(estimate.weakestAxis.dot(upAt(pose_))) < kVertical;
 }
 
@@ -32,7 +33,7 @@ bool PlaneOdometry::settleSpeed(const PointCloud& cloud, const PlaneEstimate& es
         mayFollowVehicle(estimate) || std::abs(speed_mps) > options().spacing.first_speed;
     const bool isHidden = estimate.valid &&
                           (isDoubtful || std::holds_alternative<Degenerate>(state_)) &&
-                          place_.scale() >= 1 && !isShaken() && !isUrgent_ &&
+                          place_.scale() > kRooms && !isShaken() && !isUrgent_ &&
                           !wheels_.haveCarried() && std::abs(axis.dot(upAt(pose_))) < kVertical;
     constexpr unsigned kPatience = 4;
     shownSpeeds_ = isHidden ? 0 : shownSpeeds_ + 1;
