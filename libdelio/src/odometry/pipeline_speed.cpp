@@ -17,7 +17,7 @@ bool PlaneOdometry::mayFollowVehicle(const PlaneEstimate& estimate) const {
     const double observability = translation.observability[0];
     return translation.unobservedAxes.cols() == 0 && observability > 0 && observability < kThin &&
            estimate.weakestSpread < kFewSectors && place_.scale() > kRooms &&
-           std::abs(estimate.weakestAxis.dot(upAt(pose_))) < kVertical;
+           !wheels_.areTrusted() && std::abs(estimate.weakestAxis.dot(upAt(pose_))) < kVertical;
 }
 
 /** Where the scene hardly constrains the translation along a horizontal axis, a wrong speed (a

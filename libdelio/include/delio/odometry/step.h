@@ -23,7 +23,9 @@ struct Quality {
     /** Unit vectors in the sensor's frame at this scan about which the prediction was kept; all
      * three axes where the scan was predicted, or was the first. */
     Eigen::Matrix3Xd unobservedRotation;
-    Eigen::Matrix3Xd unobservedTranslation;  //!< the same for the translation
+    /** The same for the translation; also an axis along which few planes, all in one direction,
+     * show it: they may belong to a vehicle that drives along. */
+    Eigen::Matrix3Xd unobservedTranslation;
 };
 
 /** Points of a scan that were used, de-skewed to the stamp: metres, sensor frame, vertical angles
@@ -55,7 +57,7 @@ class ScanFeatures {
 struct CorrectedPose {
     std::size_t scansAgo = 0;                                //!< 1: the scan before
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor's frame then to that now
-    bool registered = false;  //!< it was registered there: where it was lost, it is found
+    bool registered = false;  //!< it was registered there: it is lost no more
 };
 
 /** A named value. */
