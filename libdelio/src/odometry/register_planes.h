@@ -42,7 +42,8 @@ struct PlaneEstimate {
     double inlierRatio = 0;
     /** Along which the planes constrain the translation least: a unit vector of the map's axes. */
     Eigen::Vector3d weakestAxis = Eigen::Vector3d::UnitX();
-    /** Over how many sectors about the sensor the planes that do so are spread (spreadOf()). */
+    /** Over how many sectors about the sensor the planes that constrain it are spread: see
+     *  spreadOf(). */
     double weakestSpread = 0;
     /** The planes alone constrain the translation along every axis. */
     bool isByPlanes = false;

@@ -16,8 +16,8 @@ int sectorOf(const Eigen::MatrixBase<Point>& point) {
     return std::min(static_cast<int>(turn * kSectors), kSectors - 1);
 }
 
-/** How many sectors the weights, which are not negative, are spread over: so many of equal weight
- *  have the same variance. */
+/** How many sectors the weights (not negative) are spread over: (sum w)^2 / sum w^2, which is n for
+ *  n equal weights. */
 inline double spreadOf(const Sectors& weights) {
     const double squares = weights.square().sum();
     return squares > 0 ? weights.sum() * weights.sum() / squares : 0;
