@@ -7,6 +7,7 @@
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "delio/core/error.h"
 #include "delio/core/geometry.h"
 #include "delio/core/stopwatch.h"
+#include "map/motion_labels.h"
 #include "map/stored_scan.h"
 #include "map/visibility_votes.h"
 #include "map/voxel_set.h"
@@ -183,19 +185,52 @@ void look(const MapParts& parts, const std::vector<Isometry3d>& poses,
     }
 }
 
-/** Votes of all scans about the voxels. */
+double seconds(mrpt::Clock::duration time) { return std::chrono::duration<double>(time).count(); }
+
+Eigen::Matrix3Xf pointsOf(const std::vector<float>& floats) {
+    return Eigen::Map<const Eigen::Matrix4Xf>(floats.data(), 4,
+                                              static_cast<Eigen::Index>(floats.size() / 4))
+        .topRows<3>();
+}
+
+/** Moving points of each scan, forward in time; empty if the odometry labelled them. */
+std::vector<std::vector<std::uint8_t>> missingLabels(const MapParts& parts,
+                                                     const std::vector<Isometry3d>& poses) {
+    const bool isLabelled = std::any_of(parts.scans.begin(), parts.scans.end(),
+                                        [](const StoredScan& scan) { return scan.isLabelled; });
+    std::vector<std::vector<std::uint8_t>> all;
+    if (isLabelled) return all;
+    MotionLabels labels;
+    for (const StoredScan& scan : parts.scans)
+        all.push_back(labels.of(pointsOf(parts.spool->read(scan.points)),
+                                poseOf(scan, poses) * scan.sensorPose,
+                                seconds(scan.stamp - parts.scans.front().stamp)));
+    return all;
+}
+
+/** Votes of all scans about the voxels. Backward in time, to find the objects whose motion the
+ *  scans after them show. */
 std::shared_ptr<const VisibilityVotes> votesOf(const MapParts& parts,
                                                const std::vector<Isometry3d>& poses) {
+    const bool isRemoving = parts.options.removal.enabled;
     auto votes = std::make_shared<VisibilityVotes>(parts.options.removal);
-    for (std::size_t i = 0; i < parts.scans.size(); ++i) {
+    std::vector<std::vector<std::uint8_t>> forward;
+    if (isRemoving) forward = missingLabels(parts, poses);
+    MotionLabels backward;
+    for (std::size_t i = parts.scans.size(); i-- > 0;) {
         const StoredScan& scan = parts.scans[i];
         const Isometry3d sensorInWorld = poseOf(scan, poses) * scan.sensorPose;
         const auto floats = parts.spool->read(scan.points);
-        for (std::size_t k = 0; 4 * k < floats.size(); ++k)
-            votes->hit(sensorInWorld * pointAt(&floats[4 * k]), k >= scan.still,
+        std::vector<std::uint8_t> moving(floats.size() / 4);
+        if (isRemoving)
+            moving = backward.of(pointsOf(floats), sensorInWorld,
+                                 seconds(parts.scans.front().stamp - scan.stamp));
+        for (std::size_t k = 0; k < moving.size(); ++k)
+            votes->hit(sensorInWorld * pointAt(&floats[4 * k]),
+                       moving[k] || k >= scan.still || (!forward.empty() && forward[i][k]),
                        static_cast<std::uint32_t>(i));
     }
-    if (!parts.options.removal.enabled) return votes;
+    if (!isRemoving) return votes;
     look(parts, poses, {}, *votes);
     votes->decide();
     return votes;
@@ -212,9 +247,8 @@ class Sorter {
 
     void add(const StoredScan& scan, const Isometry3d& sensorInWorld) {
         const auto floats = parts_.spool->read(scan.points);
-        const std::chrono::duration<double> since = scan.stamp - parts_.scans.front().stamp;
         MapPoint point;
-        point.time_s = static_cast<float>(since.count());
+        point.time_s = static_cast<float>(seconds(scan.stamp - parts_.scans.front().stamp));
         for (std::size_t k = 0; 4 * k < floats.size(); ++k) {
             const Eigen::Vector3d at = sensorInWorld * pointAt(&floats[4 * k]);
             const bool isDynamic = votes_.isDynamic(at);

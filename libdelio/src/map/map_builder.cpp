@@ -160,6 +160,7 @@ bool MapBuilder::add(std::size_t poseIndex, const Isometry3d& approximatePose,
     scan.stamp = stamp;
     scan.withIntensity = dynamic_cast<const CPointsMapXYZI*>(&sensorPoints) != nullptr;
     scan.still = points.still;
+    scan.isLabelled = !moving.empty();
     scan.isKeyframe = scan.still > 0 && (keyframes_ == 0 || isFarFromLastKeyframe(approximatePose));
     const bool isView = options_.removal.enabled && isFarFromLastView(approximatePose, stamp);
     putAside(points.floats, isView ? &sensorPoints : nullptr, scan);

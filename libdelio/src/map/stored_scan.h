@@ -18,6 +18,7 @@ struct StoredScan {
      *  ones. */
     io::Spool::Place points;
     std::size_t still = 0;
+    bool isLabelled = false;  //!< it is known which points are dynamic
     /** Range image of all its points; may be empty if free space is not needed. */
     io::Spool::Place view;
     int viewFirstRow = 0;

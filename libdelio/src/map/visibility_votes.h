@@ -18,7 +18,8 @@ class VisibilityVotes {
  public:
     explicit VisibilityVotes(const RemovalOptions& options) : options_(options) {}
 
-    /** Scan number `scan`, rising, saw something at `point`; `moving`: as a part of what moves. */
+    /** Scan number `scan` saw something at `point`; `moving`: as a part of what moves. All hits of
+     *  a scan come together. */
     void hit(const Eigen::Vector3d& point, bool moving, std::uint32_t scan);
 
     /** Asks a scan of every voxel within `reach_m`. */

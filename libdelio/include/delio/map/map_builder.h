@@ -31,9 +31,9 @@ struct RemovalOptions : StageOptions {
     double margin_m = 0.5;   //!< a beam that continued by this saw through a voxel
     unsigned witnesses = 2;  //!< minimum number of scans that saw through a dynamic voxel
     /** A voxel is dynamic if this many times more scans saw through it than hit it. */
-    double freePerTaken = 1.5;
+    double freePerTaken = 1.4;
     /** An uncertain voxel is dynamic if at least this fraction of its neighbours is. */
-    double grownShare = 0.5;
+    double grownShare = 0.55;
 
  protected:
     std::vector<OptionField> fields() const override;
@@ -112,7 +112,8 @@ class MapBuilder {
      *  @param sensorPoints in the sensor's frame; intensities are kept of a CPointsMapXYZI
      *  @param sensorPose pose of the sensor in the vehicle
      *  @param stamp of the observation (MRPT takes time 0 for "no time")
-     *  @param moving 1 for each of `sensorPoints` labelled as dynamic, otherwise 0; empty: none is
+     *  @param moving 1 for each of `sensorPoints` labelled as dynamic, otherwise 0; empty: not
+     *  known. If no scan has labels, build() finds moving objects itself.
      */
     bool add(std::size_t poseIndex, const Eigen::Isometry3d& approximatePose,
              const mrpt::maps::CPointsMap& sensorPoints, const Eigen::Isometry3d& sensorPose,
