@@ -117,7 +117,8 @@ std::vector<Segment> segmentsOf(const Eigen::Matrix3Xf& points, const SegmentTun
 
 bool DynamicObjects::isFree(const Object& object, const View& seen, const View& by,
                             double minKnown) const {
-    const Eigen::Isometry3f toSensor = by.toMap.inverse() * seen.toMap;
+    const Eigen::Isometry3f toSensor =
+        Eigen::Isometry3f(by.upright.transpose()) * by.toMap.inverse() * seen.toMap;
     // A part of the points of a large object is enough.
     constexpr Eigen::Index kEnough = 64;
     const Eigen::Index stride = std::max<Eigen::Index>(1, object.points.cols() / kEnough);
@@ -259,7 +260,8 @@ DynamicObjects::Sight DynamicObjects::see(const Eigen::Matrix3Xf& points,
     Sight sight;
     const Eigen::Matrix3Xf level = upright * points;
     sight.points_ = static_cast<std::size_t>(points.cols());
-    tbb::parallel_invoke([&] { sight.image_ = RangeImage(all, options_.cell_deg, upright); },
+    sight.upright_ = upright;
+    tbb::parallel_invoke([&] { sight.image_ = RangeImage(all, options_.cell_deg); },
                          [&] { sight.segments_ = segmentsOf(level, SegmentTuning()); });
     for (const auto& segment : sight.segments_) {
         Object object;
@@ -277,7 +279,12 @@ std::vector<std::uint8_t> DynamicObjects::detect(Sight sight, const Eigen::Isome
                                                  double stamp_s) {
     while (!views_.empty() && stamp_s - views_.back().stamp_s > dynamic_tuning::kMemory_s)
         views_.pop_back();
-    latest_ = {stamp_s, pose.cast<float>(), std::move(sight.image_), std::move(sight.objects_), {},
+    latest_ = {stamp_s,
+               pose.cast<float>(),
+               sight.upright_,
+               std::move(sight.image_),
+               std::move(sight.objects_),
+               {},
                {}};
     for (auto& object : latest_.objects) object.place = latest_.toMap * object.centre;
     const auto& segments = sight.segments_;

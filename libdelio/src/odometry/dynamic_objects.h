@@ -91,7 +91,7 @@ class DynamicObjects {
     void clear() { views_.clear(); }
 
  private:
-    /** What is kept of a scan: all in its sensor's frame. */
+    /** What is kept of a scan: all in its level frame. */
     struct Object {
         Eigen::Matrix3Xf points;
         Eigen::Vector3f centre, size;
@@ -112,8 +112,9 @@ class DynamicObjects {
     };
     struct View {
         double stamp_s = 0;
-        Eigen::Isometry3f toMap = Eigen::Isometry3f::Identity();
-        RangeImage image;
+        Eigen::Isometry3f toMap = Eigen::Isometry3f::Identity();  //!< from the level frame
+        Eigen::Matrix3f upright = Eigen::Matrix3f::Identity();    //!< sensor's to level frame
+        RangeImage image;                                         //!< sensor's frame
         Objects objects;                  //!< of an earlier scan: by their places' x
         Outlines outlines;                //!< of an earlier scan's objects
         std::vector<std::size_t> moving;  //!< those of them whose velocity is known
@@ -138,11 +139,12 @@ class DynamicObjects {
     Eigen::Matrix3Xf unmasked_;
 };
 
-/** The image, the segments and the objects of one scan, in its sensor's frame. */
+/** The image of one scan, in its sensor's frame, its segments and its objects, in the level one. */
 class DynamicObjects::Sight {
  private:
     friend class DynamicObjects;
     std::size_t points_ = 0;
+    Eigen::Matrix3f upright_ = Eigen::Matrix3f::Identity();
     RangeImage image_;
     std::vector<Segment> segments_;
     Objects objects_;  //!< of the segments

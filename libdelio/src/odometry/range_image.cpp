@@ -32,24 +32,20 @@ inline int RangeImage::Directions::columnOf(float x, float y) const {
 }
 
 /** Cells, counted from the lowest row that there can be, and ranges of a few points. */
-void RangeImage::Directions::see(const Eigen::Ref<const Eigen::Matrix3Xf>& points,
-                                 const Eigen::Matrix3f& turn, int* cells, float* ranges) const {
+void RangeImage::Directions::see(const Eigen::Ref<const Eigen::Matrix3Xf>& points, int* cells,
+                                 float* ranges) const {
     // Each coordinate in a row of its own, and a plain loop: vector instructions.
-    const Eigen::Array<float, 3, Eigen::Dynamic, Eigen::RowMajor> given = points.array();
-    const auto turned = [&](Eigen::Index axis) -> Eigen::ArrayXf {
-        return turn(axis, 0) * given.row(0) + turn(axis, 1) * given.row(1) +
-               turn(axis, 2) * given.row(2);
-    };
-    const Eigen::ArrayXf xs = turned(0), ys = turned(1), zs = turned(2);
+    const Eigen::Array<float, 3, Eigen::Dynamic, Eigen::RowMajor> axes = points.array();
+    const float *xs = axes.data(), *ys = xs + axes.cols(), *zs = ys + axes.cols();
     const Directions our = *this;  // nothing that is written can change it
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
-        const float x = xs.data()[i], y = ys.data()[i], z = zs.data()[i];
+        const float x = xs[i], y = ys[i], z = zs[i];
         cells[i] = our.rowOf(x, y, z) * our.columns + our.columnOf(x, y);
         ranges[i] = rangeOf(x, y, z);
     }
 }
 
-RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg, const Eigen::Matrix3f& turn)
+RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg)
     : directions_{static_cast<float>(180 / M_PI / cell_deg),
                   static_cast<int>(std::lround(180 / cell_deg)),
                   static_cast<int>(std::lround(360 / cell_deg))} {
@@ -61,7 +57,7 @@ RangeImage::RangeImage(const Eigen::Matrix3Xf& points, double cell_deg, const Ei
     tbb::parallel_for(Range(0, points.cols(), kBlock), [&](const Range& block) {
         for (Eigen::Index first = block.begin(); first < block.end(); first += kBlock) {
             const Eigen::Index count = std::min(kBlock, block.end() - first);
-            directions_.see(points.middleCols(first, count), turn, cells.data() + first,
+            directions_.see(points.middleCols(first, count), cells.data() + first,
                             ranges.data() + first);
         }
     });

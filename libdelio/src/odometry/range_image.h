@@ -22,10 +22,9 @@ class RangeImage {
  public:
     /** Of no scan: knows nothing. */
     RangeImage() : RangeImage(Eigen::Matrix3Xf(3, 0), 180) {}
-    /** `points`: metres, of which `turn` leads to the sensor's frame. Directions differ by
-     *  `cell_deg` (degrees of azimuth and of elevation). */
-    RangeImage(const Eigen::Matrix3Xf& points, double cell_deg,
-               const Eigen::Matrix3f& turn = Eigen::Matrix3f::Identity());
+    /** `points`: metres, sensor's frame. Directions differ by `cell_deg` (degrees of azimuth and of
+     *  elevation). */
+    RangeImage(const Eigen::Matrix3Xf& points, double cell_deg);
     /** The same image again, to the centimetre, made for many questions: between two rings that are
      *  not far apart the nearer one counts, so that what lies between them is free only where both
      *  went on. */
@@ -49,8 +48,7 @@ class RangeImage {
 
         int rowOf(float x, float y, float z) const;
         int columnOf(float x, float y) const;
-        void see(const Eigen::Ref<const Eigen::Matrix3Xf>& points, const Eigen::Matrix3f& turn,
-                 int* cells, float* ranges) const;
+        void see(const Eigen::Ref<const Eigen::Matrix3Xf>& points, int* cells, float* ranges) const;
     };
     /** Of one of the rows that are kept: its place in nearest_. */
     std::size_t cellOf(int row, int column) const {
