@@ -60,8 +60,8 @@ class Removal : public testing::Test {
         return options;
     }
 
-    /** One scan more, half a second after the one before, into a map with removal and one without.
-     *  `told`: whether the odometry told that what is in it moves. */
+    /** One more scan, interval_ after the one before, into a map with removal and one without.
+     *  `told`: the odometry labelled `things` as moving. */
     void look(const Eigen::Isometry3d& pose, const test::Scene& things, bool told = false) {
         test::Scene scene = street();
         scene.insert(scene.end(), things.begin(), things.end());
@@ -76,7 +76,8 @@ class Removal : public testing::Test {
                                  return countIn({point}, b) > 0;
                              }));
         }
-        const auto stamp = test::kStamp + std::chrono::milliseconds(500 * poses_.size());
+        if (!isLabelled_) moving.clear();
+        const auto stamp = test::kStamp + interval_ * static_cast<int>(poses_.size());
         for (auto* builder : {&builder_, &kept_})
             builder->add(poses_.size(), pose, cloud, test::kHere, stamp, moving);
         poses_.push_back(pose);
@@ -85,6 +86,8 @@ class Removal : public testing::Test {
     MapBuilder builder_, kept_;
     std::vector<Eigen::Isometry3d> poses_;
     test::Noise noise_;
+    std::chrono::milliseconds interval_{500};
+    bool isLabelled_ = true;
 };
 
 TEST_F(Removal, WhatDroveThroughIsGoneAndWhatStandsStays) {
@@ -149,6 +152,27 @@ TEST_F(Removal, WhatTheOdometryToldIsOneVoice) {
     for (int i = 0; i < 3; ++i) look(test::kHere, {van(8, 0)}, true);
     EXPECT_LT(double(countIn(builder_.build(poses_).points, {{8, -1, -1.4}, {13, 1, 0.2}})),
               0.02 * double(count));
+}
+
+/** It hides the places that it leaves from all later scans. */
+TEST_F(Removal, AVanThatFollowsIsGone) {
+    interval_ = std::chrono::milliseconds(100);
+    for (int i = 0; i < 16; ++i) look(poseAt(1.0 * i, 0, 0), {van(1.0 * i - 13, 0)});
+    const Block first{{-13, -1, -1.4}, {-8, 1, 0.2}};
+    const auto all = countIn(kept_.build(poses_).points, first);
+    ASSERT_GT(all, 50U);
+    EXPECT_LT(double(countIn(builder_.build(poses_).points, first)), 0.1 * double(all));
+}
+
+/** Nobody looks at its last places after it left them. */
+TEST_F(Removal, AVanAheadIsGoneInScansWithoutLabels) {
+    interval_ = std::chrono::milliseconds(100);
+    isLabelled_ = false;
+    for (int i = 0; i < 16; ++i) look(poseAt(1.0 * i, 0, 0), {van(1.0 * i + 8, 0)});
+    const Block last{{23, -1, -1.4}, {28, 1, 0.2}};
+    const auto all = countIn(kept_.build(poses_).points, last);
+    ASSERT_GT(all, 50U);
+    EXPECT_LT(double(countIn(builder_.build(poses_).points, last)), 0.1 * double(all));
 }
 
 TEST_F(Removal, TheSameForAnyNumberOfThreads) {

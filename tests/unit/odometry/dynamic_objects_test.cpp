@@ -41,14 +41,15 @@ class MovingObjectsInAStreet : public testing::Test {
               const Eigen::Isometry3d& predicted, double step_s = 0.1) {
         test::Scene scene = street();
         scene.insert(scene.end(), things.begin(), things.end());
-        const auto all = ringScan(scene, pose, {48, 900, -24, 4, 0.02}, noise_).points;
+        const auto all = ringScan(scene, pose * tilt_, {48, 900, -24, 4, 0.02}, noise_).points;
         const auto points = voxelCentroids(all, 0.25);
         stamp_s_ += step_s;
-        const auto told = objects_.detect(objects_.see(points, all), predicted, stamp_s_);
+        const auto told = objects_.detect(objects_.see(points, all, tilt_.linear().cast<float>()),
+                                          predicted, stamp_s_);
         objects_.remember(pose);
         found_ = missed_ = wrong_ = 0;
         for (Eigen::Index i = 0; i < points.cols(); ++i) {
-            const Eigen::Vector3d point = pose * points.col(i).cast<double>();
+            const Eigen::Vector3d point = pose * tilt_ * points.col(i).cast<double>();
             const bool moves = std::any_of(things.begin(), things.end(),
                                            [&](const auto& thing) { return isIn(thing, point); });
             const bool wasTold = told[static_cast<std::size_t>(i)] != 0;
@@ -64,6 +65,7 @@ class MovingObjectsInAStreet : public testing::Test {
     }
 
     test::Noise noise_;
+    Eigen::Isometry3d tilt_ = Eigen::Isometry3d::Identity();  //!< of the sensor
     DynamicObjects objects_{DynamicObjectsOptions()};
     double stamp_s_ = 0;
     int found_ = 0, missed_ = 0, wrong_ = 0;
@@ -79,6 +81,21 @@ TEST_F(MovingObjectsInAStreet, AVanThatStaysFiveMetresAheadForAHundredScans) {
         wrong += wrong_;
     }
     EXPECT_GT(found, 90 * 100);
+    EXPECT_LT(missed, 0.1 * found);
+    EXPECT_LT(wrong, 0.02 * found);
+}
+
+TEST_F(MovingObjectsInAStreet, AVanAheadIsFoundByATiltedSensor) {
+    tilt_ = poseAt(0, 0, 0, 0, -0.1, 0.1);
+    int found = 0, missed = 0, wrong = 0;
+    for (int i = 0; i < 40; ++i) {
+        look(poseAt(0.9 * i, 0, 0), {van(0.9 * i + 8, 0)});
+        if (i < 5) continue;
+        found += found_;
+        missed += missed_;
+        wrong += wrong_;
+    }
+    EXPECT_GT(found, 35 * 60);
     EXPECT_LT(missed, 0.1 * found);
     EXPECT_LT(wrong, 0.02 * found);
 }

@@ -43,23 +43,6 @@ TEST_F(RangeImageOfARoom, BehindWhatIsSeenAndOutOfViewNothingIsKnown) {
     EXPECT_EQ(RangeImage().at({3, 0, 0}, 0.4F), Place::kUnknown);
 }
 
-TEST(RangeImage, OfPointsInAnotherFrameIsThatOfThemTurned) {
-    test::Noise noise;
-    const test::Sensor sensor{32, 900, -24, 8, 0.02};
-    const Eigen::Matrix3f turn =
-        Eigen::AngleAxisf(0.3F, Eigen::Vector3f(1, -2, 0.5F).normalized()).toRotationMatrix();
-    const Eigen::Matrix3Xf points =
-        ringScan(test::room(), Eigen::Isometry3d::Identity(), sensor, noise).points;
-    const RangeImage turned(points, 0.5, turn), same(turn * points, 0.5);
-    int known = 0;
-    for (int i = 0; i < 5000; ++i) {
-        const Eigen::Vector3f p = (12 * noise.direction() * noise.uniform()).cast<float>();
-        EXPECT_EQ(turned.at(p, 0.4F), same.at(p, 0.4F));
-        known += same.at(p, 0.4F) != Place::kUnknown;
-    }
-    EXPECT_GT(known, 500);
-}
-
 TEST_F(RangeImageOfARoom, PutAsideAndTakenBackItSaysTheSameButBetweenRings) {
     const RangeImage again(image_.packed(), 0.5);
     test::Noise noise;

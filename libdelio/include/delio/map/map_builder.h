@@ -31,7 +31,7 @@ struct RemovalOptions : StageOptions {
     double margin_m = 0.5;   //!< a beam that continued by this saw through a voxel
     unsigned witnesses = 2;  //!< minimum number of scans that saw through a dynamic voxel
     /** A voxel is dynamic if this many times more scans saw through it than hit it. */
-    double freePerTaken = 1.4;
+    double freePerTaken = 2;
     /** An uncertain voxel is dynamic if at least this fraction of its neighbours is. */
     double grownShare = 0.55;
 
