@@ -145,8 +145,9 @@ void VisibilityVotes::decide() {
         });
     };
     forAll([&](const Voxel&, Cell& cell) {
-        cell.seed = 2 * cell.moving > cell.hits || (cell.free >= options_.witnesses &&
-                                                    cell.free > options_.freePerTaken * cell.taken);
+        cell.seed = 2 * cell.moving > cell.hits ||
+                    (cell.free >= options_.witnesses &&
+                     options_.freePerTaken * cell.free > double{static_cast<double>(cell.taken)});
     });
     forAll([&](const Voxel& voxel, Cell& cell) {
         const bool isKnown = cell.free == 0 && cell.taken >= kLittle;

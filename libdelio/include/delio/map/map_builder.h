@@ -30,10 +30,10 @@ struct RemovalOptions : StageOptions {
     // Not read from .ini files:
     double margin_m = 0.5;   //!< a beam that continued by this saw through a voxel
     unsigned witnesses = 2;  //!< minimum number of scans that saw through a dynamic voxel
-    /** A voxel is dynamic if this many times more scans saw through it than hit it. */
-    double freePerTaken = 2;
+    /** A voxel is static if this many times more scans hit it than saw through it. */
+    double freePerTaken = 1.5;
     /** An uncertain voxel is dynamic if at least this fraction of its neighbours is. */
-    double grownShare = 0.55;
+    double grownShare = 0.5;
 
  protected:
     std::vector<OptionField> fields() const override;
