@@ -193,7 +193,7 @@ Eigen::Matrix3Xf pointsOf(const std::vector<float>& floats) {
         .topRows<3>();
 }
 
-/** Moving points of each scan, forward in time; empty if the odometry labelled them. */
+/** Labels of moving points of each scan, found forward in time; empty if the scans have labels. */
 std::vector<std::vector<std::uint8_t>> missingLabels(const MapParts& parts,
                                                      const std::vector<Isometry3d>& poses) {
     const bool isLabelled = std::any_of(parts.scans.begin(), parts.scans.end(),
@@ -208,8 +208,8 @@ std::vector<std::vector<std::uint8_t>> missingLabels(const MapParts& parts,
     return all;
 }
 
-/** Votes of all scans about the voxels. Backward in time, to find the objects whose motion the
- *  scans after them show. */
+/** Votes of all scans about the voxels. The scans are read backward in time: some objects show only
+ *  in this direction that they move (see MotionLabels). */
 std::shared_ptr<const VisibilityVotes> votesOf(const MapParts& parts,
                                                const std::vector<Isometry3d>& poses) {
     const bool isRemoving = parts.options.removal.enabled;

@@ -19,7 +19,7 @@ class VisibilityVotes {
     explicit VisibilityVotes(const RemovalOptions& options) : options_(options) {}
 
     /** Scan number `scan` saw something at `point`; `moving`: as a part of what moves. All hits of
-     *  a scan come together. */
+     *  a scan must come one after the other. */
     void hit(const Eigen::Vector3d& point, bool moving, std::uint32_t scan);
 
     /** Asks a scan of every voxel within `reach_m`. */

@@ -64,6 +64,22 @@ class MovingObjectsInAStreet : public testing::Test {
         look(pose, things, pose, step_s);
     }
 
+    /** So many scans behind a van that stays `gap_m` ahead. Counts what the scans from the sixth on
+     *  found. */
+    void follow(double gap_m, int scans) {
+        int found = 0, missed = 0, wrong = 0;
+        for (int i = 0; i < scans; ++i) {
+            look(poseAt(0.9 * i, 0, 0), {van(0.9 * i + gap_m, 0)});
+            if (i < 5) continue;
+            found += found_;
+            missed += missed_;
+            wrong += wrong_;
+        }
+        found_ = found;
+        missed_ = missed;
+        wrong_ = wrong;
+    }
+
     test::Noise noise_;
     Eigen::Isometry3d tilt_ = Eigen::Isometry3d::Identity();  //!< of the sensor
     DynamicObjects objects_{DynamicObjectsOptions()};
@@ -72,32 +88,18 @@ class MovingObjectsInAStreet : public testing::Test {
 };
 
 TEST_F(MovingObjectsInAStreet, AVanThatStaysFiveMetresAheadForAHundredScans) {
-    int found = 0, missed = 0, wrong = 0;
-    for (int i = 0; i < 100; ++i) {
-        look(poseAt(0.9 * i, 0, 0), {van(0.9 * i + 5, 0)});
-        if (i < 5) continue;
-        found += found_;
-        missed += missed_;
-        wrong += wrong_;
-    }
-    EXPECT_GT(found, 90 * 100);
-    EXPECT_LT(missed, 0.1 * found);
-    EXPECT_LT(wrong, 0.02 * found);
+    follow(5, 100);
+    EXPECT_GT(found_, 90 * 100);
+    EXPECT_LT(missed_, 0.1 * found_);
+    EXPECT_LT(wrong_, 0.02 * found_);
 }
 
 TEST_F(MovingObjectsInAStreet, AVanAheadIsFoundByATiltedSensor) {
     tilt_ = poseAt(0, 0, 0, 0, -0.1, 0.1);
-    int found = 0, missed = 0, wrong = 0;
-    for (int i = 0; i < 40; ++i) {
-        look(poseAt(0.9 * i, 0, 0), {van(0.9 * i + 8, 0)});
-        if (i < 5) continue;
-        found += found_;
-        missed += missed_;
-        wrong += wrong_;
-    }
-    EXPECT_GT(found, 35 * 60);
-    EXPECT_LT(missed, 0.1 * found);
-    EXPECT_LT(wrong, 0.02 * found);
+    follow(8, 40);
+    EXPECT_GT(found_, 35 * 60);
+    EXPECT_LT(missed_, 0.1 * found_);
+    EXPECT_LT(wrong_, 0.02 * found_);
 }
 
 TEST_F(MovingObjectsInAStreet, OncomingAndCrossingOnesAreToldWithinThreeScans) {

@@ -80,9 +80,9 @@ struct BuiltMap {
 
 /** Collects scans during a drive and builds the map once the final poses are known. Only then are
  *  dynamic points identified, from all earlier and later scans. Scans are stored on disk, thinned;
- *  memory grows with the observed space, and only during build(). The same calls give the same
- *  points in the same order. All poses map the vehicle's coordinates to those of the world, in
- *  metres. */
+ *  memory grows with the observed space, and only during build(); scans without labels need another
+ *  byte for each stored point. The same calls give the same points in the same order. All poses map
+ *  the vehicle's coordinates to those of the world, in metres. */
 class MapBuilder {
  public:
     /** @param sensorLabel becomes the label of the simplemap's observations
