@@ -122,18 +122,40 @@ const VisibilityVotes::Cell* VisibilityVotes::at(const Eigen::Vector3d& point) c
     return find((point.array() / options_.voxelSize_m).floor().cast<int>());
 }
 
-/** The lowest parts of dynamic objects are next to and below the rest, above the ground. */
-bool VisibilityVotes::isSurrounded(const Voxel& voxel) const {
-    constexpr int kBeside = 2, kAbove = 3, kLeast = 4;
-    int dynamic = 0, all = 0;
-    for (int x = -kBeside; x <= kBeside; ++x)
-        for (int y = -kBeside; y <= kBeside; ++y)
-            for (int z = 0; z <= kAbove; ++z) {
+/** Beside the voxel and above it: what is below dynamic objects is the ground. */
+VisibilityVotes::Around VisibilityVotes::around(const Voxel& voxel, int reach) const {
+    Around around;
+    for (int x = -reach; x <= reach; ++x)
+        for (int y = -reach; y <= reach; ++y)
+            for (int z = 0; z <= reach + 1; ++z) {
                 if (x == 0 && y == 0 && z == 0) continue;
                 const Cell* other = find(voxel + Voxel(x, y, z));
-                all += other != nullptr;
-                dynamic += other && other->seed;
+                around.all += other != nullptr;
+                around.dynamic += other && other->seed;
             }
+    return around;
+}
+
+bool VisibilityVotes::isVotedDynamic(const Cell& cell) const {
+    // With more votes per label, static voxels with wrong labels are removed; with fewer, the lower
+    // parts of vehicles stay.
+    constexpr unsigned kPerLabel = 3;
+    const bool isLabelled = 2 * cell.moving > cell.hits;
+    const unsigned free = cell.free + (isLabelled ? kPerLabel : 0);
+    return free >= options_.witnesses && options_.freePerTaken * free > cell.taken;
+}
+
+/** Beams pass between the parts of what is thin or sparse, but not between those of a vehicle. */
+bool VisibilityVotes::isOutvoted(const Voxel& voxel) const {
+    constexpr int kReach = 3, kLeast = 4;
+    const auto [all, dynamic] = around(voxel, kReach);
+    return all >= kLeast && 2 * dynamic < all;
+}
+
+/** The lowest parts of dynamic objects are next to and below the rest, above the ground. */
+bool VisibilityVotes::isSurrounded(const Voxel& voxel) const {
+    constexpr int kReach = 2, kLeast = 4;
+    const auto [all, dynamic] = around(voxel, kReach);
     return dynamic >= kLeast && dynamic >= options_.grownShare * all;
 }
 
@@ -144,11 +166,11 @@ void VisibilityVotes::decide() {
             forCells(blocks_[static_cast<std::uint32_t>(i)], visit);
         });
     };
-    forAll([&](const Voxel&, Cell& cell) {
-        cell.seed = 2 * cell.moving > cell.hits ||
-                    (cell.free >= options_.witnesses &&
-                     options_.freePerTaken * cell.free > double{static_cast<double>(cell.taken)});
+    forAll([&](const Voxel&, Cell& cell) { cell.seed = isVotedDynamic(cell); });
+    forAll([&](const Voxel& voxel, Cell& cell) {
+        cell.outvoted = cell.seed && cell.taken >= kLittle && isOutvoted(voxel);
     });
+    forAll([&](const Voxel&, Cell& cell) { cell.seed = cell.seed && !cell.outvoted; });
     forAll([&](const Voxel& voxel, Cell& cell) {
         const bool isKnown = cell.free == 0 && cell.taken >= kLittle;
         cell.grown = !cell.seed && !isKnown && isSurrounded(voxel);

@@ -26,8 +26,10 @@ class VisibilityVotes {
     void look(const odometry::RangeImage& view, const Eigen::Isometry3d& sensorInWorld,
               float reach_m);
 
-    /** Marks as dynamic: voxels that were looked through, or hit as a part of a moving object; and
-     *  voxels of which little is known and above or beside which most is dynamic. */
+    /** Marks voxels as dynamic. First those that enough scans looked through; a label as moving by
+     *  most of the scans that hit the voxel counts as several looks. Of these, a voxel that several
+     *  scans hit is static again if most of the voxels around it are static: leaves, bars. Finally,
+     *  a voxel of which little is known is dynamic if most of the voxels around it are. */
     void decide();
 
     /** After decide(). False where nothing was hit. */
@@ -42,7 +44,7 @@ class VisibilityVotes {
         std::uint32_t lastScan;
         std::uint16_t hits = 0, moving = 0, free = 0, taken = 0;
         std::array<std::uint8_t, 3> place;  //!< of its first point: 1/256 of the voxel
-        bool seed = false, grown = false;
+        bool seed = false, outvoted = false, grown = false;
     };
     /** Of 8 x 8 x 8 voxels those that were hit, in the order of their numbers. */
     struct Block {
@@ -59,6 +61,13 @@ class VisibilityVotes {
     const Cell* find(const Voxel& voxel) const;
     const Cell* at(const Eigen::Vector3d& point) const;
     Eigen::Vector3f pointOf(const Voxel& voxel, const Cell& cell) const;
+    /** Number of voxels around one, and how many of them are dynamic by their own votes. */
+    struct Around {
+        int all = 0, dynamic = 0;
+    };
+    Around around(const Voxel& voxel, int reach) const;
+    bool isVotedDynamic(const Cell& cell) const;
+    bool isOutvoted(const Voxel& voxel) const;
     bool isSurrounded(const Voxel& voxel) const;
 
     RemovalOptions options_;

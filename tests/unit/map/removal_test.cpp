@@ -65,7 +65,7 @@ class Removal : public testing::Test {
     void look(const Eigen::Isometry3d& pose, const test::Scene& things, bool told = false) {
         test::Scene scene = street();
         scene.insert(scene.end(), things.begin(), things.end());
-        const auto seen = ringScan(scene, pose, kSensor, noise_).points;
+        const auto seen = ringScan(scene, pose, sensor_, noise_).points;
         mrpt::maps::CSimplePointsMap cloud;
         std::vector<std::uint8_t> moving;
         for (Eigen::Index i = 0; i < seen.cols(); ++i) {
@@ -86,6 +86,7 @@ class Removal : public testing::Test {
     MapBuilder builder_, kept_;
     std::vector<Eigen::Isometry3d> poses_;
     test::Noise noise_;
+    test::Sensor sensor_ = kSensor;
     std::chrono::milliseconds interval_{500};
     bool isLabelled_ = true;
 };
@@ -129,6 +130,23 @@ TEST_F(Removal, ACarThatLeavesItsParkingPlaceGoesWithoutAnybodyMoving) {
     ASSERT_GT(countIn(parked, above), 100U);
     EXPECT_LT(countIn(left, above), 0.02 * double(countIn(parked, above)));
     EXPECT_GE(double(countIn(left, stays)), 0.98 * double(countIn(parked, stays)));
+}
+
+TEST_F(Removal, SparseTwigsMostlyStay) {
+    sensor_ = {16, 900, -15, 15, 0.02};
+    test::Noise draw(5);
+    const Block bush{{6, 3, -1.6}, {8.4, 5, 0.8}};
+    test::Scene twigs;
+    for (int i = 0; i < 250; ++i) {
+        const Eigen::Vector3d at(7.2 + 1.2 * draw.uniform(), 4 + draw.uniform(),
+                                 -0.4 + 1.2 * draw.uniform());
+        twigs.push_back({at, at + Eigen::Vector3d::Constant(0.06)});
+    }
+    for (int i = 0; i < 25; ++i) look(poseAt(0.5 * i, 0, 0), twigs);
+    const auto kept = countIn(builder_.build(poses_).points, bush),
+               all = countIn(kept_.build(poses_).points, bush);
+    ASSERT_GT(all, 200U);
+    EXPECT_GE(double(kept), 0.8 * double(all)) << kept << " of " << all;
 }
 
 TEST_F(Removal, OneScanAloneIsKept) {
