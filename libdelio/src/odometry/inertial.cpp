@@ -104,8 +104,18 @@ std::optional<Vector3d> GyroPrior::turnBetween(double from_s, double to_s, doubl
     return rotationLog((from->turned.conjugate() * to->turned).normalized().toRotationMatrix());
 }
 
+GyroPrior GyroPrior::reversed() const {
+    GyroPrior back = *this;
+    back.isReversed_ = !isReversed_;
+    return back;
+}
+
 std::optional<Matrix3d> GyroPrior::rotation(double from_s, double to_s) const {
     if (!mount_) return {};
+    if (isReversed_) {
+        from_s = -from_s;
+        to_s = -to_s;
+    }
     const int parts =
         std::max(1, static_cast<int>(std::ceil(std::abs(to_s - from_s) / kLongest_s)));
     const double part_s = (to_s - from_s) / parts;
@@ -137,6 +147,7 @@ std::optional<ScanTrajectory> GyroPrior::trajectory(const Eigen::Isometry3d& pos
 }
 
 void GyroPrior::observe(double from_s, double to_s, const Matrix3d& rotation) {
+    if (isReversed_) return;
     constexpr std::size_t kMost = 300, kFirst = 10, kLater = 50;
     constexpr double kLongestPair_s = 0.35;
     if (!(to_s > from_s) || to_s - from_s > kLongestPair_s) return;

@@ -45,6 +45,12 @@ class GyroPrior {
     /** The latest rotations by the gyroscope agree with the registered ones. */
     bool isTrusted() const { return trusted_; }
 
+    /** The rotation between LiDAR and IMU is known: few scans show whether the gyroscope agrees. */
+    bool hasMount() const { return mount_.has_value(); }
+
+    /** The same gyroscope on a sensor that moves backwards through time. It learns nothing. */
+    GyroPrior reversed() const;
+
     /** The rotation between two times as the scans were registered. */
     void observe(double from_s, double to_s, const Eigen::Matrix3d& rotation);
 
@@ -105,6 +111,7 @@ class GyroPrior {
     void explain(ImuReport& report) const;
 
     WaitingSamples<ImuSample> waiting_;
+    bool isReversed_ = false;  //!< callers count time backwards
     std::deque<Reading> readings_;
     std::deque<Pair> pairs_;
     double usual_s_ = 0;  //!< between samples

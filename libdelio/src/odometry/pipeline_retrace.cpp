@@ -28,9 +28,10 @@ ScanTrajectory reversed(const ScanTrajectory& trajectory) {
 
 /** The first scans of a map were registered to few others, and while the motion was not known. As
  *  soon as more scans have followed, the first ones are registered again, to those and backwards in
- *  time, with a motion that is known. */
+ *  time, with a motion that is known. With a gyroscope of known orientation, this waits until it may
+ *  be trusted. */
 void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
-    constexpr std::size_t kFirst = 4, kLater = 4, kMost = 32;
+    constexpr std::size_t kFirst = 4, kLater = 4, kUntilGyro = 6, kMost = 32;
     if (beginning_.empty()) return;
     if (beginning_.back().scan.time_s != time_s_) {
         const bool isSkipped = !step.reason.empty() && missesOf(state_) == 0,
@@ -51,7 +52,8 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
     const auto tracked = static_cast<std::size_t>(
         std::find_if_not(beginning_.rbegin(), beginning_.rend(), isTracked) - beginning_.rbegin());
     if (beginning_.size() >= kMost) return beginning_.clear();
-    if (tracked + 1 < kFirst + kLater) return;
+    const std::size_t more = gyro_.hasMount() ? kUntilGyro : 0;
+    if (tracked + 1 < kFirst + kLater + more) return;
     // Scans that need no de-skewing are registered well from the second one on.
     const bool wasTracked = tracked + 1 >= beginning_.size();
     if (hasTimes(cloud) || !wasTracked) retrace(beginning_.size() - kLater, kFirst);
@@ -106,6 +108,8 @@ void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
 void PlaneOdometry::turnBack(const PlaneOdometry& ahead, std::size_t first) {
     upright_ = ahead.upright_;
     takeScale(ahead.place_.scale());
+    gyro_ = ahead.gyro_.reversed();
+    gyroErrors_ = ahead.gyroErrors_;
     speeds_.reset();
     errors_.kernel = ahead.errors_.kernel;
     constexpr std::size_t kSettled = 5;  // scans since the motion is known well

@@ -132,6 +132,8 @@ TEST(Gyro, GivesTheRotationOfAConstantRate) {
     ASSERT_TRUE(path);
     EXPECT_LT(degreesBetween(path->at(0.03).linear(), rotationExp(0.03 * rate)), 1e-6);
     EXPECT_NEAR(path->at(0.03).translation().x(), 0.03, 1e-9);
+    const auto reversed = rig.gyro.reversed().rotation(-0.157, -0.013);
+    EXPECT_LT(degreesBetween(*reversed, turned->transpose()), 1e-6);
 }
 
 TEST(Gyro, IsTrustedAfterMotionThatItExplains) {
