@@ -366,10 +366,9 @@ Vector3d GyroPrior::residualOf(const Pair& pair) const {
 void GyroPrior::judge() {
     constexpr std::size_t kFewest = 5, kLatest = 10, kMemory = 30, kMostBad = 3, kGoodAgain = 1;
     constexpr double kBad_rad = 1 * kDeg, kBadShare = 0.25, kTurned_rad = 3 * kDeg, kRest = 0.1;
-    if (!mount_) {
-        trusted_ = false;
-        return;
-    }
+    trusted_ = trusted_ && mount_;
+    turned_ = false;
+    if (!mount_) return;
     double squares = 0, rest = 0;
     std::size_t bad = 0, seen = 0;
     for (auto pair = pairs_.rbegin(); pair != pairs_.rend() && seen < kMemory; ++pair, ++seen) {
@@ -381,8 +380,8 @@ void GyroPrior::judge() {
     }
     if (seen > 0) residual_rad_ = std::sqrt(rest / static_cast<double>(seen));
     if (bad > kMostBad) trusted_ = false;
-    const bool isExplained =
-        squares > kTurned_rad * kTurned_rad && rest < kRest * squares && bad <= kGoodAgain;
+    turned_ = squares > kTurned_rad * kTurned_rad;
+    const bool isExplained = turned_ && rest < kRest * squares && bad <= kGoodAgain;
     if (seen >= kFewest && isExplained) trusted_ = true;
     wasTrusted_ = wasTrusted_ || trusted_;
 }

@@ -45,8 +45,9 @@ class GyroPrior {
     /** The latest rotations by the gyroscope agree with the registered ones. */
     bool isTrusted() const { return trusted_; }
 
-    /** The rotation between LiDAR and IMU is known: few scans show whether the gyroscope agrees. */
-    bool hasMount() const { return mount_.has_value(); }
+    /** The latest scans turned enough to show whether the gyroscope agrees. False while the
+     * rotation between LiDAR and IMU is not known. */
+    bool hasTurned() const { return turned_; }
 
     /** The same gyroscope on a sensor that moves backwards through time. It learns nothing. */
     GyroPrior reversed() const;
@@ -127,7 +128,7 @@ class GyroPrior {
     double offset_s_ = 0;
     Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();  //!< in the IMU's axes
     double residual_rad_ = 0;
-    bool trusted_ = false;
+    bool trusted_ = false, turned_ = false;
 
     std::size_t sinceCalibration_ = 0;
     std::size_t samples_ = 0, dropped_ = 0, scans_ = 0, used_ = 0, without_ = 0, distrusted_ = 0;

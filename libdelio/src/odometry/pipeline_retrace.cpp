@@ -28,8 +28,8 @@ ScanTrajectory reversed(const ScanTrajectory& trajectory) {
 
 /** The first scans of a map were registered to few others, and while the motion was not known. As
  *  soon as more scans have followed, the first ones are registered again, to those and backwards in
- *  time, with a motion that is known. With a gyroscope of known orientation, this waits until it may
- *  be trusted. */
+ *  time, with a motion that is known. Where the sensor turns, this waits until a gyroscope may be
+ *  trusted. */
 void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
     constexpr std::size_t kFirst = 4, kLater = 4, kUntilGyro = 6, kMost = 32;
     if (beginning_.empty()) return;
@@ -52,7 +52,7 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
     const auto tracked = static_cast<std::size_t>(
         std::find_if_not(beginning_.rbegin(), beginning_.rend(), isTracked) - beginning_.rbegin());
     if (beginning_.size() >= kMost) return beginning_.clear();
-    const std::size_t more = gyro_.hasMount() ? kUntilGyro : 0;
+    const std::size_t more = gyro_.hasTurned() ? kUntilGyro : 0;
     if (tracked + 1 < kFirst + kLater + more) return;
     // Scans that need no de-skewing are registered well from the second one on.
     const bool wasTracked = tracked + 1 >= beginning_.size();
