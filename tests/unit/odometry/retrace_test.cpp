@@ -62,9 +62,9 @@ void addSamples(const Flight& flight, std::size_t i, odometry::PlaneOdometry& od
 }
 
 struct Flown {
-    std::vector<Isometry3d> poses;     //!< at the end
-    std::vector<Isometry3d> asItCame;  //!< up to the scan before the correction
-    std::vector<std::size_t> correctedBy;
+    std::vector<Isometry3d> poses;         //!< at the end
+    std::vector<Isometry3d> asItCame;      //!< of the scans before the first that corrects others
+    std::vector<std::size_t> correctedBy;  //!< scans that corrected others
 };
 
 Flown fly(const Flight& flight, std::size_t scans, bool withGyro) {
@@ -74,8 +74,8 @@ Flown fly(const Flight& flight, std::size_t scans, bool withGyro) {
     for (std::size_t i = 0; i < scans; ++i) {
         if (withGyro) addSamples(flight, i, odometry);
         const Step step = odometry.process(flight.scan(i));
-        if (!step.corrected.empty()) flown.correctedBy.push_back(i);
         if (flown.correctedBy.empty()) flown.asItCame = poses;
+        if (!step.corrected.empty()) flown.correctedBy.push_back(i);
         poses.push_back(i == 0 ? Isometry3d::Identity() : poses.back() * step.increment.pose);
         for (const auto& [scansAgo, pose, registered] : step.corrected)
             poses.at(i - scansAgo) = poses[i] * pose;
