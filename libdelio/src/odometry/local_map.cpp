@@ -257,33 +257,31 @@ void LocalMap::settleUnobserved(const ScanView& view, const Eigen::Isometry3d& p
     translation.unobservedAxes = unseen;
 }
 
-bool LocalMap::isNear(const PlaneEstimate& found, const Eigen::Isometry3d& pose) const {
-    const Eigen::Isometry3d off = pose.inverse() * found.pose();
-    return found.valid && off.translation().norm() <= options_.max_deviation &&
+bool LocalMap::areNear(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) const {
+    const Eigen::Isometry3d off = b.inverse() * a;
+    return off.translation().norm() <= options_.max_deviation &&
            angleOf(off.linear()) <= options_.max_deviation_deg * kDeg;
 }
 
-PlaneEstimate LocalMap::refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed,
-                               const Eigen::Matrix3d& covariance, double kernel) const {
-    return registerToPlanes(planes_, thinned,
-                            Prior::of(placed.pose, options_.point_sigma, covariance), kernel,
-                            planeOptions_);
-}
-
 PlaneEstimate LocalMap::refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed) const {
-    return refine(thinned, placed,
-                  std::pow(options_.point_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity(),
-                  pointOptions_.last_kernel);
+    const Eigen::Matrix3d covariance =
+        std::pow(options_.point_sigma_deg * kDeg, 2) * Eigen::Matrix3d::Identity();
+    return registerToPlanes(planes_, thinned,
+                            Prior::of(placed.pose, options_.point_sigma, covariance),
+                            pointOptions_.last_kernel, planeOptions_);
 }
 
 PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate& placed,
-                                       const Eigen::Isometry3d& predicted, Motion motion) const {
-    const auto byPlanes = [&](const PointEstimate& from) {
-        return refine(view.thinned, from, turnCovariance(view.coarse, from),
-                      planeOptions_.last_kernel);
+                                       const Eigen::Isometry3d& predicted, Motion motion,
+                                       const std::optional<Eigen::Isometry3d>& start) const {
+    const auto byPlanes = [&](const PointEstimate& from, const Eigen::Isometry3d& pose) {
+        const auto prior =
+            Prior::of(from.pose, options_.point_sigma, turnCovariance(view.coarse, from));
+        return registerToPlanes(planes_, view.thinned, prior, pose, planeOptions_.last_kernel,
+                                planeOptions_);
     };
     PointEstimate from = placed;
-    auto found = byPlanes(from);
+    auto found = byPlanes(from, start && areNear(*start, from.pose) ? *start : from.pose);
     // The points were placed wrongly where more of them fit where planes lead.
     constexpr unsigned kPatience = 2;
     for (unsigned i = 0; i < kPatience && found.valid && !isNear(found, from.pose); ++i) {
@@ -291,7 +289,7 @@ PlaneEstimate LocalMap::registerPlanes(const ScanView& view, const PointEstimate
             levelled(view, place(view.coarse, found.pose(), pointOptions_.least_kernel));
         if (!there.valid || there.inlierRatio <= from.inlierRatio) break;
         from = there;
-        found = byPlanes(from);
+        found = byPlanes(from, from.pose);
     }
     // Planes that lead to the prediction are two against one.
     const bool isAsPredicted = motion != Motion::kUnknown && isNear(found, predicted);

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <deque>
+#include <optional>
 #include <vector>
 #include "delio/core/odometry_options.h"
 
@@ -72,11 +73,8 @@ class LocalMap {
         return searchOnward(points_, coarse, latest, increment, pointOptions_);
     }
 
-    /** By planes alone, from where the points were placed. `covariance`: of the rotation that they
-     *  found, rad^2, right tangent; `kernel` (metres): the first one. */
-    PlaneEstimate refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed,
-                         const Eigen::Matrix3d& covariance, double kernel) const;
-    /** The same of a cloud of many scans: points see all rotations of it alike. */
+    /** By planes alone, from where the points of a cloud of many scans were placed: these see all
+     *  rotations of it alike. */
     PlaneEstimate refine(const Eigen::Matrix3Xd& thinned, const PointEstimate& placed) const;
 
     /** Height, tilt and inlier ratio by all points of the scan, where it was placed by those that
@@ -89,9 +87,10 @@ class LocalMap {
      *  points alone say that the scan is where an earlier scan of the drive was, the axis is
      *  unobserved, too, unless surfaces that face it confirm that: a sensor's own rings lie on each
      *  other anywhere. Unless the motion is fast, this holds for axes that the planes hardly
-     *  constrain, too. */
+     *  constrain, too. `start` (sensor to map): where planes led before, if they did. */
     PlaneEstimate registerPlanes(const ScanView& view, const PointEstimate& placed,
-                                 const Eigen::Isometry3d& predicted, Motion motion) const;
+                                 const Eigen::Isometry3d& predicted, Motion motion,
+                                 const std::optional<Eigen::Isometry3d>& start = {}) const;
 
     /** Share of the points that lie within `distance` (metres) of one of the map's, 0 to 1. */
     double shareAt(const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
@@ -100,7 +99,10 @@ class LocalMap {
     }
 
  private:
-    bool isNear(const PlaneEstimate& found, const Eigen::Isometry3d& pose) const;
+    bool areNear(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) const;
+    bool isNear(const PlaneEstimate& found, const Eigen::Isometry3d& pose) const {
+        return found.valid && areNear(found.pose(), pose);
+    }
     Eigen::Matrix3d turnCovariance(const Eigen::Matrix3Xd& points,
                                    const PointEstimate& placed) const;
     PlaneEstimate byPoints(const PointEstimate& placed,

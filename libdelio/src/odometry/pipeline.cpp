@@ -187,20 +187,23 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     if (!placed.valid) return predictedEstimate(predicted);
     thinForPlanes(view, options().spacing.scan_spacing);
     const bool isDeskewed = step.deskewed && !step.interrupted && window_.isEmpty();
-    // That scan is registered again, by all points: where planes are many, few points lead there.
-    constexpr Eigen::Index kFew = 4000;
-    if (isDeskewed && haveManyPlanes()) view.thinned = sample(view.thinned, kFew);
-    auto found = map_.registerPlanes(view, placed, predicted, motion());
-    wheels_.carry(pose_, found);
-    if (!isDeskewed) return found;
-    auto deskewed = deskewAgain(cloud, since_s, placed.inlierRatio, predicted, found.pose(), view);
-    if (!deskewed) return found;
-    found = deskewed->estimate;
-    wheels_.carry(pose_, found);
+    const auto deskewFrom = [&](const Eigen::Isometry3d& pose) {
+        return deskewAgain(cloud, since_s, placed.inlierRatio, predicted, pose, view);
+    };
+    std::optional<ScanOnTrajectory> deskewed;
+    // Where planes are many, they bend the trajectory from where the points lead.
+    if (isDeskewed && haveManyPlanes()) deskewed = deskewFrom(placed.pose);
+    if (!deskewed || !deskewed->estimate.isByPlanes) {
+        auto found = map_.registerPlanes(view, placed, predicted, motion());
+        wheels_.carry(pose_, found);
+        if (isDeskewed) deskewed = deskewFrom(found.pose());
+        if (!isDeskewed || !deskewed) return found;
+        wheels_.carry(pose_, deskewed->estimate);
+    }
     view = std::move(deskewed->view);
     motion_ = deskewed->trajectory.seenFrom(0);
     extrapolation_ = Extrapolation(motion_, since_s / 8);
-    return found;
+    return deskewed->estimate;
 }
 
 /** No vehicle moves so: scans are missing before this one, whatever their stamps say. */

@@ -320,17 +320,17 @@ Prior priorOf(const Eigen::Isometry3d& predicted, const PlaneRegistrationOptions
 }
 
 namespace {
-/** `reached`: gets the pose that the iteration came to. */
+/** `pose`: where the iteration begins, and gets where it ends. */
 PlaneEstimate registered(const FindMatches& find, const Prior& prior, double kernel,
-                         const PlaneRegistrationOptions& options, Eigen::Isometry3d* reached) {
-    Iterate now{prior.pose, {}};
+                         const PlaneRegistrationOptions& options, Eigen::Isometry3d& pose) {
+    Iterate now{pose, {}};
     bool converged = false;
     for (double width = std::max(kernel, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
         converged = iterate(find, prior, width, options, now);
         if (width <= options.last_kernel) break;
     }
-    *reached = now.pose;
+    pose = now.pose;
     if (now.matches.size() < options.min_matches) return predictedEstimate(prior.pose, options);
     PlaneEstimate estimate;
     settle(now.matches, now.pose, prior, estimate);
@@ -342,19 +342,25 @@ PlaneEstimate registered(const FindMatches& find, const Prior& prior, double ker
 
 PlaneEstimate registerByMatches(const FindMatches& find, const Prior& prior, double kernel,
                                 const PlaneRegistrationOptions& options) {
-    Eigen::Isometry3d reached;
-    return registered(find, prior, kernel, options, &reached);
+    Eigen::Isometry3d pose = prior.pose;
+    return registered(find, prior, kernel, options, pose);
 }
 
 PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
                                const Prior& prior, double kernel,
                                const PlaneRegistrationOptions& options) {
+    return registerToPlanes(map, points, prior, prior.pose, kernel, options);
+}
+
+PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
+                               const Prior& prior, const Eigen::Isometry3d& start, double kernel,
+                               const PlaneRegistrationOptions& options) {
     Matcher matcher(map, points, plane_tuning::kPointSigma_m);
-    Eigen::Isometry3d reached;
+    Eigen::Isometry3d pose = start;
     auto estimate = registered(
-        [&](const Eigen::Isometry3d& pose, double width) { return matcher.at(pose, width); }, prior,
-        kernel, options, &reached);
-    if (estimate.valid) estimate.inlierRatio = matcher.shareAt(reached, options.last_kernel);
+        [&](const Eigen::Isometry3d& at, double width) { return matcher.at(at, width); }, prior,
+        kernel, options, pose);
+    if (estimate.valid) estimate.inlierRatio = matcher.shareAt(pose, options.last_kernel);
     return estimate;
 }
 }  // namespace delio::odometry

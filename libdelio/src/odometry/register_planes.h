@@ -70,6 +70,11 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
                                const Prior& prior, double kernel,
                                const PlaneRegistrationOptions& options);
 
+/** The same from another pose than the prior's (sensor to map): nearer to where it leads. */
+PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& points,
+                               const Prior& prior, const Eigen::Isometry3d& start, double kernel,
+                               const PlaneRegistrationOptions& options);
+
 /** A correspondence: a point of a scan, and the plane of the map that it lies next to. */
 struct Correspondence {
     Eigen::Vector3d point;   //!< metres, the sensor's frame

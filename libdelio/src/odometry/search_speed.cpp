@@ -192,8 +192,20 @@ Votes votesOf(const std::vector<Overlap>& overlaps) {
 void SpeedSearch::clear() {
     scans_.clear();
     axes_.setZero();
+    waiting_.reset();
     overlaps_.clear();
     likely_ = {};
+}
+
+SpeedSearch::Scans SpeedSearch::groupBefore(std::size_t end) const {
+    const auto last = scans_.begin() + static_cast<std::ptrdiff_t>(end);
+    return {last - kTogether, last};
+}
+
+/** Keeps the groups at whose end the same speed fitted best, and the one that waits. */
+void SpeedSearch::forgetOld() {
+    const auto kept = std::min(likely_.times, kOften - 1) + (waiting_ ? 1 : 0);
+    scans_.erase(scans_.begin(), scans_.end() - static_cast<std::ptrdiff_t>(kept * kTogether));
 }
 
 std::optional<std::vector<MovingScan>> SpeedSearch::add(MovingScan scan, const Guess& guess) {
@@ -206,29 +218,31 @@ std::optional<std::vector<MovingScan>> SpeedSearch::add(MovingScan scan, const G
     scans_.push_back(std::move(scan));
     if (scans_.size() % kTogether != 0) return {};
     const Eigen::Vector3d forward = axes_.normalized();
-    const double present_mps = guess.speed_mps * forward.dot(toSensor * guess.axis);
-    if (const auto speed_mps = speedAlong(forward, present_mps, guess.upright)) {
-        auto scans = movedAt(*speed_mps * forward, std::move(scans_));
-        clear();
-        return scans;
+    const Group latest{forward, guess.speed_mps * forward.dot(toSensor * guess.axis),
+                       guess.upright};
+    if (waiting_) compare(*waiting_, groupBefore(scans_.size() - kTogether));
+    waiting_ = latest;
+    if (likely_.times + 1 >= kOften) {
+        waiting_.reset();
+        if (const auto speed_mps = compare(latest, groupBefore(scans_.size()))) {
+            auto scans = movedAt(*speed_mps * forward, std::move(scans_));
+            clear();
+            return scans;
+        }
     }
-    const auto kept = std::min<std::size_t>(likely_.times, kOften - 1) * kTogether;
-    scans_.erase(scans_.begin(), scans_.end() - static_cast<std::ptrdiff_t>(kept));
+    forgetOld();
     return {};
 }
 
-/** Of the latest scans, at each speed from -most_mps_ on. Empty where too little stands above the
- *  ground. */
-std::vector<Overlap> SpeedSearch::overlapsAlong(const Eigen::Vector3d& forward,
-                                                const Eigen::Matrix3f& upright) const {
+/** At each speed from -most_mps_ on. Empty where too little stands above the ground. */
+std::vector<Overlap> SpeedSearch::overlapsOf(const Group& group, Scans scans) const {
     constexpr double kSpacing = 0.1;
     constexpr Eigen::Index kFewest = 100;
     constexpr std::size_t kMost = 2000;
-    std::vector<MovingScan> scans(scans_.end() - kTogether, scans_.end());
     for (MovingScan& scan : scans) scan.cloud = thinned(scan.cloud, kSpacing);
-    scans.back().cloud = standing(scans.back().cloud, upright, kMost);
+    scans.back().cloud = standing(scans.back().cloud, group.upright, kMost);
     if (scans.back().cloud.points.cols() < kFewest) return {};
-    const auto points = atSpeedsAlong(forward, scans);
+    const auto points = atSpeedsAlong(group.forward, scans);
     const Eigen::Matrix3Xf& last = scans.back().cloud.points;
     std::vector<int> sectors;
     for (Eigen::Index i = 0; i < last.cols(); ++i) sectors.push_back(sectorOf(last.col(i)));
@@ -259,14 +273,15 @@ double SpeedSearch::offsetOfPeak(Eigen::Index near) const {
     return kStep_mps * (offset + (isPeak ? (before - after) / (2 * curvature) : 0));
 }
 
-std::optional<double> SpeedSearch::speedAlong(const Eigen::Vector3d& forward, double present_mps,
-                                              const Eigen::Matrix3f& upright) {
+/** The speed of the group, where it is clear and not the present one. */
+std::optional<double> SpeedSearch::compare(const Group& group, const Scans& scans) {
     constexpr double kForget = 0.6, kSame_mps = 3, kAlias_m = 0.8, kLeast = 0.01, kClear = 1.4;
     constexpr double kManySectors = 4.5;  // a vehicle that drives along is in one or two
     constexpr double kNoSpeed = std::numeric_limits<double>::infinity();
-    const auto now = overlapsAlong(forward, upright);
+    const auto now = overlapsOf(group, scans);
     if (now.empty()) {
-        clear();
+        overlaps_.clear();
+        likely_ = {};
         return {};
     }
     overlaps_.resize(now.size());
@@ -280,7 +295,7 @@ std::optional<double> SpeedSearch::speedAlong(const Eigen::Vector3d& forward, do
         return static_cast<double>(i) * kStep_mps - most_mps_;
     };
     // A sensor's own rings lie on each other where it seems to stand.
-    const double duration_s = scans_.back().time_s - (scans_.end() - kTogether)->time_s,
+    const double duration_s = scans.back().time_s - scans.front().time_s,
                  alias_mps = kAlias_m * (kTogether - 1) / duration_s;
     const auto bestBut = [&](double speed_mps) {
         Eigen::Index best = 0;
@@ -299,7 +314,7 @@ std::optional<double> SpeedSearch::speedAlong(const Eigen::Vector3d& forward, do
                           spreadOf(votes.row(best).max(0)) > kManySectors;
     const bool isAgain = std::abs(best_mps - likely_.speed_mps) < kSame_mps;
     likely_ = {best_mps, !isLikely ? 0 : isAgain ? likely_.times + 1 : 1};
-    if (likely_.times < kOften || std::abs(best_mps - present_mps) < kSame_mps) return {};
+    if (likely_.times < kOften || std::abs(best_mps - group.present_mps) < kSame_mps) return {};
     return best_mps + offsetOfPeak(best);
 }
 }  // namespace delio::odometry

@@ -33,7 +33,9 @@ class SpeedSearch {
     };
 
     /** Takes a scan, which follows the latest one. After each few: the scans at the speed that fits
-     *  clearly better than others, the last one where it was. Nothing where they show no speed. */
+     *  clearly better than others, the last one where it was. Nothing where they show no speed.
+     *  A group of scans is compared when the next group is complete, or at once where it may
+     *  decide: most starts need no comparison, and one takes as long as ten scans. */
     std::optional<std::vector<MovingScan>> add(MovingScan scan, const Guess& guess);
 
     void clear();
@@ -42,14 +44,23 @@ class SpeedSearch {
     static constexpr std::size_t kTogether = 4;
     static constexpr unsigned kOften = 3;  //!< a speed that fits best so often is the right one
 
-    std::vector<Overlap> overlapsAlong(const Eigen::Vector3d& forward,
-                                       const Eigen::Matrix3f& upright) const;
+    /** kTogether scans, and what was known after them. */
+    struct Group {
+        Eigen::Vector3d forward;  //!< unit vector of the sensor's frame, along which it moves
+        double present_mps = 0;   //!< the speed that tracking has found
+        Eigen::Matrix3f upright;  //!< turns the sensor's z up
+    };
+    using Scans = std::vector<MovingScan>;
+
+    std::vector<Overlap> overlapsOf(const Group& group, Scans scans) const;
     double offsetOfPeak(Eigen::Index near) const;
-    std::optional<double> speedAlong(const Eigen::Vector3d& forward, double present_mps,
-                                     const Eigen::Matrix3f& upright);
+    std::optional<double> compare(const Group& group, const Scans& scans);
+    Scans groupBefore(std::size_t end) const;
+    void forgetOld();
 
     double most_mps_, reach_m_;
-    std::vector<MovingScan> scans_;                   //!< since the same speed fits best
+    Scans scans_;                                     //!< since the same speed fits best
+    std::optional<Group> waiting_;                    //!< is not compared yet
     Eigen::Vector3d axes_ = Eigen::Vector3d::Zero();  //!< sum of the axes, sensor's frame
     std::vector<Overlap> overlaps_;                   //!< at each speed, of all scans so far
     /** The speed that fits best. */
