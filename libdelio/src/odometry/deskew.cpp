@@ -70,8 +70,12 @@ void thinForMap(ScanView& view, double spacing) {
     view.fine = centroidsOf(view.points, view.voxels);
 }
 
-void thinForPlanes(ScanView& view, double spacing) {
+void numberForPlanes(ScanView& view, double spacing) {
     view.fineVoxels = numberVoxels(view.fine, spacing);
+}
+
+void thinForPlanes(ScanView& view, double spacing) {
+    numberForPlanes(view, spacing);
     view.thinned = centroidsOf(view.fine, view.fineVoxels).cast<double>();
 }
 

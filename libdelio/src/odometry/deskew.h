@@ -48,15 +48,18 @@ void thinForPoints(ScanView& view, const Eigen::Matrix3f& upright, double spacin
 /** Thins the points for the map: view.fine are the centroids of voxels of `spacing` metres. */
 void thinForMap(ScanView& view, double spacing);
 
-/** Thins view.fine for registration by planes: centroids of voxels of `spacing` metres. */
+/** Numbers the voxels of `spacing` metres of view.fine. */
+void numberForPlanes(ScanView& view, double spacing);
+
+/** The same, and thins view.fine for registration by planes: the voxels' centroids. */
 void thinForPlanes(ScanView& view, double spacing);
 
-/** The voxel of thinForPlanes() that each point is in; a dynamic point is in none, which is
+/** The voxel of numberForPlanes() that each point is in; a dynamic point is in none, which is
  *  UINT32_MAX. */
 VoxelNumbers planeVoxels(const ScanView& view);
 
 /** The same scan, undistorted by a trajectory that hardly differs. Its points share the voxels that
- *  they share in `view`, which is thinned for the map and for planes. Dynamic ones are left out. */
+ *  they share in `view`, which is thinned for the map and numbered for planes. Dynamic ones are left out. */
 ScanView undistortedAgain(const PointCloud& cloud, const ScanTrajectory& trajectory,
                           const ScanView& view);
 

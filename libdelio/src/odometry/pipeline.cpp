@@ -185,7 +185,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
                                               ScanView& view, Step& step) {
     const StageTimer timer(step, "planes");
     if (!placed.valid) return predictedEstimate(predicted);
-    thinForPlanes(view, options().spacing.scan_spacing);
+    numberForPlanes(view, options().spacing.scan_spacing);
     const bool isDeskewed = step.deskewed && !step.interrupted && window_.isEmpty();
     const auto deskewFrom = [&](const Eigen::Isometry3d& pose) {
         return deskewAgain(cloud, since_s, placed.inlierRatio, predicted, pose, view);
@@ -194,6 +194,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     // Where planes are many, they bend the trajectory from where the points lead.
     if (isDeskewed && haveManyPlanes()) deskewed = deskewFrom(placed.pose);
     if (!deskewed || !deskewed->estimate.isByPlanes) {
+        thinForPlanes(view, options().spacing.scan_spacing);
         auto found = map_.registerPlanes(view, placed, predicted, motion());
         wheels_.carry(pose_, found);
         if (isDeskewed) deskewed = deskewFrom(found.pose());

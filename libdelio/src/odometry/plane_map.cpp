@@ -208,25 +208,37 @@ std::uint64_t PlaneMap::voxelAt(const Eigen::Vector3d& point) const {
 }
 
 void PlaneMap::prefetch(std::uint64_t voxel) const {
-    for (const auto& level : levels_) level.cells.prefetch(coarserKey(voxel, level.number));
+    for (std::size_t i = 0; i < finest(); ++i)
+        levels_[i].cells.prefetch(coarserKey(voxel, levels_[i].number));
 }
 
-void PlaneMap::prefetchPlanes(std::uint64_t voxel) const {
-    // Larger voxels are few.
-    for (std::size_t i = 0; i < options_.levels; ++i) {
+PlaneMap::Cells PlaneMap::cellsAbout(std::uint64_t voxel) const {
+    Cells cells{VoxelIndex::kNone, VoxelIndex::kNone};
+    for (std::size_t i = 0; i < finest(); ++i) {
+        cells[i] = levels_[i].cells.numberOf(coarserKey(voxel, levels_[i].number));
+        if (cells[i] != VoxelIndex::kNone) __builtin_prefetch(&levels_[i].states[cells[i]]);
+    }
+    return cells;
+}
+
+void PlaneMap::prefetchPlane(const Cells& cells) const {
+    for (std::size_t i = 0; i < finest(); ++i) {
+        if (cells[i] == VoxelIndex::kNone) continue;
         const Level& level = levels_[i];
-        const std::uint32_t cell = level.cells.numberOf(coarserKey(voxel, level.number));
-        if (cell == VoxelIndex::kNone) continue;
-        level.cells.prefetchValue(cell);  // which it is fitted from, where it is not yet
-        __builtin_prefetch(&level.states[cell]);
-        __builtin_prefetch(&level.planes[cell]);
-        __builtin_prefetch(&level.planes[cell].variances);
+        const State state = level.states[cells[i]].load(std::memory_order_relaxed);
+        if (state == State::None) continue;
+        __builtin_prefetch(&level.planes[cells[i]]);
+        __builtin_prefetch(&level.planes[cells[i]].variances);
+        if (state == State::Plane) return;
+        level.cells.prefetchValue(cells[i]);  // which it is fitted from
     }
 }
 
-const Plane* PlaneMap::inVoxel(std::uint64_t voxel) const {
-    for (const auto& level : levels_) {
-        const std::uint32_t cell = level.cells.numberOf(coarserKey(voxel, level.number));
+const Plane* PlaneMap::planeIn(std::uint64_t voxel, const Cells& cells) const {
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+        const Level& level = levels_[i];
+        const std::uint32_t cell =
+            i < finest() ? cells[i] : level.cells.numberOf(coarserKey(voxel, level.number));
         if (cell == VoxelIndex::kNone) continue;
         if (const Plane* plane = planeIn(level, cell)) return plane;
     }

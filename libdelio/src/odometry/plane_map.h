@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -53,12 +55,16 @@ class PlaneMap {
     /** Which of the smallest voxels a point is in, and what at() gives for all points in it. */
     std::uint64_t voxelAt(const Eigen::Vector3d& point) const;
     /** See voxelAt(). */
-    const Plane* inVoxel(std::uint64_t voxel) const;
+    const Plane* inVoxel(std::uint64_t voxel) const { return planeIn(voxel, cellsAbout(voxel)); }
 
-    /** Soon prefetchPlanes() is called, and after that inVoxel(). */
-    void prefetch(std::uint64_t voxel) const;
-    /** See prefetch(). */
-    void prefetchPlanes(std::uint64_t voxel) const;
+    // inVoxel() of many voxels, step by step, so that their memory accesses overlap: each step
+    // prefetches what the next one needs.
+    /** Cells of the finest levels; VoxelIndex::kNone where there is none. */
+    using Cells = std::array<std::uint32_t, 2>;
+    void prefetch(std::uint64_t voxel) const;             //!< for cellsAbout()
+    Cells cellsAbout(std::uint64_t voxel) const;          //!< that the voxel is a part of
+    void prefetchPlane(const Cells& cells) const;         //!< for planeIn()
+    const Plane* planeIn(std::uint64_t voxel, const Cells& cells) const;  //!< of inVoxel()
 
     /** Drops everything, for a map in which `up` is up. */
     void clear(const Eigen::Vector3d& up);
@@ -117,6 +123,8 @@ class PlaneMap {
     void add(const Batch& batch, Level& level) const;
     State fit(const Level& level, std::uint32_t number) const;
     const Plane* planeIn(const Level& level, std::uint32_t number) const;
+    /** How many levels Cells are of: larger voxels are few. */
+    std::size_t finest() const { return std::min(levels_.size(), Cells().size()); }
 
     PlaneMapOptions options_;
     Eigen::Vector3d up_;

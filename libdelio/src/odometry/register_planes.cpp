@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -26,20 +27,25 @@ Matcher::Placed Matcher::placedBy(const Eigen::Isometry3d& pose, std::size_t blo
     return placed;
 }
 
-/** The planes about a block's points. What is asked of the map first is asked of it for all of them
- * before the next: memory is slow, and many places can be waited for at once. */
+/** The planes about a block's points. Each step is done for all of them before the next. */
 void Matcher::findPlanes(std::size_t block, const Placed& placed) {
     const std::size_t first = block * kBlock;
-    std::vector<std::size_t> moved;
+    std::array<std::size_t, kBlock> moved;
+    std::array<PlaneMap::Cells, kBlock> cells;
+    std::size_t count = 0;
     for (std::size_t i = first; i < endOf(block); ++i) {
         const std::uint64_t voxel = map_.voxelAt(placed.col(static_cast<Eigen::Index>(i - first)));
         if (voxel == latest_[i].voxel) continue;
         latest_[i].voxel = voxel;
         map_.prefetch(voxel);
-        moved.push_back(i);
+        moved[count++] = i;
     }
-    for (const std::size_t i : moved) map_.prefetchPlanes(latest_[i].voxel);
-    for (const std::size_t i : moved) latest_[i].plane = map_.inVoxel(latest_[i].voxel);
+    for (std::size_t k = 0; k < count; ++k) cells[k] = map_.cellsAbout(latest_[moved[k]].voxel);
+    for (std::size_t k = 0; k < count; ++k) map_.prefetchPlane(cells[k]);
+    for (std::size_t k = 0; k < count; ++k) {
+        Place& place = latest_[moved[k]];
+        place.plane = map_.planeIn(place.voxel, cells[k]);
+    }
 }
 
 Correspondences Matcher::at(const Eigen::Isometry3d& pose, double kernel) {
@@ -55,9 +61,17 @@ Correspondences Matcher::at(const Eigen::Isometry3d& pose, double kernel) {
                                           plane.mean, weight, plane.tilt(), i});
                    });
     });
-    Correspondences all;
-    all.reserve(latest_.size());
-    for (const auto& matches : found) all.insert(all.end(), matches.begin(), matches.end());
+    std::vector<std::size_t> firsts(blocks());
+    std::size_t count = 0;
+    for (std::size_t block = 0; block < blocks(); ++block) {
+        firsts[block] = count;
+        count += found[block].size();
+    }
+    Correspondences all(count);
+    tbb::parallel_for(std::size_t{0}, blocks(), [&](std::size_t block) {
+        std::copy(found[block].begin(), found[block].end(),
+                  all.begin() + static_cast<std::ptrdiff_t>(firsts[block]));
+    });
     return all;
 }
 
@@ -132,16 +146,16 @@ PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Is
 PlaneTranslation translationFromPlanes(const Correspondences& matches,
                                        const Eigen::Isometry3d& pose, const Prior& prior) {
     const Eigen::Matrix3d R = pose.linear();
-    PlaneTranslation result;
-    for (const auto& match : matches) {
-        const Eigen::Vector3d& n = match.normal;
-        const Eigen::Vector3d a = match.point.cross(R.transpose() * n);
-        const Eigen::Matrix3d along = n * n.transpose();
-        result.information += match.weight * along;
-        result.pretended += match.weight * match.tilt * (Eigen::Matrix3d::Identity() - along);
-        result.mixed += match.weight * n * a.transpose();
-        result.weight += match.weight;
-    }
+    auto result = sumOver<PlaneTranslation>(
+        matches, [&](const Correspondence& match, PlaneTranslation& sum) {
+            const Eigen::Vector3d& n = match.normal;
+            const Eigen::Vector3d a = match.point.cross(R.transpose() * n);
+            const Eigen::Matrix3d along = n * n.transpose();
+            sum.information += match.weight * along;
+            sum.pretended += match.weight * match.tilt * (Eigen::Matrix3d::Identity() - along);
+            sum.mixed += match.weight * n * a.transpose();
+            sum.weight += match.weight;
+        });
     result.step = stepFromPlanes(matches, pose, prior);
     return result;
 }

@@ -200,6 +200,14 @@ struct PlaneTranslation {
     Eigen::Matrix3d pretended = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d mixed = Eigen::Matrix3d::Zero();  //!< H_tr, 1/(m rad): t against w
     double weight = 0;                                //!< sum of the matches' weights
+
+    /** The sums over the matches of both; the step stays. */
+    void operator+=(const PlaneTranslation& other) {
+        information += other.information;
+        pretended += other.pretended;
+        mixed += other.mixed;
+        weight += other.weight;
+    }
 };
 
 /** The closed form: the least-squares translation of the unrotated scan. The prior (in units of

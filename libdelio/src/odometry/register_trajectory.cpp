@@ -240,7 +240,7 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
                                            options.spacing.scan_spacing);
     thinForPoints(again, known.upright, options.spacing.point_spacing, known.byStanding);
     const auto placed =
-        map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));
+        map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.last_kernel));
     if (!placed.valid) return {};
     auto estimate = map.registerPlanes(again, placed, known.pose, known.motion, trajectory.at(0));
     return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.inlierRatio};
