@@ -42,6 +42,8 @@ class LocalMap {
     void add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
     /** The same of an earlier scan of this drive. Its rings look the same from where it was. */
     void addScan(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
+    /** Does what the next scan will ask for, ahead of it. */
+    void prepare() const { planes_.fitLatest(); }
     /** Removes the map at `points` (map's frame), which turned out to be dynamic. */
     void erase(const Eigen::Matrix3Xf& points);
     /** `up`: the unit vector that does, in the map's frame. */

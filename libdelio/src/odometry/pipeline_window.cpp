@@ -105,6 +105,7 @@ void PlaneOdometry::findOwn() {
 
 void PlaneOdometry::settle() {
     insertWaiting();
+    if (!isUrgent_) map_.prepare();
     findOwn();
 }
 }  // namespace delio::odometry

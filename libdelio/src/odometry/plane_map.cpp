@@ -1,9 +1,11 @@
 #include "odometry/plane_map.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "core/principal_axes.h"
 #include "core/voxel_grid.h"
@@ -15,13 +17,7 @@ PlaneMap::PlaneMap(const PlaneMapOptions& options, const Eigen::Vector3d& up)
     constexpr double kLevel = 0.9;  // 26 deg: what a sensor's axis and the ground are off together
     double edge = options_.voxel_size;
     for (unsigned i = 0; i < options_.levels + options_.ground_levels; ++i, edge *= 2)
-        levels_.push_back({i, edge, i < options_.levels ? 0 : kLevel, {}, {}, {}});
-}
-
-double Plane::varianceAt(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d d = axes.transpose() * (point - mean);
-    return variances[0] *
-           (1 + (1 + d[1] * d[1] / variances[1] + d[2] * d[2] / variances[2]) / count);
+        levels_.push_back({i, edge, i < options_.levels ? 0 : kLevel, {}, {}, {}, {}});
 }
 
 void PlaneMap::Sums::add(const Eigen::Vector3d& point) {
@@ -71,6 +67,7 @@ void PlaneMap::Level::clear() {
 void PlaneMap::Level::forgetPlanes() {
     states.assign(cells.size(), State::Unknown);
     planes.resize(cells.size());
+    latest.clear();
 }
 
 PlaneMap::State PlaneMap::fit(const Level& level, std::uint32_t number) const {
@@ -94,8 +91,9 @@ PlaneMap::State PlaneMap::fit(const Level& level, std::uint32_t number) const {
         variances[0] < most && variances[0] < options_.max_flatness * variances[1] &&
         variances[1] > least * least && std::abs(pca.axes.col(0).dot(up_)) >= level.steepest;
     if (!isPlane) return State::None;
-    level.planes[number] = {cell.origin + mean, pca.axes, variances,
-                            static_cast<double>(cell.count)};
+    const Eigen::Vector2d tilts = share * variances[0] * variances.tail<2>().cwiseInverse();
+    level.planes[number] = {cell.origin + mean, pca.axes, variances[0],
+                            static_cast<double>(cell.count), tilts};
     return State::Plane;
 }
 
@@ -139,7 +137,7 @@ void PlaneMap::add(const Batch& batch, Level& level) const {
     std::vector<std::uint64_t> voxels(batch.voxels.size());
     std::transform(batch.voxels.begin(), batch.voxels.end(), voxels.begin(),
                    [&](std::uint64_t voxel) { return coarserKey(voxel, level.number); });
-    const auto numbers = level.cells.insert(voxels);
+    auto numbers = level.cells.insert(voxels);
     level.states.resize(level.cells.size());
     level.planes.resize(level.cells.size());
     level.cells.forEach(numbers, [&](std::size_t i, Sums& cell) {
@@ -147,12 +145,25 @@ void PlaneMap::add(const Batch& batch, Level& level) const {
         cell.add(batch.sums[i]);
         level.states[numbers[i]].store(State::Unknown, std::memory_order_relaxed);
     });
+    level.latest = std::move(numbers);
 }
 
 void PlaneMap::add(const Eigen::Matrix3Xd& points) {
     const Batch batch = batchOf(points);
     tbb::parallel_for(std::size_t{0}, levels_.size(),
                       [&](std::size_t i) { add(batch, levels_[i]); });
+}
+
+void PlaneMap::fitLatest() const {
+    constexpr std::size_t kTogether = 256;
+    for (std::size_t i = 0; i < finest(); ++i) {
+        const Level& level = levels_[i];
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.latest.size(), kTogether),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t k = range.begin(); k != range.end(); ++k)
+                                  planeIn(level, level.latest[k]);
+                          });
+    }
 }
 
 void PlaneMap::erase(const Eigen::Matrix3Xd& points) {
@@ -181,6 +192,7 @@ void PlaneMap::forgetFarFrom(const Eigen::Vector3d& centre) {
         });
         level.states.resize(level.cells.size());
         level.planes.resize(level.cells.size());
+        level.latest.clear();  // numbers have changed
     });
 }
 
@@ -228,7 +240,7 @@ void PlaneMap::prefetchPlane(const Cells& cells) const {
         const State state = level.states[cells[i]].load(std::memory_order_relaxed);
         if (state == State::None) continue;
         __builtin_prefetch(&level.planes[cells[i]]);
-        __builtin_prefetch(&level.planes[cells[i]].variances);
+        __builtin_prefetch(&level.planes[cells[i]].tilts);
         if (state == State::Plane) return;
         level.cells.prefetchValue(cells[i]);  // which it is fitted from
     }

@@ -14,17 +14,27 @@
 namespace delio::odometry {
 /** The surface in one voxel. Metres, the map's frame. */
 struct Plane {
-    Eigen::Vector3d mean;       //!< of the points
-    Eigen::Matrix3d axes;       //!< columns; the first is the normal, of either sign
-    Eigen::Vector3d variances;  //!< of the points, along the axes, rising
-    double count;               //!< of points
+    Eigen::Vector3d mean;   //!< of the points
+    Eigen::Matrix3d axes;   //!< columns: the normal, of either sign, then the shorter one inside
+    double variance;        //!< of the points, along the normal
+    double count;           //!< of points
+    Eigen::Vector2d tilts;  //!< variances of the normal's direction, rad^2, along the other axes
 
     Eigen::Vector3d normal() const { return axes.col(0); }  //!< unit, of either sign
-    /** Variance of the distance between the plane and a point of its surface: the surface's own
-     *  thickness, and how well mean and normal are known there. */
-    double varianceAt(const Eigen::Vector3d& point) const;
+    /** A point seen from the mean, along the axes: the first one is its distance, signed. */
+    Eigen::Vector3d along(const Eigen::Vector3d& point) const {
+        return axes.transpose() * (point - mean);
+    }
+    /** Variance of the distance between the plane and a point of its surface that is `along` its
+     *  axes: the surface's own thickness, and how well mean and normal are known there. */
+    double varianceAt(const Eigen::Vector3d& along) const {
+        return variance + variance / count + tilts[0] * along[1] * along[1] +
+               tilts[1] * along[2] * along[2];
+    }
     /** Variance of the normal's direction where it is known worse, rad^2. */
-    double tilt() const { return variances[0] / (variances[1] * count); }
+    double tilt() const { return tilts[0]; }
+    /** Variance along the normal, as a share of that along the shorter axis inside. */
+    double flatness() const { return tilts[0] * count; }
 };
 
 /** What the last scans saw, as one plane a voxel, with running mean and scatter; on several levels,
@@ -40,6 +50,9 @@ class PlaneMap {
     /** Takes points (metres, the map's frame) in. A voxel that has `max_points` stays as it is: it
      *  is what drift is held against. */
     void add(const Eigen::Matrix3Xd& points);
+
+    /** Fits the planes that the latest add() has changed, before at() asks for them. */
+    void fitLatest() const;
 
     /** Drops the planes at `points` (likewise), which are dynamic. Planes of the largest levels,
      *  which are the ground's, stay. */
@@ -115,6 +128,7 @@ class PlaneMap {
         VoxelTable<Sums> cells;
         mutable std::vector<SharedState> states;  //!< of the cells
         mutable Chunked<Plane> planes;            //!< likewise
+        std::vector<std::uint32_t> latest;        //!< cells that the latest add() has changed
 
         void clear();
         void forgetPlanes();

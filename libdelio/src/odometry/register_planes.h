@@ -147,15 +147,15 @@ class Matcher {
     template <typename Visit>
     void forMatches(std::size_t block, const Placed& placed, double kernel,
                     const Visit& visit) const {
+        const double perKernel2 = 1 / (kernel * kernel), point = point_sigma_ * point_sigma_;
         for (std::size_t i = block * kBlock; i < endOf(block); ++i) {
             const Plane* plane = latest_[i].plane;
             if (!plane) continue;
-            const Eigen::Vector3d at = placed.col(static_cast<Eigen::Index>(i - block * kBlock));
-            const double r = plane->normal().dot(at - plane->mean);
-            if (std::abs(r) > kReach * kernel) continue;
-            const double robust = 1 / (1 + r * r / (kernel * kernel));
-            visit(i, at, *plane,
-                  robust * robust / (plane->varianceAt(at) + point_sigma_ * point_sigma_));
+            const Eigen::Vector3d at = placed.col(static_cast<Eigen::Index>(i - block * kBlock)),
+                                  along = plane->along(at);
+            if (std::abs(along[0]) > kReach * kernel) continue;
+            const double inverse = 1 + along[0] * along[0] * perKernel2;
+            visit(i, at, *plane, 1 / (inverse * inverse * (plane->varianceAt(along) + point)));
         }
     }
 

@@ -402,7 +402,7 @@ paper::SurfaceNormals flatVoxels(const Eigen::Matrix3Xf& points) {
     for (Eigen::Index i = 0; i < firsts.cols(); ++i) {
         const odometry::Plane* plane = map.at(firsts.col(i).cast<double>());
         if (!plane) continue;
-        const double thickness = std::sqrt(plane->variances[0] / plane->variances[1]);
+        const double thickness = std::sqrt(plane->flatness());
         walls.directions.col(kept) = plane->normal().cast<float>();
         walls.planarity[kept] = static_cast<float>((1 - thickness) * plane->count);
         ++kept;

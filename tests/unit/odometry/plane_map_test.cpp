@@ -44,13 +44,15 @@ TEST(PlaneMap, APlaneComesBackWithItsThickness) {
     const auto* plane = map.at(middle);
     ASSERT_TRUE(plane);
     EXPECT_GT(std::abs(plane->normal().dot(normal)), std::cos(0.02));
-    EXPECT_NEAR(std::sqrt(plane->variances[0]), 0.02, 0.005);
+    EXPECT_NEAR(std::sqrt(plane->variance), 0.02, 0.005);
     EXPECT_LT((plane->mean - middle).norm(), 0.1);
     EXPECT_GT(plane->count, 100);
     // A point in the middle of the plane is known to its thickness, one beside it less well.
-    EXPECT_NEAR(plane->varianceAt(plane->mean) / plane->variances[0], 1 + 1 / plane->count, 1e-9);
-    const Eigen::Vector3d beside = plane->mean + 3 * plane->axes.col(2);
-    EXPECT_GT(plane->varianceAt(beside), plane->varianceAt(plane->mean));
+    const double there = plane->varianceAt(plane->along(plane->mean));
+    EXPECT_NEAR(there / plane->variance, 1 + 1 / plane->count, 1e-9);
+    const Eigen::Vector3d beside = plane->along(plane->mean + 3 * plane->axes.col(2));
+    EXPECT_NEAR(beside[2], 3, 1e-9);
+    EXPECT_NEAR(plane->varianceAt(beside) - there, 9 * plane->tilts[1], 1e-12);
 }
 
 TEST(PlaneMap, PointsInTwoCallsAreOnePlane) {
@@ -64,7 +66,8 @@ TEST(PlaneMap, PointsInTwoCallsAreOnePlane) {
     ASSERT_TRUE(a && b);
     // To what rounding leaves: sums are taken from the first point of each call.
     EXPECT_TRUE(a->mean.isApprox(b->mean, 1e-14)) << (a->mean - b->mean).norm();
-    EXPECT_TRUE(a->variances.isApprox(b->variances, 1e-11)) << (a->variances - b->variances).norm();
+    EXPECT_NEAR(a->variance, b->variance, 1e-11 * a->variance);
+    EXPECT_TRUE(a->tilts.isApprox(b->tilts, 1e-11)) << (a->tilts - b->tilts).norm();
     EXPECT_EQ(a->count, b->count);
 }
 
