@@ -75,6 +75,12 @@ void PoseGraph::addEdge(std::size_t from, std::size_t to, const Eigen::Isometry3
         throw Error("pose graph: the information of " + nameOf(from, to) +
                     " is not symmetric and positive definite");
     append({from, to, {pose, inverseOf(information)}}, information);
+    information_.emplace(edges_.size() - 1, information);
+}
+
+Matrix6 PoseGraph::information(std::size_t i) const {
+    const auto given = information_.find(i);
+    return given != information_.end() ? given->second : inverseOf(edges_[i].increment.covariance);
 }
 
 void PoseGraph::correct(const std::vector<NodePose>& corrected) {
@@ -117,7 +123,6 @@ void PoseGraph::append(const Edge& edge, const Matrix6& information) {
                     " exceeds 1e20, which is not plausible");
     edgesUpTo_[std::max(edge.from, edge.to)].push_back(edges_.size());
     edges_.push_back(edge);
-    information_.push_back(information);
 }
 
 void PoseGraph::requireConnected(std::size_t firstFree) const {
@@ -153,7 +158,7 @@ WhitenedGraph PoseGraph::whitened(std::size_t firstFree, const std::vector<bool>
         for (const std::size_t i : edgesUpTo_[node]) {
             const Edge& edge = edges_[i];
             mrpt::poses::CPose3DPDFGaussianInf measured(toMrpt(edge.increment.pose));
-            const Matrix6 U = information_[i].llt().matrixU();
+            const Matrix6 U = information(i).llt().matrixU();
             measured.cov_inv.asEigen() = U;
             const auto entry = graph.edges.emplace(
                 std::make_pair(edge.from - graph.firstNode, edge.to - graph.firstNode), measured);

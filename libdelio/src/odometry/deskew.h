@@ -59,7 +59,8 @@ void thinForPlanes(ScanView& view, double spacing);
 VoxelNumbers planeVoxels(const ScanView& view);
 
 /** The same scan, undistorted by a trajectory that hardly differs. Its points share the voxels that
- *  they share in `view`, which is thinned for the map and numbered for planes. Dynamic ones are left out. */
+ *  they share in `view`, which is thinned for the map and numbered for planes. Dynamic ones are
+ * left out. */
 ScanView undistortedAgain(const PointCloud& cloud, const ScanTrajectory& trajectory,
                           const ScanView& view);
 

@@ -74,9 +74,9 @@ class PlaneMap {
     // prefetches what the next one needs.
     /** Cells of the finest levels; VoxelIndex::kNone where there is none. */
     using Cells = std::array<std::uint32_t, 2>;
-    void prefetch(std::uint64_t voxel) const;             //!< for cellsAbout()
-    Cells cellsAbout(std::uint64_t voxel) const;          //!< that the voxel is a part of
-    void prefetchPlane(const Cells& cells) const;         //!< for planeIn()
+    void prefetch(std::uint64_t voxel) const;      //!< for cellsAbout()
+    Cells cellsAbout(std::uint64_t voxel) const;   //!< that the voxel is a part of
+    void prefetchPlane(const Cells& cells) const;  //!< for planeIn()
     const Plane* planeIn(std::uint64_t voxel, const Cells& cells) const;  //!< of inVoxel()
 
     /** Drops everything, for a map in which `up` is up. */

@@ -146,8 +146,8 @@ PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Is
 PlaneTranslation translationFromPlanes(const Correspondences& matches,
                                        const Eigen::Isometry3d& pose, const Prior& prior) {
     const Eigen::Matrix3d R = pose.linear();
-    auto result = sumOver<PlaneTranslation>(
-        matches, [&](const Correspondence& match, PlaneTranslation& sum) {
+    auto result =
+        sumOver<PlaneTranslation>(matches, [&](const Correspondence& match, PlaneTranslation& sum) {
             const Eigen::Vector3d& n = match.normal;
             const Eigen::Vector3d a = match.point.cross(R.transpose() * n);
             const Eigen::Matrix3d along = n * n.transpose();
@@ -371,9 +371,9 @@ PlaneEstimate registerToPlanes(const PlaneMap& map, const Eigen::Matrix3Xd& poin
                                const PlaneRegistrationOptions& options) {
     Matcher matcher(map, points, plane_tuning::kPointSigma_m);
     Eigen::Isometry3d pose = start;
-    auto estimate = registered(
-        [&](const Eigen::Isometry3d& at, double width) { return matcher.at(at, width); }, prior,
-        kernel, options, pose);
+    auto estimate =
+        registered([&](const Eigen::Isometry3d& at, double width) { return matcher.at(at, width); },
+                   prior, kernel, options, pose);
     if (estimate.valid) estimate.inlierRatio = matcher.shareAt(pose, options.last_kernel);
     return estimate;
 }

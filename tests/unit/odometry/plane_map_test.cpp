@@ -71,6 +71,33 @@ TEST(PlaneMap, PointsInTwoCallsAreOnePlane) {
     EXPECT_EQ(a->count, b->count);
 }
 
+TEST(PlaneMap, PlanesThatAreFittedAheadAreTheSame) {
+    test::Noise noise;
+    PlaneMap asked(oneMetre()), ahead(oneMetre());
+    const auto expectSame = [&](double x) {
+        const auto *a = asked.at({x, 0.5, 0.5}), *b = ahead.at({x, 0.5, 0.5});
+        ASSERT_EQ(a != nullptr, b != nullptr) << x;
+        if (!a) return;
+        EXPECT_EQ(a->mean, b->mean);
+        EXPECT_EQ(a->axes, b->axes);
+        EXPECT_EQ(a->tilts, b->tilts);
+        EXPECT_EQ(a->count, b->count);
+    };
+    for (const double x : {0.5, 5.5, 5.5, 90.5}) {
+        const auto points = patch({x, 0.5, 0.5}, {0, 0, 1}, 0.01, 60, noise);
+        asked.add(points);
+        ahead.add(points);
+        ahead.fitLatest();
+        expectSame(x);
+    }
+    for (PlaneMap* map : {&asked, &ahead}) map->forgetFarFrom({90, 0, 0});
+    ahead.fitLatest();
+    for (const double x : {0.5, 5.5, 90.5}) expectSame(x);
+    ahead.erase(patch({90.5, 0.5, 0.5}, {0, 0, 1}, 0.01, 60, noise));
+    ahead.fitLatest();
+    EXPECT_FALSE(ahead.at({90.5, 0.5, 0.5}));
+}
+
 TEST(PlaneMap, WhatIsNoPlaneIsNone) {
     test::Noise noise;
     PlaneMap map(oneMetre());

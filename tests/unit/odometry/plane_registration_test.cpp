@@ -16,6 +16,7 @@ namespace {
 using odometry::Correspondences;
 using odometry::PlaneMap;
 using test::degreesBetween;
+using test::metresBetween;
 using test::poseAt;
 using test::rotationAbout;
 
@@ -279,6 +280,24 @@ TEST(PlaneRegistration, AlongACorridorThePredictionStays) {
     EXPECT_NEAR(found.translation.translation.y(), 0.2, 0.01);
     EXPECT_GT(found.translation.covariance(0, 0), 0.2);
     EXPECT_EQ(found.rotation.unobservedAxes.cols(), 0);
+}
+
+TEST(PlaneRegistration, FromAnotherStartItLeadsToTheSamePose) {
+    test::Noise noise;
+    const PlaneMap map = mapOf(test::corridor(), noise);
+    const Eigen::Matrix3Xd points =
+        voxelCentroids(pointsSeenFrom(test::corridor(), poseAt(1, 0.2, 0.05), noise), 0.5)
+            .cast<double>();
+    const auto prior = priorAt(poseAt(0.6, 0, 0));
+    const PlaneRegistrationOptions options;
+    const auto fromPrior = odometry::registerToPlanes(map, points, prior, 1, options);
+    for (const double x : {0.5, 0.8}) {
+        const auto found = odometry::registerToPlanes(map, points, prior, poseAt(x, 0.15, 0.03),
+                                                      options.last_kernel, options);
+        ASSERT_TRUE(found.valid) << x;
+        EXPECT_LT(metresBetween(found.pose(), fromPrior.pose()), 2e-3) << x;
+        EXPECT_LT(found.rotation.iterations, fromPrior.rotation.iterations) << x;
+    }
 }
 
 TEST(PlaneRegistration, WithoutPlanesThePredictionStays) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <map>
 #include <vector>
 
 #include "delio/core/increment.h"
@@ -90,10 +91,10 @@ class PoseGraph {
     /** In the order in which they were added. */
     const std::vector<Edge>& edges() const { return edges_; }
     /** Omega of edges()[i], in the order of delio::Increment. */
-    const Matrix6& information(std::size_t i) const { return information_[i]; }
+    Matrix6 information(std::size_t i) const;
 
  private:
-    void append(const Edge& edge, const Matrix6& information);
+    void append(const Edge& edge, const Matrix6& information);  //!< without keeping the latter
     void requireConnected(std::size_t firstFree) const;
     /** Edges between free nodes, and between those and earlier ones. */
     WhitenedGraph whitened(std::size_t firstFree, const std::vector<bool>& doubtful) const;
@@ -101,7 +102,7 @@ class PoseGraph {
 
     std::vector<Eigen::Isometry3d> poses_;
     std::vector<Edge> edges_;
-    std::vector<Matrix6> information_;
+    std::map<std::size_t, Matrix6> information_;       //!< of edges that came with it
     std::vector<std::vector<std::size_t>> edgesUpTo_;  //!< of each node: edges to earlier ones
 };
 
