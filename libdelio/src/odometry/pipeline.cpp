@@ -192,7 +192,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     };
     std::optional<ScanOnTrajectory> deskewed;
     // Where planes are many, they bend the trajectory from where the points lead.
-    if (isDeskewed && haveManyPlanes()) deskewed = deskewFrom(placed.pose);
+    if (isDeskewed && isSettled() && haveManyPlanes()) deskewed = deskewFrom(placed.pose);
     if (!deskewed || !deskewed->estimate.isByPlanes) {
         thinForPlanes(view, options().spacing.scan_spacing);
         auto found = map_.registerPlanes(view, placed, predicted, motion());

@@ -197,6 +197,8 @@ class PlaneOdometry : public Odometry {
     bool isShaken() const {
         return errors().kernel.isKnown() && kernel_m() >= options().points.first_kernel;
     }
+    /** The map's first scans, whose motion is not known as well, have been registered again. */
+    bool isSettled() const { return beginning_.empty() && speeds_; }
     /** The latest scan was tracked, and many planes constrained it. */
     bool haveManyPlanes() const {
         constexpr std::size_t kMany = 1000;

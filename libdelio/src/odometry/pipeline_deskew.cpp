@@ -87,8 +87,8 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewAgain(const PointCloud& clo
     const bool isNear =
         !isShaken() && stepBetween(predicted, pose).norm() < options().spacing.map_spacing;
     const KnownEnds known{
-        reference_.pose, since_s, pose, upright_, isPlacedByStanding(isGuessing()),
-        isNear,          motion()};
+        reference_.pose, since_s,  pose,       upright_, isPlacedByStanding(isGuessing()),
+        isNear,          motion(), isSettled()};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->inlierRatio >= inlierRatio - kInlierNoise;
     };

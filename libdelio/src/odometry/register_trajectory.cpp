@@ -129,15 +129,6 @@ TimedPoints sampled(const TimedPoints& all, Eigen::Index most) {
 }
 
 namespace {
-bool isShort(const Coefficients& step, double most_rad, double most_m) {
-    double squared_rad = 0, squared_m = 0;
-    for (Eigen::Index k = 0; k < kDegree; ++k) {
-        squared_rad += step.segment<3>(6 * k).squaredNorm();
-        squared_m += step.segment<3>(6 * k + 3).squaredNorm();
-    }
-    return squared_rad < most_rad * most_rad && squared_m < most_m * most_m;
-}
-
 /** What the iterations have come to. */
 struct Bending {
     ScanTrajectory trajectory;
@@ -148,8 +139,7 @@ struct Bending {
 bool bend(const PlaneMap& map, const TimedPoints& scan, double since_s, const Coefficients& known,
           double width, const PlaneRegistrationOptions& options, Bending& now) {
     constexpr unsigned kIterations = 6;
-    // (Its pose at the scan's time is found more precisely afterwards.)
-    constexpr double kConverged_rad = 1e-4, kConverged_m = 5e-4, kRough = 10, kLeastFactor = 0.01;
+    constexpr double kConverged = 1e-4, kRough = 1e-3, kLeastFactor = 0.01;
     const auto [least, most] = std::minmax_element(scan.times_s.begin(), scan.times_s.end());
     Matcher matcher(map, scan.points, plane_tuning::kPointSigma_m);
     for (unsigned i = 0; i < kIterations; ++i) {
@@ -165,8 +155,7 @@ bool bend(const PlaneMap& map, const TimedPoints& scan, double since_s, const Co
         const Coefficients step = -equations.information.ldlt().solve(equations.gradient);
         now.trajectory = bent(now.trajectory, step, since_s);
         now.sinceStart += step;
-        const double enough = width > options.last_kernel ? kRough : 1;
-        if (isShort(step, enough * kConverged_rad, enough * kConverged_m)) break;
+        if (step.norm() < (width > options.last_kernel ? kRough : kConverged)) break;
     }
     return true;
 }
@@ -240,9 +229,11 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
                                            options.spacing.scan_spacing);
     thinForPoints(again, known.upright, options.spacing.point_spacing, known.byStanding);
     const auto placed =
-        map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.last_kernel));
+        map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));
     if (!placed.valid) return {};
-    auto estimate = map.registerPlanes(again, placed, known.pose, known.motion, trajectory.at(0));
+    std::optional<Eigen::Isometry3d> start;
+    if (known.isSettled) start = trajectory.at(0);
+    auto estimate = map.registerPlanes(again, placed, known.pose, known.motion, start);
     return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.inlierRatio};
 }
 

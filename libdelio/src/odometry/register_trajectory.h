@@ -44,6 +44,7 @@ struct KnownEnds {
     bool byStanding = false;           //!< points above the ground place the scan
     bool isNearPrediction = false;     //!< by which the scan was de-skewed first
     Motion motion = Motion::kUnknown;  //!< before `reference`
+    bool isSettled = false;            //!< planes need not begin where points place the scan
 };
 
 /** The first point in each voxel. */
