@@ -72,7 +72,7 @@ class PlaneMap {
 
     // inVoxel() of many voxels, step by step, so that their memory accesses overlap: each step
     // prefetches what the next one needs.
-    /** Cells of the finest levels; VoxelIndex::kNone where there is none. */
+    /** Cells of the finest levels; VoxelIndex::kNone where one is missing. */
     using Cells = std::array<std::uint32_t, 2>;
     void prefetch(std::uint64_t voxel) const;      //!< for cellsAbout()
     Cells cellsAbout(std::uint64_t voxel) const;   //!< that the voxel is a part of

@@ -44,7 +44,7 @@ class SpeedSearch {
     static constexpr std::size_t kTogether = 4;
     static constexpr unsigned kOften = 3;  //!< a speed that fits best so often is the right one
 
-    /** kTogether scans, and what was known after them. */
+    /** kTogether scans, and the estimates after them. */
     struct Group {
         Eigen::Vector3d forward;  //!< unit vector of the sensor's frame, along which it moves
         double present_mps = 0;   //!< the speed that tracking has found
