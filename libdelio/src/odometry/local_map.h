@@ -42,7 +42,7 @@ class LocalMap {
     void add(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
     /** The same of an earlier scan of this drive. Its rings look the same from where it was. */
     void addScan(const Eigen::Matrix3Xf& points, const Eigen::Isometry3d& pose);
-    /** Does what the next scan will ask for, ahead of it. */
+    /** Fits planes that the latest scan has changed, ahead of the next one. */
     void prepare() const { planes_.fitLatest(); }
     /** Removes the map at `points` (map's frame), which turned out to be dynamic. */
     void erase(const Eigen::Matrix3Xf& points);
