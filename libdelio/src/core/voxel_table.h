@@ -111,7 +111,7 @@ class VoxelTable {
     void prefetch(std::uint64_t key) const { index_.prefetch(key); }
     /** Prefetches the value of a number. */
     void prefetchValue(std::uint32_t number) const {
-        constexpr std::size_t kLine = 64, kMost = 2 * kLine;  // frequently read members first
+        constexpr std::size_t kLine = 64, kMost = 5 * kLine;  // frequently read members first
         const auto* const at = reinterpret_cast<const char*>(&values_[number]);
         for (std::size_t i = 0; i < std::min(kMost, sizeof(Value)); i += kLine)
             __builtin_prefetch(at + i);

@@ -23,8 +23,8 @@ Eigen::Matrix3Xf deskew(const Eigen::Matrix3Xf& points, const std::vector<float>
                         const ScanTrajectory& trajectory) {
     Eigen::Matrix3Xf result(3, points.cols());
     if (points.cols() == 0) return result;
-    const auto [least, most] = std::minmax_element(times_s.begin(), times_s.end());
-    const PoseTableOf<float> poses(trajectory, double{*least}, double{*most});
+    const auto [least, most] = rangeOf(times_s);
+    const PoseTableOf<float> poses(trajectory, double{least}, double{most});
     using Range = tbb::blocked_range<Eigen::Index>;
     constexpr Eigen::Index kTogether = 2048;
     tbb::parallel_for(Range(0, points.cols(), kTogether), [&](const Range& range) {
@@ -67,6 +67,7 @@ void thinForPoints(ScanView& view, const Eigen::Matrix3f& upright, double spacin
 
 void thinForMap(ScanView& view, double spacing) {
     view.voxels = numberVoxels(view.points, spacing);
+    view.dynamicVoxels.assign(static_cast<std::size_t>(view.voxels.voxels), 0);
     view.fine = centroidsOf(view.points, view.voxels);
 }
 
@@ -79,23 +80,12 @@ void thinForPlanes(ScanView& view, double spacing) {
     view.thinned = centroidsOf(view.fine, view.fineVoxels).cast<double>();
 }
 
-namespace {
-/** 1 for each voxel whose points are dynamic. */
-std::vector<std::uint8_t> dynamicVoxels(const ScanView& view) {
-    std::vector<std::uint8_t> dynamic(static_cast<std::size_t>(view.voxels.voxels));
-    for (std::size_t i = 0; i < view.dynamic.size(); ++i)
-        dynamic[view.voxels.ofPoint[i]] = view.dynamic[i];
-    return dynamic;
-}
-}  // namespace
-
 VoxelNumbers planeVoxels(const ScanView& view) {
     constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
-    const auto dynamic = dynamicVoxels(view);
-    std::vector<std::uint32_t> ofVoxel(dynamic.size(), kNone);
+    std::vector<std::uint32_t> ofVoxel(view.dynamicVoxels.size(), kNone);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < ofVoxel.size(); ++i)
-        if (!dynamic[i]) ofVoxel[i] = view.fineVoxels.ofPoint[kept++];
+        if (!view.dynamicVoxels[i]) ofVoxel[i] = view.fineVoxels.ofPoint[kept++];
     VoxelNumbers numbers{std::vector<std::uint32_t>(view.voxels.ofPoint.size()),
                          view.fineVoxels.voxels};
     for (std::size_t i = 0; i < numbers.ofPoint.size(); ++i)
@@ -108,8 +98,9 @@ ScanView undistortedAgain(const PointCloud& cloud, const ScanTrajectory& traject
     ScanView again = undistorted(cloud, trajectory);
     again.dynamic = view.dynamic;
     again.voxels = view.voxels;
+    again.dynamicVoxels = view.dynamicVoxels;
     again.fineVoxels = view.fineVoxels;
-    again.fine = unmarked(centroidsOf(again.points, again.voxels), dynamicVoxels(view));
+    again.fine = unmarked(centroidsOf(again.points, again.voxels), again.dynamicVoxels);
     again.thinned = centroidsOf(again.fine, again.fineVoxels).cast<double>();
     return again;
 }

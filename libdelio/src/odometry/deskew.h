@@ -25,11 +25,12 @@ struct ScanView {
     Eigen::Matrix3Xf points;            //!< all
     std::vector<std::uint8_t> dynamic;  //!< 1 for each of them that belongs to a dynamic object
     VoxelNumbers voxels;                //!< of all points
-    Eigen::Matrix3Xf fine;              //!< thinned for the map: centroids of the static voxels
-    VoxelNumbers fineVoxels;            //!< of `fine`
-    Eigen::Matrix3Xd thinned;           //!< thinned for registration by planes
-    Eigen::Matrix3Xd coarse;            //!< thinned for registration by points
-    Eigen::Matrix3Xd level;  //!< all, thinned: where `coarse` has no ground, they level the scan
+    std::vector<std::uint8_t> dynamicVoxels;  //!< 1 for each of these that is dynamic
+    Eigen::Matrix3Xf fine;     //!< thinned for the map: centroids of the static voxels
+    VoxelNumbers fineVoxels;   //!< of `fine`
+    Eigen::Matrix3Xd thinned;  //!< thinned for registration by planes
+    Eigen::Matrix3Xd coarse;   //!< thinned for registration by points
+    Eigen::Matrix3Xd level;    //!< all, thinned: where `coarse` has no ground, they level the scan
 };
 
 /** Undistorted by `trajectory` (see deskew()) where the points have times; not thinned yet,

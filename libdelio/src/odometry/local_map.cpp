@@ -50,11 +50,12 @@ struct Fit {
 Fit fitOf(const PointMap& map, const Facing& surfaces, const Eigen::Vector3d& axis,
           const Eigen::Vector3d& offset, double reach) {
     double near = 0, weights = 0, moments = 0;
-    for (Eigen::Index i = 0; i < surfaces.points.cols(); ++i) {
-        const Eigen::Vector3d point = surfaces.points.col(i) + offset,
-                              normal = surfaces.normals.col(i);
-        const auto nearest = map.nearest(point, reach);
+    const Eigen::Matrix3Xd points = surfaces.points.colwise() + offset;
+    const auto found = map.nearestOf(points, reach);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const auto& nearest = found[static_cast<std::size_t>(i)];
         if (!nearest.any) continue;
+        const Eigen::Vector3d point = points.col(i), normal = surfaces.normals.col(i);
         const double along = normal.dot(axis);
         ++near;
         weights += along * along;

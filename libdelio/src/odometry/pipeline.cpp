@@ -173,11 +173,11 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
 /** From the thinned scan, whose pose is known by points. */
 void PlaneOdometry::removeDynamicObjects(DynamicObjects::Sight sight, const Eigen::Isometry3d& pose,
                                          ScanView& view) {
-    const auto dynamic = dynamics_.detect(std::move(sight), pose * inverseOf(upright_), time_s_);
+    view.dynamicVoxels = dynamics_.detect(std::move(sight), pose * inverseOf(upright_), time_s_);
     map_.erase(dynamics_.unmasked());
     for (std::size_t i = 0; i < view.dynamic.size(); ++i)
-        view.dynamic[i] = dynamic[view.voxels.ofPoint[i]];
-    view.fine = unmarked(view.fine, dynamic);
+        view.dynamic[i] = view.dynamicVoxels[view.voxels.ofPoint[i]];
+    view.fine = unmarked(view.fine, view.dynamicVoxels);
 }
 
 PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const PointEstimate& placed,

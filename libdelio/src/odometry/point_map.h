@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "core/voxel_grid.h"
 #include "core/voxel_table.h"
@@ -38,17 +39,12 @@ class PointMap {
     };
     /** The nearest point within `reach` metres, and never farther than a voxel's edge, if there is
      *  any; and a distance, metres, within which no other one lies. */
-    Nearest nearest(const Eigen::Vector3d& point, double reach) const;
-
-    /** Soon prefetchCell() is called of the point, and after that nearest(). */
-    void prefetch(const Eigen::Vector3d& point) const {
-        cells_.prefetch(voxelKey(point, options_.voxel_size));
+    Nearest nearest(const Eigen::Vector3d& point, double reach) const {
+        return nearestOf(point, reach).front();
     }
-    /** See prefetch(). */
-    void prefetchCell(const Eigen::Vector3d& point) const {
-        const auto cell = cells_.numberOf(voxelKey(point, options_.voxel_size));
-        if (cell != VoxelIndex::kNone) cells_.prefetchValue(cell);
-    }
+    /** The same of each of many points, whose memory accesses overlap. */
+    std::vector<Nearest> nearestOf(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                                   double reach) const;
 
     /** Calls visit(point) of each (metres, the map's frame). */
     template <typename Visit>
@@ -73,12 +69,8 @@ class PointMap {
             return (x - point.x()).square() + ((y - point.y()).square() + (z - point.z()).square());
         }
     };
-    /** How far the nearest point and all others are, at least: squared metres. */
-    struct Search {
-        float least, others;
-        bool any = false;
-        Eigen::Vector3d found = Eigen::Vector3d::Zero();
-    };
+    struct Other;
+    struct Search;
     /** What is asked first lies first: cells are many, and memory is slow. */
     struct Cell {
         static constexpr Eigen::Index kMost = 20;
@@ -94,6 +86,10 @@ class PointMap {
         bool add(const Eigen::Vector3d& point, float squaredSpacing);
         void nearest(const Eigen::Vector3d& point, Search& search) const;
     };
+    static constexpr Eigen::Index kBlock = 64;
+    void findInBlock(const Eigen::Ref<const Eigen::Matrix3Xd>& points, double reach,
+                     Nearest* found) const;
+
     PointMapOptions options_;
     VoxelTable<Cell> cells_;
     std::size_t size_ = 0;

@@ -20,17 +20,25 @@ float middleOf(std::vector<float> times_s) {
                low = static_cast<std::ptrdiff_t>(kOutliers * static_cast<double>(last)),
                high = last - low;
     const auto first = times_s.begin();
-    std::nth_element(first, first + high, times_s.end());
-    std::nth_element(first, first + low, first + high);
+    if (!std::is_sorted(first, times_s.end())) {
+        std::nth_element(first, first + high, times_s.end());
+        std::nth_element(first, first + low, first + high);
+    }
     return (times_s[static_cast<std::size_t>(low)] + times_s[static_cast<std::size_t>(high)]) / 2;
 }
 
 }  // namespace
 
+std::pair<float, float> rangeOf(const std::vector<float>& times_s) {
+    const Eigen::Map<const Eigen::ArrayXf> all(times_s.data(),
+                                               static_cast<Eigen::Index>(times_s.size()));
+    return {all.minCoeff(), all.maxCoeff()};
+}
+
 std::pair<double, double> endsOf(const PointCloud& cloud) {
     if (cloud.times_s.empty()) return {0, 0};
-    const auto [first, last] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
-    return {std::min(0.0, double{*first}), std::max(0.0, double{*last})};
+    const auto [first, last] = rangeOf(cloud.times_s);
+    return {std::min(0.0, double{first}), std::max(0.0, double{last})};
 }
 
 void countFromMiddle(PointCloud& cloud) {

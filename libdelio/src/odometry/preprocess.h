@@ -30,6 +30,9 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options);
  *  begin of a turn, its end, or the arrival of the message. Without times it stays the stamp. */
 void countFromMiddle(PointCloud& cloud);
 
+/** The least and the greatest time; there is one. */
+std::pair<float, float> rangeOf(const std::vector<float>& times_s);
+
 /** Times of the first and the last point, from the scan's; both 0 without times. */
 std::pair<double, double> endsOf(const PointCloud& cloud);
 

@@ -143,11 +143,11 @@ PlaneRotation rotationFromPlanes(const Correspondences& matches, const Eigen::Is
     return rotationFrom(equationsOf(matches, pose), pose, prior);
 }
 
-PlaneTranslation translationFromPlanes(const Correspondences& matches,
-                                       const Eigen::Isometry3d& pose, const Prior& prior) {
-    const Eigen::Matrix3d R = pose.linear();
-    auto result =
-        sumOver<PlaneTranslation>(matches, [&](const Correspondence& match, PlaneTranslation& sum) {
+namespace {
+/** Without the step. */
+PlaneTranslation translationInformation(const Correspondences& matches, const Eigen::Matrix3d& R) {
+    return sumOver<PlaneTranslation>(
+        matches, [&](const Correspondence& match, PlaneTranslation& sum) {
             const Eigen::Vector3d& n = match.normal;
             const Eigen::Vector3d a = match.point.cross(R.transpose() * n);
             const Eigen::Matrix3d along = n * n.transpose();
@@ -156,6 +156,12 @@ PlaneTranslation translationFromPlanes(const Correspondences& matches,
             sum.mixed += match.weight * n * a.transpose();
             sum.weight += match.weight;
         });
+}
+}  // namespace
+
+PlaneTranslation translationFromPlanes(const Correspondences& matches,
+                                       const Eigen::Isometry3d& pose, const Prior& prior) {
+    auto result = translationInformation(matches, pose.linear());
     result.step = stepFromPlanes(matches, pose, prior);
     return result;
 }
@@ -270,7 +276,7 @@ void settle(const Correspondences& matches, const Eigen::Isometry3d& pose, const
     const double noise = varianceFactor(equations.cost, matches.size());
     const Prior prior = known.times(noise);
     const auto turn = rotationFrom(equations, pose, prior);
-    const auto move = translationFromPlanes(matches, pose, prior);
+    const auto move = translationInformation(matches, R);
     auto& rotation = estimate.rotation;
     rotation.rotation = R;
     rotation.matches = matches.size();

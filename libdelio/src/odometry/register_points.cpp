@@ -22,9 +22,7 @@ bool Pairing::isStill(const Latest& latest, const Eigen::Vector3d& placed, doubl
     return away + (placed - at).norm() + kRounding_m < nearest.others_m;
 }
 
-/** Of the points from `first` on, each `every`-th one. What is asked of the map first is asked of
- *  it for all of them before the next: memory is slow, and many places can be waited for at once.
- */
+/** Of the points from `first` on, each `every`-th one. */
 void Pairing::pairBlock(const Eigen::Isometry3d& pose, double kernel, Eigen::Index first,
                         Eigen::Index every, Pair* pairs, std::size_t count) {
     constexpr double kReach = 3;  // kernel widths
@@ -33,20 +31,19 @@ void Pairing::pairBlock(const Eigen::Isometry3d& pose, double kernel, Eigen::Ind
     const double reach = kReach * kernel;
     std::array<Eigen::Vector3d, kBlock> placed;
     std::array<std::size_t, kBlock> moved;
+    Eigen::Matrix<double, 3, kBlock> sought;
     std::size_t movedCount = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const Eigen::Index point = first + static_cast<Eigen::Index>(i) * every;
         placed[i] = pose * points_.col(point);
         if (isStill(latest_[static_cast<std::size_t>(point)], placed[i], reach)) continue;
-        moved[movedCount++] = i;
-        map_.prefetch(placed[i]);
+        sought.col(static_cast<Eigen::Index>(movedCount)) = placed[i];
+        moved[movedCount++] = static_cast<std::size_t>(point);
     }
-    for (std::size_t k = 0; k < movedCount; ++k) map_.prefetchCell(placed[moved[k]]);
-    for (std::size_t k = 0; k < movedCount; ++k) {
-        const std::size_t i = moved[k];
-        latest_[static_cast<std::size_t>(first + static_cast<Eigen::Index>(i) * every)] = {
-            map_.nearest(placed[i], kFarthest), placed[i]};
-    }
+    const auto nearest =
+        map_.nearestOf(sought.leftCols(static_cast<Eigen::Index>(movedCount)), kFarthest);
+    for (std::size_t k = 0; k < movedCount; ++k)
+        latest_[moved[k]] = {nearest[k], sought.col(static_cast<Eigen::Index>(k))};
     for (std::size_t i = 0; i < count; ++i) {
         const Eigen::Index point = first + static_cast<Eigen::Index>(i) * every;
         const auto& found = latest_[static_cast<std::size_t>(point)].nearest;
@@ -190,11 +187,17 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
     return estimate;
 }
 
+namespace {
+std::vector<PointMap::Nearest> nearestAt(const PointMap& map, const Eigen::Matrix3Xd& points,
+                                         const Eigen::Isometry3d& pose, double distance) {
+    return map.nearestOf((pose.linear() * points).colwise() + pose.translation(), distance);
+}
+}  // namespace
+
 double shareAt(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
                double distance) {
     Eigen::Index near = 0;
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-        near += map.nearest(pose * points.col(i), distance).any;
+    for (const auto& nearest : nearestAt(map, points, pose, distance)) near += nearest.any;
     return static_cast<double>(near) /
            static_cast<double>(std::max<Eigen::Index>(points.cols(), 1));
 }
@@ -202,9 +205,11 @@ double shareAt(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen:
 Eigen::Matrix3Xd pointsOff(const PointMap& map, const Eigen::Matrix3Xd& points,
                            const Eigen::Isometry3d& pose, double distance) {
     Eigen::Matrix3Xd off(3, points.cols());
-    Eigen::Index count = 0;
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-        if (!map.nearest(pose * points.col(i), distance).any) off.col(count++) = points.col(i);
+    Eigen::Index count = 0, i = 0;
+    for (const auto& nearest : nearestAt(map, points, pose, distance)) {
+        if (!nearest.any) off.col(count++) = points.col(i);
+        ++i;
+    }
     off.conservativeResize(3, count);
     return off;
 }

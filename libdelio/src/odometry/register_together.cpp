@@ -331,9 +331,9 @@ TimedScan timedScanOf(const PointCloud& cloud, double time_s) {
     constexpr Index kMostPoints = 1000, kMostSurfaces = 4000;
     TimedScan scan;
     scan.time_s = time_s;
-    const auto [least, most] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
-    scan.first_s = time_s + double{*least};
-    scan.last_s = time_s + double{*most};
+    const auto [least, most] = rangeOf(cloud.times_s);
+    scan.first_s = time_s + double{least};
+    scan.last_s = time_s + double{most};
     scan.points =
         sampled(firstOfVoxels(cloud, numberVoxels(cloud.points, kSpacing_m)), kMostPoints);
     for (auto& point_s : scan.points.times_s) point_s += time_s;

@@ -69,11 +69,11 @@ class Equations {
     }
 
  private:
-    /** Adds what is still apart. */
+    /** Adds what is still apart. Of the information the lower triangle is all that is used. */
     void close() {
         for (Eigen::Index i = 0; i < kDegree; ++i) {
             sums_.gradient.segment<6>(6 * i) += shares_[i] * together_.gradient;
-            for (Eigen::Index j = 0; j < kDegree; ++j)
+            for (Eigen::Index j = 0; j <= i; ++j)
                 sums_.information.block<6, 6>(6 * i, 6 * j) +=
                     shares_[i] * shares_[j] * together_.information;
         }
@@ -197,9 +197,9 @@ TimedPoints firstOfVoxels(const PointCloud& cloud, const VoxelNumbers& voxels) {
 
 ScanTrajectory constantTwist(const KnownEnds& known, const PointCloud& cloud) {
     constexpr unsigned kParts = 8;
-    const auto [least, most] = std::minmax_element(cloud.times_s.begin(), cloud.times_s.end());
-    const double start_s = -known.since_s, first_s = std::max(start_s, double{*least}),
-                 last_s = std::max(0.0, double{*most});
+    const auto [least, most] = rangeOf(cloud.times_s);
+    const double start_s = -known.since_s, first_s = std::max(start_s, double{least}),
+                 last_s = std::max(0.0, double{most});
     // Before the scan one part: of a bend only its mean can be extrapolated, to a scan before.
     std::vector<double> times_s;
     if (first_s > start_s) times_s.push_back(start_s);

@@ -145,10 +145,11 @@ Overlap overlapAt(double speed_mps, const std::vector<PointsAtSpeeds>& scans,
     const Columns columns(points, reach);
     for (std::size_t i = 0; i + 1 < scans.size(); ++i) map.add(columns.of(scans[i].at(speed_mps)));
     Overlap overlap;
+    const auto found = map.nearestOf(points, reach);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const int sector = sectors[static_cast<std::size_t>(i)];
         ++overlap.count[sector];
-        const auto nearest = map.nearest(points.col(i), reach);
+        const auto& nearest = found[static_cast<std::size_t>(i)];
         const double off = (nearest.point - points.col(i)).norm() / reach;
         if (nearest.any) overlap.matched[sector] += std::pow(1 - off * off, 2);
     }

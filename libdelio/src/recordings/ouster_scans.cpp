@@ -39,8 +39,8 @@ Scan OusterScans::scanOf(const OusterFrame& frame) {
     auto points = mrpt::maps::CPointsMapXYZI::Create();
     points->resize(count);
     Scan scan;
-    scan.rings.reserve(count);
-    if (times) scan.times_s.reserve(count);
+    scan.rings.resize(count);
+    if (times) scan.times_s.resize(count);
     std::size_t i = 0, received = 0;
     for (std::size_t column = 0; column < info_.columns; ++column) {
         if (!frame.received[column]) continue;
@@ -50,10 +50,11 @@ Scan OusterScans::scanOf(const OusterFrame& frame) {
             if (frame.ranges_mm[pixel] == 0) continue;
             const Eigen::Vector3f point = beams_.point(pixel, frame.ranges_mm[pixel]);
             points->setPointFast(i, point.x(), point.y(), point.z());
-            points->setPointIntensity(i++,
-                                      static_cast<float>(frame.reflectivities[pixel]) / 255.0F);
-            scan.rings.push_back(static_cast<std::uint16_t>(row));
-            if (times) scan.times_s.push_back(since_s);
+            const float intensity = static_cast<float>(frame.reflectivities[pixel]) / 255.0F;
+            points->setPointColor_fast(i, intensity, 0, 0);  // where MRPT keeps intensities
+            scan.rings[i] = static_cast<std::uint16_t>(row);
+            if (times) scan.times_s[i] = since_s;
+            ++i;
         }
     }
     points->mark_as_modified();
