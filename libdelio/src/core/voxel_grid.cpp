@@ -75,13 +75,17 @@ Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size) {
     return centroidsOf(points, numberVoxels(points, size));
 }
 
-Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size) {
+std::vector<Eigen::Index> firstsOfVoxels(const Eigen::Matrix3Xf& points, double size) {
     const auto numbers = numberVoxels(points, size);
-    Eigen::Matrix3Xf first(3, numbers.voxels);
-    std::uint32_t met = 0;
+    std::vector<Eigen::Index> firsts;
+    firsts.reserve(static_cast<std::size_t>(numbers.voxels));
     for (Eigen::Index i = 0; i < points.cols(); ++i)
-        if (numbers.ofPoint[static_cast<std::size_t>(i)] == met) first.col(met++) = points.col(i);
-    return first;
+        if (numbers.ofPoint[static_cast<std::size_t>(i)] == firsts.size()) firsts.push_back(i);
+    return firsts;
+}
+
+Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size) {
+    return points(Eigen::all, firstsOfVoxels(points, size));
 }
 
 Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size, double smallest,

@@ -66,6 +66,9 @@ Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers&
 /** One point per voxel: the centroid of its points, in the order of their numbers. */
 Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size);
 
+/** The first point in each voxel, by its column. */
+std::vector<Eigen::Index> firstsOfVoxels(const Eigen::Matrix3Xf& points, double size);
+
 /** One point per voxel: the first one. A centroid would lie between a sensor's rings. */
 Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size);
 

@@ -36,15 +36,13 @@ std::vector<float> heightsAboveGround(const Eigen::Matrix3Xf& points, double rad
     return result;
 }
 
-Eigen::Matrix3Xf standingPoints(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
-                                double least, double radius) {
+std::vector<Eigen::Index> standingPoints(const Eigen::Matrix3Xf& points,
+                                         const Eigen::Matrix3f& upright, double least,
+                                         double radius) {
     const auto heights = heightsAboveGround(upright * points, radius);
-    Eigen::Matrix3Xf standing(3, points.cols());
-    Eigen::Index count = 0;
+    std::vector<Eigen::Index> standing;
     for (Eigen::Index i = 0; i < points.cols(); ++i)
-        if (double{heights[static_cast<std::size_t>(i)]} > least)
-            standing.col(count++) = points.col(i);
-    standing.conservativeResize(3, count);
+        if (double{heights[static_cast<std::size_t>(i)]} > least) standing.push_back(i);
     return standing;
 }
 }  // namespace delio::odometry

@@ -35,8 +35,9 @@ class LevelGrid {
  *  it. Negative for points farther than `radius` metres from the origin. */
 std::vector<float> heightsAboveGround(const Eigen::Matrix3Xf& points, double radius);
 
-/** The points (metres) that stand more than `least` above the ground within `radius`. `upright`
- *  turns their frame such that z is up. */
-Eigen::Matrix3Xf standingPoints(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upright,
-                                double least, double radius);
+/** The points (metres) that stand more than `least` above the ground within `radius`, by their
+ *  columns. `upright` turns their frame such that z is up. */
+std::vector<Eigen::Index> standingPoints(const Eigen::Matrix3Xf& points,
+                                         const Eigen::Matrix3f& upright, double least,
+                                         double radius);
 }  // namespace delio::odometry

@@ -4,7 +4,9 @@
 #include <tbb/parallel_for.h>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 #include "core/scan_trajectory.h"
 #include "odometry/above_ground.h"
@@ -53,16 +55,22 @@ Eigen::Matrix3Xf unmarked(const Eigen::Matrix3Xf& points, const std::vector<std:
 
 void thinForPoints(ScanView& view, const Eigen::Matrix3f& upright, double spacing,
                    bool byStanding) {
-    constexpr Eigen::Index kFewest = 200, kRings = 3000;  // a ring or two show no height
+    constexpr std::size_t kFewest = 200;
+    constexpr Eigen::Index kRings = 3000;  // a ring or two show no height
     const SegmentTuning segments;
-    view.coarse = firstOfVoxels(view.fine, spacing).cast<double>();
+    view.coarseColumns = firstsOfVoxels(view.fine, spacing);
+    view.coarse = view.fine(Eigen::all, view.coarseColumns).cast<double>();
+    view.levelColumns.clear();
     view.level.resize(3, 0);
     if (!byStanding || view.points.cols() < kRings) return;
-    const auto standing = firstOfVoxels(
-        standingPoints(view.fine, upright, segments.above_ground, segments.radius), spacing / 2);
-    if (standing.cols() < kFewest) return;
+    const auto standing =
+        standingPoints(view.fine, upright, segments.above_ground, segments.radius);
+    auto firsts = firstsOfVoxels(view.fine(Eigen::all, standing), spacing / 2);
+    if (firsts.size() < kFewest) return;
+    for (Eigen::Index& column : firsts) column = standing[static_cast<std::size_t>(column)];
+    view.levelColumns = std::exchange(view.coarseColumns, std::move(firsts));
     view.level = std::move(view.coarse);
-    view.coarse = standing.cast<double>();
+    view.coarse = view.fine(Eigen::all, view.coarseColumns).cast<double>();
 }
 
 void thinForMap(ScanView& view, double spacing) {
@@ -100,7 +108,21 @@ ScanView undistortedAgain(const PointCloud& cloud, const ScanTrajectory& traject
     again.voxels = view.voxels;
     again.dynamicVoxels = view.dynamicVoxels;
     again.fineVoxels = view.fineVoxels;
-    again.fine = unmarked(centroidsOf(again.points, again.voxels), again.dynamicVoxels);
+    const Eigen::Matrix3Xf centroids = centroidsOf(again.points, again.voxels);
+    const auto areStill = [&](const std::vector<Eigen::Index>& columns) {
+        std::vector<Eigen::Index> still;
+        still.reserve(columns.size());
+        std::copy_if(columns.begin(), columns.end(), std::back_inserter(still),
+                     [&](Eigen::Index column) {
+                         return !view.dynamicVoxels[static_cast<std::size_t>(column)];
+                     });
+        return still;
+    };
+    again.fine = unmarked(centroids, again.dynamicVoxels);
+    again.coarseColumns = areStill(view.coarseColumns);
+    again.levelColumns = areStill(view.levelColumns);
+    again.coarse = centroids(Eigen::all, again.coarseColumns).cast<double>();
+    again.level = centroids(Eigen::all, again.levelColumns).cast<double>();
     again.thinned = centroidsOf(again.fine, again.fineVoxels).cast<double>();
     return again;
 }

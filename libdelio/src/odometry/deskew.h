@@ -31,6 +31,8 @@ struct ScanView {
     Eigen::Matrix3Xd thinned;  //!< thinned for registration by planes
     Eigen::Matrix3Xd coarse;   //!< thinned for registration by points
     Eigen::Matrix3Xd level;    //!< all, thinned: where `coarse` has no ground, they level the scan
+    /** Of each of these two its column in `fine`, before dynamic ones were left out. */
+    std::vector<Eigen::Index> coarseColumns, levelColumns;
 };
 
 /** Undistorted by `trajectory` (see deskew()) where the points have times; not thinned yet,

@@ -46,7 +46,7 @@ class Equations {
  public:
     void add(double time_s, double since_s, const Vector6& jacobian, double residual,
              double weight) {
-        constexpr double kTogether = 1.0 / 256;  // of the time between the scans
+        constexpr double kTogether = 1.0 / 64;  // of the time between the scans
         const double slot = std::floor(time_s / (kTogether * since_s));
         if (slot != slot_) {
             close();
@@ -223,11 +223,14 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
                                               const PointCloud& cloud, const ScanView& view,
                                               const ScaledOptions& options) {
     const ScanTrajectory motion = trajectory.seenFrom(0);
-    ScanView again = known.isNearPrediction
-                         ? undistortedAgain(cloud, motion, view)
-                         : undistortedAnew(cloud, motion, view.dynamic, options.spacing.map_spacing,
-                                           options.spacing.scan_spacing);
-    thinForPoints(again, known.upright, options.spacing.point_spacing, known.byStanding);
+    ScanView again;
+    if (known.isNearPrediction) {
+        again = undistortedAgain(cloud, motion, view);
+    } else {
+        again = undistortedAnew(cloud, motion, view.dynamic, options.spacing.map_spacing,
+                                options.spacing.scan_spacing);
+        thinForPoints(again, known.upright, options.spacing.point_spacing, known.byStanding);
+    }
     const auto placed =
         map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));
     if (!placed.valid) return {};

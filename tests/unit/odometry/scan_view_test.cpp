@@ -80,8 +80,10 @@ TEST(ScanView, UnmarkedPointsKeepTheirOrder) {
 ScanView viewOfALine(const odometry::PointCloud& cloud) {
     ScanView view = undistorted(cloud, Twist{});
     thinForMap(view, 1);
+    thinForPoints(view, Eigen::Matrix3f::Identity(), 2, false);
     view.dynamic = {0, 0, 0, 0, 1, 1, 0};
-    view.fine = unmarked(view.fine, {0, 0, 1, 0});
+    view.dynamicVoxels = {0, 0, 1, 0};
+    view.fine = unmarked(view.fine, view.dynamicVoxels);
     thinForPlanes(view, 4);
     return view;
 }
@@ -128,6 +130,11 @@ TEST(ScanView, PointsKeepTheirVoxelsWhenUndistortedAgain) {
     EXPECT_FLOAT_EQ(again.fine(0, 2), 9.1F);
     ASSERT_EQ(again.thinned.cols(), 2);
     EXPECT_NEAR(again.thinned(0, 0), (1.9 / 3 + 1.7) / 2, 1e-6);
+    // Thinned for points: the first voxel of two metres, and without the dynamic one the last.
+    EXPECT_EQ(view.coarse.cols(), 3);
+    ASSERT_EQ(again.coarse.cols(), 2);
+    EXPECT_EQ(again.coarse.col(0), again.fine.col(0).cast<double>());
+    EXPECT_EQ(again.coarse.col(1), again.fine.col(2).cast<double>());
 }
 
 // At 1 m/s the points at 0.2, 0.4 and 0.9, which shared a voxel, come to 0.2, 1.4 and 3.9.
