@@ -1,6 +1,7 @@
 #include "core/scan_trajectory.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "delio/core/error.h"
@@ -64,15 +65,36 @@ ScanTrajectory ScanTrajectory::seenFrom(double time_s) const {
     return seen;
 }
 
+namespace {
+/** So many parts that the pose turns by less than `kTurn_rad` in each, and that a bend of the
+ *  trajectory, which lies in one of them, is short. */
+unsigned partsOf(const ScanTrajectory& trajectory, double first_s, double last_s) {
+    constexpr double kTurn_rad = 0.0027, kLongest_s = 1.0 / 640;
+    constexpr unsigned kSamples = 8, kMost = 256;
+    double most_rad = 0;
+    Eigen::Matrix3d before = trajectory.at(first_s).linear();
+    for (unsigned k = 1; k <= kSamples; ++k) {
+        const Eigen::Matrix3d after =
+            trajectory.at(first_s + k * (last_s - first_s) / kSamples).linear();
+        most_rad = std::max(most_rad, angleOf(before.transpose() * after));
+        before = after;
+    }
+    const double parts =
+        std::max(kSamples * most_rad / kTurn_rad, (last_s - first_s) / kLongest_s);
+    return static_cast<unsigned>(std::clamp<double>(std::ceil(parts), 1, kMost));
+}
+}  // namespace
+
 template <typename Scalar>
 PoseTableOf<Scalar>::PoseTableOf(const ScanTrajectory& trajectory, double first_s, double last_s)
     : first_s_(static_cast<Scalar>(first_s)) {
-    constexpr unsigned kParts = 256;
     constexpr double kLeast_s = 1e-9;
-    const double step_s = std::max(last_s - first_s, kLeast_s) / kParts;
+    const unsigned parts = partsOf(trajectory, first_s, last_s);
+    const double step_s = std::max(last_s - first_s, kLeast_s) / parts;
     perSecond_ = static_cast<Scalar>(1 / step_s);
+    parts_.reserve(parts);
     Eigen::Matrix4d before = trajectory.at(first_s).matrix();
-    for (unsigned k = 1; k <= kParts; ++k) {
+    for (unsigned k = 1; k <= parts; ++k) {
         const Eigen::Matrix4d after = trajectory.at(first_s + k * step_s).matrix();
         parts_.push_back({before.cast<Scalar>(), (after - before).cast<Scalar>()});
         before = after;

@@ -167,7 +167,7 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
                                   const PlaneRegistrationOptions& options) {
     // A steady motion is nearly known, and few points show enough while the kernel is wide. Of a
     // swing, all points are needed.
-    constexpr Eigen::Index kFew = 4000;
+    constexpr Eigen::Index kFew = 2000;
     constexpr double kSwing_m = 1;  // predictions are off by more
     if (scan.times_s.empty()) return trajectory;
     const bool isSwing = kernel >= kSwing_m;
@@ -177,10 +177,11 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
     Bending now{trajectory};
     for (double width = std::max(first, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        const bool isLast = width <= options.last_kernel;
-        if (!bend(map, isLast ? scan : few, since_s, known, width, options, now)) return trajectory;
-        if (isLast) return now.trajectory;
+        if (!bend(map, few, since_s, known, width, options, now)) return trajectory;
+        if (width <= options.last_kernel) break;
     }
+    return bend(map, scan, since_s, known, options.last_kernel, options, now) ? now.trajectory
+                                                                              : trajectory;
 }
 
 TimedPoints firstOfVoxels(const PointCloud& cloud, const VoxelNumbers& voxels) {
