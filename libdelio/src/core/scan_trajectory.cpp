@@ -79,8 +79,7 @@ unsigned partsOf(const ScanTrajectory& trajectory, double first_s, double last_s
         most_rad = std::max(most_rad, angleOf(before.transpose() * after));
         before = after;
     }
-    const double parts =
-        std::max(kSamples * most_rad / kTurn_rad, (last_s - first_s) / kLongest_s);
+    const double parts = std::max(kSamples * most_rad / kTurn_rad, (last_s - first_s) / kLongest_s);
     return static_cast<unsigned>(std::clamp<double>(std::ceil(parts), 1, kMost));
 }
 }  // namespace
