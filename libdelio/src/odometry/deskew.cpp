@@ -83,8 +83,32 @@ void numberForPlanes(ScanView& view, double spacing) {
     view.fineVoxels = numberVoxels(view.fine, spacing);
 }
 
-void thinForPlanes(ScanView& view, double spacing) {
-    numberForPlanes(view, spacing);
+namespace {
+/** Of the points that are not marked: voxels keep their order. */
+VoxelNumbers unmarked(const VoxelNumbers& numbers, const std::vector<std::uint8_t>& marks) {
+    constexpr auto kNew = std::numeric_limits<std::uint32_t>::max();
+    VoxelNumbers result;
+    std::vector<std::uint32_t> renumbered(static_cast<std::size_t>(numbers.voxels), kNew);
+    result.ofPoint.reserve(numbers.ofPoint.size());
+    for (std::size_t i = 0; i < numbers.ofPoint.size(); ++i) {
+        if (marks[i]) continue;
+        std::uint32_t& number = renumbered[numbers.ofPoint[i]];
+        if (number == kNew) number = static_cast<std::uint32_t>(result.voxels++);
+        result.ofPoint.push_back(number);
+    }
+    return result;
+}
+}  // namespace
+
+void leaveOutDynamic(ScanView& view, std::vector<std::uint8_t> dynamicVoxels) {
+    view.dynamicVoxels = std::move(dynamicVoxels);
+    for (std::size_t i = 0; i < view.dynamic.size(); ++i)
+        view.dynamic[i] = view.dynamicVoxels[view.voxels.ofPoint[i]];
+    view.fine = unmarked(view.fine, view.dynamicVoxels);
+    view.fineVoxels = unmarked(view.fineVoxels, view.dynamicVoxels);
+}
+
+void thinForPlanes(ScanView& view) {
     view.thinned = centroidsOf(view.fine, view.fineVoxels).cast<double>();
 }
 
@@ -133,7 +157,8 @@ ScanView undistortedAnew(const PointCloud& cloud, const ScanTrajectory& trajecto
     ScanView view = undistorted(cloud, trajectory);
     view.dynamic = dynamic;
     view.fine = voxelCentroids(unmarked(view.points, view.dynamic), mapSpacing);
-    thinForPlanes(view, planeSpacing);
+    numberForPlanes(view, planeSpacing);
+    thinForPlanes(view);
     return view;
 }
 }  // namespace delio::odometry

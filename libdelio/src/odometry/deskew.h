@@ -54,8 +54,12 @@ void thinForMap(ScanView& view, double spacing);
 /** Numbers the voxels of `spacing` metres of view.fine. */
 void numberForPlanes(ScanView& view, double spacing);
 
-/** The same, and thins view.fine for registration by planes: the voxels' centroids. */
-void thinForPlanes(ScanView& view, double spacing);
+/** Marks voxels of view.voxels as dynamic (1), and leaves them out of view.fine. Of coarse points
+ *  they stay. */
+void leaveOutDynamic(ScanView& view, std::vector<std::uint8_t> dynamicVoxels);
+
+/** Thins view.fine for registration by planes: the centroids of the voxels that were numbered. */
+void thinForPlanes(ScanView& view);
 
 /** The voxel of numberForPlanes() that each point is in; a dynamic point is in none, which is
  *  UINT32_MAX. */

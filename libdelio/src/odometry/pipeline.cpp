@@ -173,11 +173,9 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
 /** From the thinned scan, whose pose is known by points. */
 void PlaneOdometry::removeDynamicObjects(DynamicObjects::Sight sight, const Eigen::Isometry3d& pose,
                                          ScanView& view) {
-    view.dynamicVoxels = dynamics_.detect(std::move(sight), pose * inverseOf(upright_), time_s_);
+    auto dynamic = dynamics_.detect(std::move(sight), pose * inverseOf(upright_), time_s_);
     map_.erase(dynamics_.unmasked());
-    for (std::size_t i = 0; i < view.dynamic.size(); ++i)
-        view.dynamic[i] = view.dynamicVoxels[view.voxels.ofPoint[i]];
-    view.fine = unmarked(view.fine, view.dynamicVoxels);
+    leaveOutDynamic(view, std::move(dynamic));
 }
 
 PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const PointEstimate& placed,
@@ -185,7 +183,6 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
                                               ScanView& view, Step& step) {
     const StageTimer timer(step, "planes");
     if (!placed.valid) return predictedEstimate(predicted);
-    numberForPlanes(view, options().spacing.scan_spacing);
     const bool isDeskewed = step.deskewed && !step.interrupted && window_.isEmpty();
     const auto deskewFrom = [&](const Eigen::Isometry3d& pose) {
         return deskewAgain(cloud, since_s, placed.inlierRatio, predicted, pose, view);
@@ -194,7 +191,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     // Where planes are many, they bend the trajectory from where the points lead.
     if (isDeskewed && isSettled() && haveManyPlanes()) deskewed = deskewFrom(placed.pose);
     if (!deskewed || !deskewed->estimate.isByPlanes) {
-        thinForPlanes(view, options().spacing.scan_spacing);
+        thinForPlanes(view);
         auto found = map_.registerPlanes(view, placed, predicted, motion());
         wheels_.carry(pose_, found);
         if (isDeskewed) deskewed = deskewFrom(found.pose());

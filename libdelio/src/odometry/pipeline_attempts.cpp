@@ -241,11 +241,14 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, bool 
 /** Thins the scan, while the one before it enters the map. */
 void PlaneOdometry::thin(ScanView& view, bool byStanding) {
     const auto& spacings = options().spacing;
-    tbb::parallel_invoke([&] { insertWaiting(); },
-                         [&] {
-                             thinForMap(view, spacings.map_spacing);
-                             thinForPoints(view, upright_, spacings.point_spacing, byStanding);
-                         });
+    tbb::parallel_invoke(
+        [&] { insertWaiting(); },
+        [&] {
+            thinForMap(view, spacings.map_spacing);
+            tbb::parallel_invoke(
+                [&] { thinForPoints(view, upright_, spacings.point_spacing, byStanding); },
+                [&] { numberForPlanes(view, spacings.scan_spacing); });
+        });
 }
 
 /** Meanwhile segments and free space of the scan are found, where these are needed (`sight`). */

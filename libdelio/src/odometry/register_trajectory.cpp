@@ -136,12 +136,11 @@ struct Bending {
 };
 
 /** With one kernel. False where too few points lie on planes. */
-bool bend(const PlaneMap& map, const TimedPoints& scan, double since_s, const Coefficients& known,
+bool bend(Matcher& matcher, const TimedPoints& scan, double since_s, const Coefficients& known,
           double width, const PlaneRegistrationOptions& options, Bending& now) {
     constexpr unsigned kIterations = 6;
     constexpr double kConverged = 1e-4, kRough = 1e-3, kLeastFactor = 0.01;
     const auto [least, most] = std::minmax_element(scan.times_s.begin(), scan.times_s.end());
-    Matcher matcher(map, scan.points, plane_tuning::kPointSigma_m);
     for (unsigned i = 0; i < kIterations; ++i) {
         const PoseTable poses(now.trajectory, *least, *most);
         auto [equations, matches] = equationsOf(matcher, scan, poses, since_s, width).closed();
@@ -175,13 +174,16 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
     const TimedPoints few = sampled(scan, isSwing ? scan.points.cols() : kFew);
     const double first = isSwing ? kernel : std::min(kernel, 2 * options.last_kernel);
     Bending now{trajectory};
+    Matcher matchesFew(map, few.points, plane_tuning::kPointSigma_m),
+        matchesAll(map, scan.points, plane_tuning::kPointSigma_m);
     for (double width = std::max(first, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        if (!bend(map, few, since_s, known, width, options, now)) return trajectory;
+        if (!bend(matchesFew, few, since_s, known, width, options, now)) return trajectory;
         if (width <= options.last_kernel) break;
     }
-    return bend(map, scan, since_s, known, options.last_kernel, options, now) ? now.trajectory
-                                                                              : trajectory;
+    return bend(matchesAll, scan, since_s, known, options.last_kernel, options, now)
+               ? now.trajectory
+               : trajectory;
 }
 
 TimedPoints firstOfVoxels(const PointCloud& cloud, const VoxelNumbers& voxels) {

@@ -61,7 +61,8 @@ TEST(ScanView, PointsWithTimesComeToWhereTheyAreAtTheStamp) {
 TEST(ScanView, OfNoPointsIsEmpty) {
     ScanView view = undistorted({}, Twist{});
     thinForMap(view, 0.25);
-    thinForPlanes(view, 0.5);
+    numberForPlanes(view, 0.5);
+    thinForPlanes(view);
     EXPECT_EQ(view.points.cols() + view.fine.cols() + view.thinned.cols(), 0);
     EXPECT_TRUE(view.dynamic.empty());
 }
@@ -81,10 +82,9 @@ ScanView viewOfALine(const odometry::PointCloud& cloud) {
     ScanView view = undistorted(cloud, Twist{});
     thinForMap(view, 1);
     thinForPoints(view, Eigen::Matrix3f::Identity(), 2, false);
-    view.dynamic = {0, 0, 0, 0, 1, 1, 0};
-    view.dynamicVoxels = {0, 0, 1, 0};
-    view.fine = unmarked(view.fine, view.dynamicVoxels);
-    thinForPlanes(view, 4);
+    numberForPlanes(view, 4);
+    leaveOutDynamic(view, {0, 0, 1, 0});
+    thinForPlanes(view);
     return view;
 }
 
@@ -102,6 +102,7 @@ TEST(ScanView, ThinningTakesCentroidsTwice) {
     const odometry::PointCloud cloud = line();
     const ScanView view = viewOfALine(cloud);
     EXPECT_EQ(view.points, cloud.points);
+    EXPECT_EQ(view.dynamic, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 1, 0}));
     ASSERT_EQ(view.fine.cols(), 3);
     EXPECT_FLOAT_EQ(view.fine(0, 0), 0.5F);
     EXPECT_FLOAT_EQ(view.fine(0, 1), 1.5F);
