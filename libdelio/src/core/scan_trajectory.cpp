@@ -69,7 +69,7 @@ namespace {
 /** So many parts that the pose turns by less than `kTurn_rad` in each, and that a bend of the
  *  trajectory, which lies in one of them, is short. */
 unsigned partsOf(const ScanTrajectory& trajectory, double first_s, double last_s) {
-    constexpr double kTurn_rad = 0.0027, kLongest_s = 1.0 / 640;
+    constexpr double kTurn_rad = 0.0018, kLongest_s = 1.0 / 640;
     constexpr unsigned kSamples = 8, kMost = 256;
     double most_rad = 0;
     Eigen::Matrix3d before = trajectory.at(first_s).linear();

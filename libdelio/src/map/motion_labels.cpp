@@ -18,7 +18,8 @@ std::vector<std::uint8_t> MotionLabels::of(const Eigen::Matrix3Xf& points,
         Eigen::AngleAxisd(std::atan2(ahead.y(), ahead.x()), Eigen::Vector3d::UnitZ());
     const Eigen::Matrix3d upright = levelInWorld.linear().transpose() * sensorInWorld.linear();
     const auto voxels =
-        objects_.detect(objects_.see(centroidsOf(points, numbers), points, upright.cast<float>()),
+        objects_.detect(objects_.see(centroidsOf(points, numbers), objects_.freeSpaceOf(points),
+                                     upright.cast<float>()),
                         levelInWorld, time_s);
     objects_.remember(levelInWorld);
     for (std::size_t i = 0; i < labels.size(); ++i) labels[i] = voxels[numbers.ofPoint[i]];

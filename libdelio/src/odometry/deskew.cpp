@@ -98,6 +98,16 @@ VoxelNumbers unmarked(const VoxelNumbers& numbers, const std::vector<std::uint8_
     }
     return result;
 }
+
+/** Those of the columns that are not marked. */
+std::vector<Eigen::Index> unmarked(const std::vector<Eigen::Index>& columns,
+                                   const std::vector<std::uint8_t>& marks) {
+    std::vector<Eigen::Index> result;
+    result.reserve(columns.size());
+    std::copy_if(columns.begin(), columns.end(), std::back_inserter(result),
+                 [&](Eigen::Index column) { return !marks[static_cast<std::size_t>(column)]; });
+    return result;
+}
 }  // namespace
 
 void leaveOutDynamic(ScanView& view, std::vector<std::uint8_t> dynamicVoxels) {
@@ -133,18 +143,9 @@ ScanView undistortedAgain(const PointCloud& cloud, const ScanTrajectory& traject
     again.dynamicVoxels = view.dynamicVoxels;
     again.fineVoxels = view.fineVoxels;
     const Eigen::Matrix3Xf centroids = centroidsOf(again.points, again.voxels);
-    const auto areStill = [&](const std::vector<Eigen::Index>& columns) {
-        std::vector<Eigen::Index> still;
-        still.reserve(columns.size());
-        std::copy_if(columns.begin(), columns.end(), std::back_inserter(still),
-                     [&](Eigen::Index column) {
-                         return !view.dynamicVoxels[static_cast<std::size_t>(column)];
-                     });
-        return still;
-    };
-    again.fine = unmarked(centroids, again.dynamicVoxels);
-    again.coarseColumns = areStill(view.coarseColumns);
-    again.levelColumns = areStill(view.levelColumns);
+    again.fine = unmarked(centroids, view.dynamicVoxels);
+    again.coarseColumns = unmarked(view.coarseColumns, view.dynamicVoxels);
+    again.levelColumns = unmarked(view.levelColumns, view.dynamicVoxels);
     again.coarse = centroids(Eigen::all, again.coarseColumns).cast<double>();
     again.level = centroids(Eigen::all, again.levelColumns).cast<double>();
     again.thinned = centroidsOf(again.fine, again.fineVoxels).cast<double>();

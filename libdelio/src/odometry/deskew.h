@@ -54,8 +54,8 @@ void thinForMap(ScanView& view, double spacing);
 /** Numbers the voxels of `spacing` metres of view.fine. */
 void numberForPlanes(ScanView& view, double spacing);
 
-/** Marks voxels of view.voxels as dynamic (1), and leaves them out of view.fine. Of coarse points
- *  they stay. */
+/** Marks voxels of view.voxels as dynamic (1), and leaves them out of view.fine. view.coarse and
+ *  view.level keep them. */
 void leaveOutDynamic(ScanView& view, std::vector<std::uint8_t> dynamicVoxels);
 
 /** Thins view.fine for registration by planes: the centroids of the voxels that were numbered. */

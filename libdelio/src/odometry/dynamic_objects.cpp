@@ -1,7 +1,6 @@
 #include "odometry/dynamic_objects.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -254,15 +253,14 @@ void DynamicObjects::unmask(const Track& track) {
     }
 }
 
-DynamicObjects::Sight DynamicObjects::see(const Eigen::Matrix3Xf& points,
-                                          const Eigen::Matrix3Xf& all,
+DynamicObjects::Sight DynamicObjects::see(const Eigen::Matrix3Xf& points, RangeImage freeSpace,
                                           const Eigen::Matrix3f& upright) const {
     Sight sight;
     const Eigen::Matrix3Xf level = upright * points;
     sight.points_ = static_cast<std::size_t>(points.cols());
     sight.upright_ = upright;
-    tbb::parallel_invoke([&] { sight.image_ = RangeImage(all, options_.cell_deg); },
-                         [&] { sight.segments_ = segmentsOf(level, SegmentTuning()); });
+    sight.image_ = std::move(freeSpace);
+    sight.segments_ = segmentsOf(level, SegmentTuning());
     for (const auto& segment : sight.segments_) {
         Object object;
         object.points.resize(3, static_cast<Eigen::Index>(segment.points.size()));

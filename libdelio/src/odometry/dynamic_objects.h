@@ -70,9 +70,13 @@ class DynamicObjects {
 
     /** What a scan shows while its pose is not known. */
     class Sight;
-    /** `points`: a thinned view of `all` (metres), of both of which `upright` leads to the sensor's
-     *  frame whose z axis points up. */
-    Sight see(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xf& all,
+    /** The free space about the sensor, by all points (metres) of a scan. */
+    RangeImage freeSpaceOf(const Eigen::Matrix3Xf& all) const {
+        return RangeImage(all, options_.cell_deg);
+    }
+    /** `points`: a thinned view (metres) of those that `freeSpace` is of. `upright` turns their
+     *  frame such that z is up. */
+    Sight see(const Eigen::Matrix3Xf& points, RangeImage freeSpace,
               const Eigen::Matrix3f& upright = Eigen::Matrix3f::Identity()) const;
 
     /** Which of the points that see() was given belong to dynamic objects: 1 or 0 each. `pose`:

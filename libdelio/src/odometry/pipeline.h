@@ -101,9 +101,11 @@ class PlaneOdometry : public Odometry {
     Extrapolation predictMotion(double duration_s);
     Expectation expectation(const Eigen::Isometry3d& predicted, bool isGuess, double since_s,
                             bool timeIsKnown) const;
-    void thin(ScanView& view, bool byStanding);
-    Placement registerByPoints(const ScanView& view, const Expectation& expected,
-                               std::optional<DynamicObjects::Sight>& sight, Step& step) const;
+    std::optional<RangeImage> thin(ScanView& view, bool byStanding);
+    std::optional<DynamicObjects::Sight> registerByPoints(const ScanView& view,
+                                                          const Expectation& expected,
+                                                          std::optional<RangeImage> freeSpace,
+                                                          Placement& placement, Step& step) const;
 
     // Scans that are registered together (pipeline_window.cpp).
     bool extendWindow(const PointCloud& cloud, double since_s, const Placement& found, Step& step);

@@ -157,11 +157,13 @@ PlaneOdometry::Attempt PlaneOdometry::attemptBy(const PointCloud& cloud,
         const StageTimer timer(step, "undistort");
         attempt.view = undistorted(cloud, attempt.motion);
     }
+    std::optional<RangeImage> freeSpace;
     {
         const StageTimer timer(step, "thinning");
-        thin(attempt.view, expected.isPlacedByStanding);
+        freeSpace = thin(attempt.view, expected.isPlacedByStanding);
     }
-    attempt.placement = registerByPoints(attempt.view, expected, attempt.sight, step);
+    attempt.sight =
+        registerByPoints(attempt.view, expected, std::move(freeSpace), attempt.placement, step);
     auto& estimate = attempt.placement.estimate;
     estimate = map_.levelled(attempt.view, estimate);
     attempt.placement.isLikely =
@@ -238,9 +240,11 @@ Expectation PlaneOdometry::expectation(const Eigen::Isometry3d& predicted, bool 
     return expected;
 }
 
-/** Thins the scan, while the one before it enters the map. */
-void PlaneOdometry::thin(ScanView& view, bool byStanding) {
+/** Thins the scan, while the one before it enters the map. Returns the free space that it shows,
+ *  where this is needed. */
+std::optional<RangeImage> PlaneOdometry::thin(ScanView& view, bool byStanding) {
     const auto& spacings = options().spacing;
+    std::optional<RangeImage> freeSpace;
     tbb::parallel_invoke(
         [&] { insertWaiting(); },
         [&] {
@@ -248,20 +252,25 @@ void PlaneOdometry::thin(ScanView& view, bool byStanding) {
             tbb::parallel_invoke(
                 [&] { thinForPoints(view, upright_, spacings.point_spacing, byStanding); },
                 [&] { numberForPlanes(view, spacings.scan_spacing); });
+        },
+        [&] {
+            if (options().dynamics.enabled && !isLost(state_))
+                freeSpace = dynamics_.freeSpaceOf(view.points);
         });
+    return freeSpace;
 }
 
-/** Meanwhile segments and free space of the scan are found, where these are needed (`sight`). */
-Placement PlaneOdometry::registerByPoints(const ScanView& view, const Expectation& expected,
-                                          std::optional<DynamicObjects::Sight>& sight,
-                                          Step& step) const {
+/** Meanwhile segments of the scan are found, where its free space is known. */
+std::optional<DynamicObjects::Sight> PlaneOdometry::registerByPoints(
+    const ScanView& view, const Expectation& expected, std::optional<RangeImage> freeSpace,
+    Placement& placement, Step& step) const {
     const StageTimer timer(step, "points");
-    Placement placement;
+    std::optional<DynamicObjects::Sight> sight;
     tbb::parallel_invoke([&] { placement = placeScan(map_, view, expected, options()); },
                          [&] {
-                             if (options().dynamics.enabled && !isLost(state_))
-                                 sight = dynamics_.see(view.fine, view.points, upright_);
+                             if (freeSpace)
+                                 sight = dynamics_.see(view.fine, *std::move(freeSpace), upright_);
                          });
-    return placement;
+    return sight;
 }
 }  // namespace delio::odometry

@@ -14,17 +14,19 @@
 namespace delio::odometry {
 namespace {
 /** Middle of the times, without the few that are outliers. */
-float middleOf(std::vector<float> times_s) {
+float middleOf(const std::vector<float>& times_s) {
     constexpr double kOutliers = 0.01;  // at either end
     const auto last = static_cast<std::ptrdiff_t>(times_s.size()) - 1,
                low = static_cast<std::ptrdiff_t>(kOutliers * static_cast<double>(last)),
                high = last - low;
-    const auto first = times_s.begin();
-    if (!std::is_sorted(first, times_s.end())) {
-        std::nth_element(first, first + high, times_s.end());
-        std::nth_element(first, first + low, first + high);
-    }
-    return (times_s[static_cast<std::size_t>(low)] + times_s[static_cast<std::size_t>(high)]) / 2;
+    if (std::is_sorted(times_s.begin(), times_s.end()))
+        return (times_s[static_cast<std::size_t>(low)] + times_s[static_cast<std::size_t>(high)]) /
+               2;
+    std::vector<float> sorted = times_s;
+    const auto first = sorted.begin();
+    std::nth_element(first, first + high, sorted.end());
+    std::nth_element(first, first + low, first + high);
+    return (first[low] + first[high]) / 2;
 }
 
 }  // namespace

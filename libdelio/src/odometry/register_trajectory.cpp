@@ -164,8 +164,8 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
                                   const ScanTrajectory& trajectory, double since_s,
                                   const TrajectoryPrior& prior, double kernel,
                                   const PlaneRegistrationOptions& options) {
-    // A steady motion is nearly known, and few points show enough while the kernel is wide. Of a
-    // swing, all points are needed.
+    // A steady motion is nearly known: few points lead near to where all of them do. Of a swing,
+    // all are needed.
     constexpr Eigen::Index kFew = 2000;
     constexpr double kSwing_m = 1;  // predictions are off by more
     if (scan.times_s.empty()) return trajectory;
@@ -174,13 +174,14 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
     const TimedPoints few = sampled(scan, isSwing ? scan.points.cols() : kFew);
     const double first = isSwing ? kernel : std::min(kernel, 2 * options.last_kernel);
     Bending now{trajectory};
-    Matcher matchesFew(map, few.points, plane_tuning::kPointSigma_m),
-        matchesAll(map, scan.points, plane_tuning::kPointSigma_m);
+    Matcher matchesFew(map, few.points, plane_tuning::kPointSigma_m);
     for (double width = std::max(first, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
         if (!bend(matchesFew, few, since_s, known, width, options, now)) return trajectory;
         if (width <= options.last_kernel) break;
     }
+    if (few.points.cols() == scan.points.cols()) return now.trajectory;
+    Matcher matchesAll(map, scan.points, plane_tuning::kPointSigma_m);
     return bend(matchesAll, scan, since_s, known, options.last_kernel, options, now)
                ? now.trajectory
                : trajectory;

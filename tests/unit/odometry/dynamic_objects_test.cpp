@@ -44,8 +44,9 @@ class MovingObjectsInAStreet : public testing::Test {
         const auto all = ringScan(scene, pose * tilt_, {48, 900, -24, 4, 0.02}, noise_).points;
         const auto points = voxelCentroids(all, 0.25);
         stamp_s_ += step_s;
-        const auto told = objects_.detect(objects_.see(points, all, tilt_.linear().cast<float>()),
-                                          predicted, stamp_s_);
+        const auto told = objects_.detect(
+            objects_.see(points, objects_.freeSpaceOf(all), tilt_.linear().cast<float>()),
+            predicted, stamp_s_);
         objects_.remember(pose);
         found_ = missed_ = wrong_ = 0;
         for (Eigen::Index i = 0; i < points.cols(); ++i) {

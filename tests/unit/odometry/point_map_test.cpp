@@ -39,6 +39,28 @@ TEST(PointMap, FindsTheNearestAsBruteForceDoes) {
     EXPECT_GT(found, 30U);
 }
 
+TEST(PointMap, FindsTheNearestOfManyAsOfEach) {
+    test::Noise noise;
+    PointMap map(PointMapOptions{});
+    map.add(cloud(3000, 3, noise));
+    const Eigen::Matrix3Xd queries = cloud(150, 5, noise);  // also far from all points
+    for (const double reach : {0.3, 10.0}) {
+        const auto found = map.nearestOf(queries, reach);
+        ASSERT_EQ(found.size(), 150U);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const auto one = map.nearest(queries.col(static_cast<Eigen::Index>(i)), reach);
+            EXPECT_EQ(found[i].any, one.any);
+            EXPECT_EQ(found[i].point, one.point);
+            EXPECT_EQ(found[i].others_m, one.others_m);
+            count += one.any;
+        }
+        EXPECT_GT(count, 20U);
+        EXPECT_LT(count, 150U);
+    }
+    EXPECT_TRUE(map.nearestOf(Eigen::Matrix3Xd(3, 0), 1).empty());
+}
+
 TEST(PointMap, OthersAreNoNearerThanItSays) {
     test::Noise noise;
     PointMapOptions options;
