@@ -44,7 +44,7 @@ TEST(PointMap, FindsTheNearestOfManyAsOfEach) {
     PointMap map(PointMapOptions{});
     map.add(cloud(3000, 3, noise));
     const Eigen::Matrix3Xd queries = cloud(150, 5, noise);  // also far from all points
-    for (const double reach : {0.3, 10.0}) {
+    for (const double reach : {0.8, 10.0}) {
         const auto found = map.nearestOf(queries, reach);
         ASSERT_EQ(found.size(), 150U);
         std::size_t count = 0;
