@@ -30,7 +30,7 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options);
  *  begin of a turn, its end, or the arrival of the message. Without times it stays the stamp. */
 void countFromMiddle(PointCloud& cloud);
 
-/** The least and the greatest time; there is one. */
+/** The least and the greatest of the times, of which there is at least one. */
 std::pair<float, float> rangeOf(const std::vector<float>& times_s);
 
 /** Times of the first and the last point, from the scan's; both 0 without times. */
