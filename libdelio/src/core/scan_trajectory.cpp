@@ -66,8 +66,8 @@ ScanTrajectory ScanTrajectory::seenFrom(double time_s) const {
 }
 
 namespace {
-/** So many parts that the pose turns by less than `kTurn_rad` in each, and that a bend of the
- *  trajectory, which lies in one of them, is short. */
+/** How many parts a table has: in each one the pose turns by little, and a change of the twist,
+ *  which the table rounds off, is short. */
 unsigned partsOf(const ScanTrajectory& trajectory, double first_s, double last_s) {
     constexpr double kTurn_rad = 0.0018, kLongest_s = 1.0 / 640;
     constexpr unsigned kSamples = 8, kMost = 256;
