@@ -75,13 +75,16 @@ Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size) {
     return centroidsOf(points, numberVoxels(points, size));
 }
 
-std::vector<Eigen::Index> firstsOfVoxels(const Eigen::Matrix3Xf& points, double size) {
-    const auto numbers = numberVoxels(points, size);
-    std::vector<Eigen::Index> firsts;
-    firsts.reserve(static_cast<std::size_t>(numbers.voxels));
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-        if (numbers.ofPoint[static_cast<std::size_t>(i)] == firsts.size()) firsts.push_back(i);
+std::vector<Eigen::Index> firstsOf(const VoxelNumbers& numbers) {
+    std::vector<Eigen::Index> firsts(static_cast<std::size_t>(numbers.voxels));
+    // The first one overwrites the others: no branches.
+    for (std::size_t i = numbers.ofPoint.size(); i-- > 0;)
+        firsts[numbers.ofPoint[i]] = static_cast<Eigen::Index>(i);
     return firsts;
+}
+
+std::vector<Eigen::Index> firstsOfVoxels(const Eigen::Matrix3Xf& points, double size) {
+    return firstsOf(numberVoxels(points, size));
 }
 
 Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size) {

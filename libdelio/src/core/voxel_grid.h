@@ -66,7 +66,10 @@ Eigen::Matrix3Xf centroidsOf(const Eigen::Matrix3Xf& points, const VoxelNumbers&
 /** One point per voxel: the centroid of its points, in the order of their numbers. */
 Eigen::Matrix3Xf voxelCentroids(const Eigen::Matrix3Xf& points, double size);
 
-/** The first point in each voxel, by its column. */
+/** The column of the first point in each voxel, in the order of their numbers. */
+std::vector<Eigen::Index> firstsOf(const VoxelNumbers& numbers);
+
+/** The same of voxels of edge `size`. */
 std::vector<Eigen::Index> firstsOfVoxels(const Eigen::Matrix3Xf& points, double size);
 
 /** One point per voxel: the first one. A centroid would lie between a sensor's rings. */

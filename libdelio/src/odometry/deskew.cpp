@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -112,43 +113,50 @@ std::vector<Eigen::Index> unmarked(const std::vector<Eigen::Index>& columns,
 
 void leaveOutDynamic(ScanView& view, std::vector<std::uint8_t> dynamicVoxels) {
     view.dynamicVoxels = std::move(dynamicVoxels);
-    for (std::size_t i = 0; i < view.dynamic.size(); ++i)
-        view.dynamic[i] = view.dynamicVoxels[view.voxels.ofPoint[i]];
-    view.fine = unmarked(view.fine, view.dynamicVoxels);
-    view.fineVoxels = unmarked(view.fineVoxels, view.dynamicVoxels);
+    tbb::parallel_invoke(
+        [&] {
+            for (std::size_t i = 0; i < view.dynamic.size(); ++i)
+                view.dynamic[i] = view.dynamicVoxels[view.voxels.ofPoint[i]];
+        },
+        [&] { view.fine = unmarked(view.fine, view.dynamicVoxels); },
+        [&] { view.fineVoxels = unmarked(view.fineVoxels, view.dynamicVoxels); });
 }
 
 void thinForPlanes(ScanView& view) {
     view.thinned = centroidsOf(view.fine, view.fineVoxels).cast<double>();
 }
 
-VoxelNumbers planeVoxels(const ScanView& view) {
-    constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> ofVoxel(view.dynamicVoxels.size(), kNone);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < ofVoxel.size(); ++i)
-        if (!view.dynamicVoxels[i]) ofVoxel[i] = view.fineVoxels.ofPoint[kept++];
-    VoxelNumbers numbers{std::vector<std::uint32_t>(view.voxels.ofPoint.size()),
-                         view.fineVoxels.voxels};
-    for (std::size_t i = 0; i < numbers.ofPoint.size(); ++i)
-        numbers.ofPoint[i] = ofVoxel[view.voxels.ofPoint[i]];
-    return numbers;
+std::vector<Eigen::Index> firstsForPlanes(const ScanView& view) {
+    const auto firsts = firstsOf(view.voxels);
+    std::vector<Eigen::Index> result(static_cast<std::size_t>(view.fineVoxels.voxels));
+    auto ofFine = view.fineVoxels.ofPoint.rbegin();
+    for (std::size_t voxel = firsts.size(); voxel-- > 0;)
+        if (!view.dynamicVoxels[voxel]) result[*ofFine++] = firsts[voxel];
+    return result;
 }
 
 ScanView undistortedAgain(const PointCloud& cloud, const ScanTrajectory& trajectory,
                           const ScanView& view) {
     ScanView again = undistorted(cloud, trajectory);
-    again.dynamic = view.dynamic;
-    again.voxels = view.voxels;
-    again.dynamicVoxels = view.dynamicVoxels;
-    again.fineVoxels = view.fineVoxels;
-    const Eigen::Matrix3Xf centroids = centroidsOf(again.points, again.voxels);
-    again.fine = unmarked(centroids, view.dynamicVoxels);
-    again.coarseColumns = unmarked(view.coarseColumns, view.dynamicVoxels);
-    again.levelColumns = unmarked(view.levelColumns, view.dynamicVoxels);
-    again.coarse = centroids(Eigen::all, again.coarseColumns).cast<double>();
-    again.level = centroids(Eigen::all, again.levelColumns).cast<double>();
-    again.thinned = centroidsOf(again.fine, again.fineVoxels).cast<double>();
+    Eigen::Matrix3Xf centroids;
+    tbb::parallel_invoke([&] { centroids = centroidsOf(again.points, view.voxels); },
+                         [&] {
+                             again.dynamic = view.dynamic;
+                             again.voxels = view.voxels;
+                             again.dynamicVoxels = view.dynamicVoxels;
+                             again.fineVoxels = view.fineVoxels;
+                             again.coarseColumns = unmarked(view.coarseColumns, view.dynamicVoxels);
+                             again.levelColumns = unmarked(view.levelColumns, view.dynamicVoxels);
+                         });
+    tbb::parallel_invoke(
+        [&] {
+            again.fine = unmarked(centroids, view.dynamicVoxels);
+            thinForPlanes(again);
+        },
+        [&] {
+            again.coarse = centroids(Eigen::all, again.coarseColumns).cast<double>();
+            again.level = centroids(Eigen::all, again.levelColumns).cast<double>();
+        });
     return again;
 }
 

@@ -61,9 +61,8 @@ void leaveOutDynamic(ScanView& view, std::vector<std::uint8_t> dynamicVoxels);
 /** Thins view.fine for registration by planes: the centroids of the voxels that were numbered. */
 void thinForPlanes(ScanView& view);
 
-/** The voxel of numberForPlanes() that each point is in; a dynamic point is in none, which is
- *  UINT32_MAX. */
-VoxelNumbers planeVoxels(const ScanView& view);
+/** The column in view.points of the first point in each voxel of numberForPlanes(). */
+std::vector<Eigen::Index> firstsForPlanes(const ScanView& view);
 
 /** The same scan, undistorted by a trajectory that hardly differs. Its points share the voxels that
  *  they share in `view`, which is thinned for the map and numbered for planes. Dynamic ones are

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <deque>
+#include <utility>
 #include <vector>
 
 #include "core/voxel_grid.h"
@@ -54,22 +54,24 @@ void OwnVehicle::add(const Eigen::Matrix3Xf& points, const Eigen::Matrix3f& upri
     const auto low = sorted.begin() +
                      static_cast<std::ptrdiff_t>(kGroundShare * static_cast<double>(sorted.size()));
     std::nth_element(sorted.begin(), low, sorted.end());
-    std::vector<Voxel> voxels;
-    for (std::size_t i = 0; i < near.size(); ++i)
-        if (heights[i] > *low + kAboveGround_m)
-            voxels.push_back(voxelKey(points.col(near[i]).cast<double>(), kVoxel_m));
-    std::sort(voxels.begin(), voxels.end());
-    voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
-    for (const Voxel voxel : voxels) ++counts_[voxel];
-    if (++scans_ >= kScans) judge();
+    ++scans_;
+    for (std::size_t i = 0; i < near.size(); ++i) {
+        if (heights[i] <= *low + kAboveGround_m) continue;
+        const Voxel voxel = voxelKey(points.col(near[i]).cast<double>(), kVoxel_m);
+        const std::size_t number = numbers_.insert(voxel);
+        if (number == counts_.size()) counts_.push_back({voxel, 0, 0});
+        Count& count = counts_[number];
+        if (std::exchange(count.latest, scans_) != scans_) ++count.scans;
+    }
+    if (scans_ >= kScans) judge();
 }
 
 /** Voxels of pieces that end before reach and are there in nearly all scans. A piece is connected
  *  by voxels that have points often. */
 std::set<OwnVehicle::Voxel> OwnVehicle::steady() const {
     std::set<Voxel> often, found;
-    for (const auto& [voxel, count] : counts_)
-        if (count >= kOften * kScans) often.insert(voxel);
+    for (const Count& count : counts_)
+        if (count.scans >= kOften * kScans) often.insert(count.voxel);
     while (!often.empty()) {
         std::vector<Voxel> piece = {*often.begin()};
         often.erase(often.begin());
@@ -80,7 +82,7 @@ std::set<OwnVehicle::Voxel> OwnVehicle::steady() const {
             const Eigen::AlignedBox3d own = boxOf(piece[i]);
             box.extend(own);
             isBounded = isBounded && own.center().norm() < kReach_m - 2 * kVoxel_m;
-            always += counts_.at(piece[i]) >= kAlways * kScans;
+            always += counts_[numbers_.find(piece[i])].scans >= kAlways * kScans;
             forNeighbours(piece[i], [&](Voxel other) {
                 if (often.erase(other) > 0) piece.push_back(other);
             });
@@ -102,6 +104,7 @@ void OwnVehicle::judge() {
     }
     before_ = now;
     counts_.clear();
+    numbers_.clear();
     scans_ = 0;
 }
 

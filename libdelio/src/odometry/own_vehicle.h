@@ -2,9 +2,10 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <set>
+#include <vector>
 
+#include "core/voxel_table.h"
 #include "odometry/preprocess.h"
 
 namespace delio::odometry {
@@ -29,7 +30,13 @@ class OwnVehicle {
     std::set<Voxel> steady() const;
     void judge();
 
-    std::map<Voxel, unsigned> counts_;                         //!< of scans with points there
+    /** A voxel, how many scans had points there, and the number of the latest one that had. */
+    struct Count {
+        Voxel voxel = 0;
+        unsigned scans = 0, latest = 0;
+    };
+    VoxelIndex numbers_;                                       //!< of the voxels in counts_
+    std::vector<Count> counts_;                                //!< since the latest judgement
     unsigned scans_ = 0;                                       //!< that were counted
     Eigen::Vector3d latest_ = Eigen::Vector3d::Constant(1e9);  //!< place of the latest of them
     std::set<Voxel> before_;                                   //!< steady in the scans before these

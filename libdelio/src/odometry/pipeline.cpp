@@ -185,7 +185,7 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
     if (!placed.valid) return predictedEstimate(predicted);
     const bool isDeskewed = step.deskewed && !step.interrupted && window_.isEmpty();
     const auto deskewFrom = [&](const Eigen::Isometry3d& pose) {
-        return deskewAgain(cloud, since_s, placed.inlierRatio, predicted, pose, view);
+        return deskewAgain(cloud, since_s, placed, predicted, pose, view);
     };
     std::optional<ScanOnTrajectory> deskewed;
     // Where planes are many, they bend the trajectory from where the points lead.

@@ -153,7 +153,7 @@ class PlaneOdometry : public Odometry {
 
     // De-skewing by the motion that was found (pipeline_deskew.cpp).
     std::optional<ScanOnTrajectory> deskewAgain(const PointCloud& cloud, double since_s,
-                                                double inlierRatio,
+                                                const PointEstimate& placed,
                                                 const Eigen::Isometry3d& predicted,
                                                 const Eigen::Isometry3d& pose,
                                                 const ScanView& view);

@@ -78,19 +78,20 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewByMotion(const KnownEnds& k
 
 /** De-skews the scan by the motion that was found and registers it again: by a motion of varying
  *  speed, or by one of constant speed where clearly fewer points fit then. Where that does not fit
- *  either, the scan stays de-skewed by the prediction. `inlierRatio`: that of the scan as it is. */
+ *  either, the scan stays de-skewed by the prediction, as which it was `placed`. */
 std::optional<ScanOnTrajectory> PlaneOdometry::deskewAgain(const PointCloud& cloud, double since_s,
-                                                           double inlierRatio,
+                                                           const PointEstimate& placed,
                                                            const Eigen::Isometry3d& predicted,
                                                            const Eigen::Isometry3d& pose,
                                                            const ScanView& view) {
     const bool isNear =
         !isShaken() && stepBetween(predicted, pose).norm() < options().spacing.map_spacing;
-    const KnownEnds known{
-        reference_.pose, since_s,  pose,       upright_, isPlacedByStanding(isGuessing()),
-        isNear,          motion(), isSettled()};
+    KnownEnds known{
+        reference_.pose, since_s,  pose,    upright_, isPlacedByStanding(isGuessing()),
+        isNear,          motion(), {}};
+    if (isSettled()) known.placed = PlacedScan{placed, motion_};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
-        return found && found->inlierRatio >= inlierRatio - kInlierNoise;
+        return found && found->inlierRatio >= placed.inlierRatio - kInlierNoise;
     };
     std::optional<ScanOnTrajectory> found;
     const auto* first = std::get_if<FirstScan>(&state_);
@@ -98,7 +99,7 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewAgain(const PointCloud& clo
     if (isPair)
         found = deskewPair(*first->skewed, known, cloud, view);
     else
-        found = deskewByMotion(known, inlierRatio, cloud, view);
+        found = deskewByMotion(known, placed.inlierRatio, cloud, view);
     if (!isPair && !fits(found)) return {};
     return found;
 }

@@ -145,13 +145,17 @@ std::optional<ScanTrajectory> PlaneOdometry::stepBack(const MovingScan& scan) {
     step.times_ms = noTimes();
     step.deskewed = hasTimes(cloud);
     Attempt attempt = attemptToTrack(cloud, {IntervalKind::kUsual, duration_s, duration_s}, step);
-    const ScanTrajectory before = reversed(scan.trajectory);
-    Attempt asBefore = attemptBy(cloud, expectation(before.at(0), false, duration_s, true),
-                                 before.seenFrom(0), step);
-    // Scans that were taken for those of a sensor that stood lie on each other better.
-    const bool wasBetter = !attempt.placement.isLikely && asBefore.isBetterThan(attempt);
-    if (wasBetter) endWindow();
-    track(cloud, std::move(wasBetter ? asBefore : attempt), step);
+    if (!attempt.placement.isLikely) {
+        const ScanTrajectory before = reversed(scan.trajectory);
+        Attempt asBefore = attemptBy(cloud, expectation(before.at(0), false, duration_s, true),
+                                     before.seenFrom(0), step);
+        // Scans that were taken for those of a sensor that stood lie on each other better.
+        if (asBefore.isBetterThan(attempt)) {
+            endWindow();
+            attempt = std::move(asBefore);
+        }
+    }
+    track(cloud, std::move(attempt), step);
     if (!step.reason.empty()) return {};
     settleWindow(step);
     keep(std::move(cloud), step);

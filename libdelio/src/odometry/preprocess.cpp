@@ -29,6 +29,18 @@ float middleOf(const std::vector<float>& times_s) {
     return (first[low] + first[high]) / 2;
 }
 
+/** Adds `angle` (radians) to the elevation of each point. */
+void raise(double angle, Eigen::Matrix3Xf& points) {
+    const auto c = static_cast<float>(portable::cos(angle)),
+               s = static_cast<float>(portable::sin(angle));
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        auto point = points.col(i);
+        const float flat = std::sqrt(point.x() * point.x() + point.y() * point.y());
+        const float flatNow = c * flat - s * point.z();
+        if (flat > 0) point.head<2>() *= flatNow / flat;
+        point.z() = s * flat + c * point.z();
+    }
+}
 }  // namespace
 
 std::pair<float, float> rangeOf(const std::vector<float>& times_s) {
@@ -57,22 +69,15 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     const auto& x = scan.points->getPointsBufferRef_x();
     const auto& y = scan.points->getPointsBufferRef_y();
     const auto& z = scan.points->getPointsBufferRef_z();
-    const double angle = options.vertical_correction_deg * M_PI / 180;
-    const auto c = static_cast<float>(portable::cos(angle)),
-               s = static_cast<float>(portable::sin(angle));
     const auto near = static_cast<float>(options.min_range * options.min_range);
     const auto far = static_cast<float>(options.max_range * options.max_range);
 
     // All at once first, in a plain loop: vector instructions.
     const auto all = static_cast<Eigen::Index>(x.size());
-    Eigen::ArrayXf squaredRanges(all), factors(all), heights(all);
+    Eigen::ArrayXf squaredRanges(all);
     for (Eigen::Index i = 0; i < all; ++i) {
         const float px = x.data()[i], py = y.data()[i], pz = z.data()[i];
         squaredRanges[i] = px * px + (py * py + pz * pz);
-        const float flat = std::sqrt(px * px + py * py);
-        const float flatNow = c * flat - s * pz;
-        factors[i] = flat > 0 ? flatNow / flat : 1.0F;
-        heights[i] = s * flat + c * pz;
     }
     const bool timed = options.deskew && !scan.times_s.empty(), numbered = !scan.rings.empty();
     PointCloud cloud;
@@ -90,9 +95,9 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
             continue;
         }
         float* const point = cloud.points.data() + 3 * kept;
-        point[0] = x[k] * factors[i];
-        point[1] = y[k] * factors[i];
-        point[2] = heights[i];
+        point[0] = x[k];
+        point[1] = y[k];
+        point[2] = z[k];
         if (numbered) cloud.rings[static_cast<std::size_t>(kept)] = scan.rings[k];
         if (timed) cloud.times_s[static_cast<std::size_t>(kept)] = scan.times_s[k];
         cloud.indices[static_cast<std::size_t>(kept)] = static_cast<std::uint32_t>(k);
@@ -102,6 +107,8 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     if (numbered) cloud.rings.resize(static_cast<std::size_t>(kept));
     if (timed) cloud.times_s.resize(static_cast<std::size_t>(kept));
     cloud.points.conservativeResize(3, kept);
+    if (options.vertical_correction_deg != 0)
+        raise(options.vertical_correction_deg * M_PI / 180, cloud.points);
     if (options.deskew && scan.times_s.empty() && options.sweep_s > 0)
         cloud.times_s = azimuthTimes(cloud.points, options.sweep_s);
     return cloud;

@@ -335,7 +335,7 @@ TimedScan timedScanOf(const PointCloud& cloud, double time_s) {
     scan.first_s = time_s + double{least};
     scan.last_s = time_s + double{most};
     scan.points =
-        sampled(firstOfVoxels(cloud, numberVoxels(cloud.points, kSpacing_m)), kMostPoints);
+        sampled(timedPoints(cloud, firstsOfVoxels(cloud.points, kSpacing_m)), kMostPoints);
     for (auto& point_s : scan.points.times_s) point_s += time_s;
 
     NormalsOptions options;
@@ -344,14 +344,11 @@ TimedScan timedScanOf(const PointCloud& cloud, double time_s) {
     const Eigen::Matrix3Xf surfaces = sample(normals.points, kMostSurfaces);
     scan.surfaces.points = surfaces.cast<double>();
     scan.normals = sample(normals.directions, kMostSurfaces).cast<double>();
-    const KdTree tree(cloud.points);
-    scan.surfaces.times_s.resize(numberOf(surfaces.cols()));
-    tbb::parallel_for(Index{0}, surfaces.cols(), [&](Index i) {
-        std::uint32_t nearest = 0;
-        float squared = 0;
-        tree.nearest(surfaces.col(i), 1, &nearest, &squared);
-        scan.surfaces.times_s[numberOf(i)] = time_s + double{cloud.times_s[nearest]};
-    });
+    // At the time of the first point in its voxel.
+    const auto firsts = firstsOfVoxels(cloud.points, kSurfaceSpacing_m);
+    for (const Index voxel : sample(normals.voxels, kMostSurfaces))
+        scan.surfaces.times_s.push_back(time_s +
+                                        double{cloud.times_s[numberOf(firsts[numberOf(voxel)])]});
     scan.cloud = cloud;
     return scan;
 }

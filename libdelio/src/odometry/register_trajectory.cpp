@@ -137,9 +137,9 @@ struct Bending {
 
 /** With one kernel. False where too few points lie on planes. */
 bool bend(Matcher& matcher, const TimedPoints& scan, double since_s, const Coefficients& known,
-          double width, const PlaneRegistrationOptions& options, Bending& now) {
+          double width, double converged, const PlaneRegistrationOptions& options, Bending& now) {
     constexpr unsigned kIterations = 6;
-    constexpr double kConverged = 1e-4, kRough = 1e-3, kLeastFactor = 0.01;
+    constexpr double kLeastFactor = 0.01;
     const auto [least, most] = std::minmax_element(scan.times_s.begin(), scan.times_s.end());
     for (unsigned i = 0; i < kIterations; ++i) {
         const PoseTable poses(now.trajectory, *least, *most);
@@ -154,7 +154,7 @@ bool bend(Matcher& matcher, const TimedPoints& scan, double since_s, const Coeff
         const Coefficients step = -equations.information.ldlt().solve(equations.gradient);
         now.trajectory = bent(now.trajectory, step, since_s);
         now.sinceStart += step;
-        if (step.norm() < (width > options.last_kernel ? kRough : kConverged)) break;
+        if (step.norm() < converged) break;
     }
     return true;
 }
@@ -168,34 +168,35 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
     // all are needed.
     constexpr Eigen::Index kFew = 2000;
     constexpr double kSwing_m = 1;  // predictions are off by more
+    // From where few points have led, one step of all of them comes near enough.
+    constexpr double kConverged = 4e-4, kRough = 1e-3, kNear = 3e-3;
     if (scan.times_s.empty()) return trajectory;
     const bool isSwing = kernel >= kSwing_m;
     const Coefficients known = informationOf(prior);
     const TimedPoints few = sampled(scan, isSwing ? scan.points.cols() : kFew);
+    const bool isAll = few.points.cols() == scan.points.cols();
     const double first = isSwing ? kernel : std::min(kernel, 2 * options.last_kernel);
     Bending now{trajectory};
     Matcher matchesFew(map, few.points, plane_tuning::kPointSigma_m);
     for (double width = std::max(first, options.last_kernel);;
          width = std::max(width / 2, options.last_kernel)) {
-        if (!bend(matchesFew, few, since_s, known, width, options, now)) return trajectory;
+        const double converged = width <= options.last_kernel && isAll ? kConverged : kRough;
+        if (!bend(matchesFew, few, since_s, known, width, converged, options, now))
+            return trajectory;
         if (width <= options.last_kernel) break;
     }
-    if (few.points.cols() == scan.points.cols()) return now.trajectory;
+    if (isAll) return now.trajectory;
     Matcher matchesAll(map, scan.points, plane_tuning::kPointSigma_m);
-    return bend(matchesAll, scan, since_s, known, options.last_kernel, options, now)
+    return bend(matchesAll, scan, since_s, known, options.last_kernel, kNear, options, now)
                ? now.trajectory
                : trajectory;
 }
 
-TimedPoints firstOfVoxels(const PointCloud& cloud, const VoxelNumbers& voxels) {
-    TimedPoints picked{Eigen::Matrix3Xd(3, voxels.voxels), {}};
-    std::uint32_t met = 0;
-    for (std::size_t i = 0; i < voxels.ofPoint.size(); ++i) {
-        if (voxels.ofPoint[i] != met) continue;
-        picked.points.col(static_cast<Eigen::Index>(met++)) =
-            cloud.points.col(static_cast<Eigen::Index>(i)).cast<double>();
-        picked.times_s.push_back(double{cloud.times_s[i]});
-    }
+TimedPoints timedPoints(const PointCloud& cloud, const std::vector<Eigen::Index>& columns) {
+    TimedPoints picked{cloud.points(Eigen::all, columns).cast<double>(), {}};
+    picked.times_s.reserve(columns.size());
+    for (const Eigen::Index column : columns)
+        picked.times_s.push_back(double{cloud.times_s[static_cast<std::size_t>(column)]});
     return picked;
 }
 
@@ -218,9 +219,22 @@ ScanTrajectory refinedTrajectory(const PlaneMap& map, const ScanTrajectory& star
                                  const Unevenness& unevenness, double kernel,
                                  const ScaledOptions& options) {
     const double most_m = options.spacing.acceleration * since_s * since_s;
-    return registerTrajectory(map, firstOfVoxels(cloud, planeVoxels(view)), start, since_s,
+    return registerTrajectory(map, timedPoints(cloud, firstsForPlanes(view)), start, since_s,
                               unevenness.prior(most_m), kernel, options.registration);
 }
+
+namespace {
+/** True where points along the trajectory hardly lie elsewhere than where they were placed. */
+bool isAlong(const ScanTrajectory& trajectory, const PlacedScan& placed,
+             const ScaledOptions& options) {
+    const double near_m = options.points.last_kernel / 2;
+    const auto& times_s = trajectory.times_s();
+    return std::all_of(times_s.begin(), times_s.end(), [&](double time_s) {
+        const Eigen::Isometry3d before = placed.estimate.pose * placed.motion.at(time_s);
+        return stepBetween(before, trajectory.at(time_s)).norm() < near_m;
+    });
+}
+}  // namespace
 
 std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
                                               const KnownEnds& known, const LocalMap& map,
@@ -235,12 +249,21 @@ std::optional<ScanOnTrajectory> registerAlong(const ScanTrajectory& trajectory,
                                 options.spacing.scan_spacing);
         thinForPoints(again, known.upright, options.spacing.point_spacing, known.byStanding);
     }
+    std::optional<Eigen::Isometry3d> start;
+    if (known.placed) start = trajectory.at(0);
+    const auto registered = [&](const PointEstimate& placed) {
+        return map.registerPlanes(again, placed, known.pose, known.motion, start);
+    };
+    if (known.isNearPrediction && known.placed && isAlong(trajectory, *known.placed, options)) {
+        const auto& placed = known.placed->estimate;
+        auto estimate = registered(placed);
+        if (estimate.isByPlanes)
+            return ScanOnTrajectory{std::move(again), estimate, trajectory, placed.inlierRatio};
+    }
     const auto placed =
         map.levelled(again, map.place(again.coarse, trajectory.at(0), options.points.least_kernel));
     if (!placed.valid) return {};
-    std::optional<Eigen::Isometry3d> start;
-    if (known.isSettled) start = trajectory.at(0);
-    auto estimate = map.registerPlanes(again, placed, known.pose, known.motion, start);
+    auto estimate = registered(placed);
     return ScanOnTrajectory{std::move(again), std::move(estimate), trajectory, placed.inlierRatio};
 }
 

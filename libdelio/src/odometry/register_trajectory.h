@@ -35,6 +35,12 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
                                   const TrajectoryPrior& prior, double kernel,
                                   const PlaneRegistrationOptions& options);
 
+/** A scan that was undistorted by a motion (from its own frame, times from its own), and placed. */
+struct PlacedScan {
+    PointEstimate estimate;
+    ScanTrajectory motion;
+};
+
 /** What is known of the motion during a scan whose points have times. */
 struct KnownEnds {
     Eigen::Isometry3d reference;  //!< `since_s` before the scan's time, sensor to map
@@ -44,11 +50,12 @@ struct KnownEnds {
     bool byStanding = false;           //!< points above the ground place the scan
     bool isNearPrediction = false;     //!< by which the scan was de-skewed first
     Motion motion = Motion::kUnknown;  //!< before `reference`
-    bool isSettled = false;            //!< planes need not begin where points place the scan
+    /** By points. Nothing where planes have to begin where points place the undistorted scan. */
+    std::optional<PlacedScan> placed;
 };
 
-/** The first point in each voxel. */
-TimedPoints firstOfVoxels(const PointCloud& cloud, const VoxelNumbers& voxels);
+/** The points of these columns. */
+TimedPoints timedPoints(const PointCloud& cloud, const std::vector<Eigen::Index>& columns);
 
 /** At most `most` of the points, evenly over their order. */
 TimedPoints sampled(const TimedPoints& all, Eigen::Index most);

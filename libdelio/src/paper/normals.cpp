@@ -72,6 +72,7 @@ SurfaceNormals estimateNormals(const Eigen::Matrix3Xf& points, const NormalsOpti
     result.directions.resize(3, thinned.cols());
     result.points.resize(3, thinned.cols());
     result.planarity.resize(thinned.cols());
+    result.voxels.resize(thinned.cols());
     Eigen::Index kept = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
         const auto& neighbourhood = found[i];
@@ -80,12 +81,14 @@ SurfaceNormals estimateNormals(const Eigen::Matrix3Xf& points, const NormalsOpti
         if (neighbourhood.shape != Shape::kPlane) continue;
         result.directions.col(kept) = neighbourhood.normal;
         result.planarity[kept] = neighbourhood.planarity;
+        result.voxels[kept] = static_cast<Eigen::Index>(i);
         result.points.col(kept) = thinned.col(static_cast<Eigen::Index>(i));
         ++kept;
     }
     result.directions.conservativeResize(3, kept);
     result.points.conservativeResize(3, kept);
     result.planarity.conservativeResize(kept);
+    result.voxels.conservativeResize(kept);
     return result;
 }
 

@@ -8,9 +8,11 @@
 namespace delio::paper {
 /** Normals of a cloud, and how they came about. */
 struct SurfaceNormals {
-    Eigen::Matrix3Xf directions;     //!< unit vectors, turned towards the sensor (the origin)
-    Eigen::VectorXf planarity;       //!< 0 (barely a plane) to 1, one per direction
-    Eigen::Matrix3Xf points;         //!< metres; where each normal was found
+    Eigen::Matrix3Xf directions;  //!< unit vectors, turned towards the sensor (the origin)
+    Eigen::VectorXf planarity;    //!< 0 (barely a plane) to 1, one per direction
+    Eigen::Matrix3Xf points;      //!< metres; where each normal was found
+    /** The number of the voxel that each was found in (see VoxelNumbers). */
+    Eigen::RowVectorX<Eigen::Index> voxels;
     std::size_t neighbourhoods = 0;  //!< examined
     std::size_t lines = 0;           //!< dropped: one ring, or an edge
     std::size_t rough = 0;           //!< dropped: no plane

@@ -112,11 +112,8 @@ TEST(ScanView, ThinningTakesCentroidsTwice) {
     EXPECT_NEAR(view.thinned(0, 1), 8.5, 1e-6);
 }
 
-TEST(ScanView, VoxelsForPlanesLeaveDynamicPointsOut) {
-    const auto voxels = planeVoxels(viewOfALine(line()));
-    constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
-    EXPECT_EQ(voxels.ofPoint, (std::vector<std::uint32_t>{0, 0, 0, 0, kNone, kNone, 1}));
-    EXPECT_EQ(voxels.voxels, 2);
+TEST(ScanView, PointsForPlanesLeaveDynamicOnesOut) {
+    EXPECT_EQ(firstsForPlanes(viewOfALine(line())), (std::vector<Eigen::Index>{0, 6}));
 }
 
 TEST(ScanView, PointsKeepTheirVoxelsWhenUndistortedAgain) {
