@@ -73,8 +73,8 @@ void bindPoses(StepClass& step) {
             "corrected",
             [](const PythonStep& of) {
                 py::list poses;
-                for (const auto& [scansAgo, pose, registered] : of.step.corrected)
-                    poses.append(py::make_tuple(scansAgo, arrayOf(pose)));
+                for (const auto& corrected : of.step.corrected)
+                    poses.append(py::make_tuple(corrected.scansAgo, arrayOf(corrected.pose)));
                 return poses;
             },
             "list of (scans_ago, (4, 4)): earlier scans that are now known to have been elsewhere; "

@@ -84,15 +84,19 @@ Matrix6 PoseGraph::information(std::size_t i) const {
 }
 
 void PoseGraph::correct(const std::vector<NodePose>& corrected) {
-    std::vector<bool> isMoved(poses_.size(), false);
     for (const auto& [node, pose] : corrected) {
         requireFinite(pose, node);
         poses_.at(node) = pose;
-        isMoved[node] = true;
     }
-    for (auto& [from, to, increment] : edges_)
-        if (to == from + 1 && (isMoved[from] || isMoved[to]))
-            increment.pose = poses_[from].inverse() * poses_[to];
+    const auto follow = [&](std::size_t node) {
+        for (const std::size_t i : edgesUpTo_[node])
+            if (auto& [from, to, increment] = edges_[i]; to == from + 1)
+                increment.pose = poses_[from].inverse() * poses_[to];
+    };
+    for (const auto& [node, pose] : corrected) {
+        follow(node);
+        if (node + 1 < poses_.size()) follow(node + 1);
+    }
 }
 
 PoseGraph PoseGraph::withPoses(const std::vector<Eigen::Isometry3d>& poses) const {

@@ -177,6 +177,11 @@ bool MapBuilder::add(std::size_t poseIndex, const Isometry3d& approximatePose,
     return scan.isKeyframe;
 }
 
+void MapBuilder::keepInPlace(std::size_t poseIndex, const Isometry3d& fromOldPose) {
+    if (scans_.empty() || scans_.back().poseIndex != poseIndex) return;
+    scans_.back().sensorPose = fromOldPose * scans_.back().sensorPose;
+}
+
 BuiltMap MapBuilder::build(const std::vector<Isometry3d>& poses) const {
     return buildMap({scans_, spool_, options_, sensorLabel_}, poses);
 }

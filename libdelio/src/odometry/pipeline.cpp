@@ -66,6 +66,7 @@ Step PlaneOdometry::process(const Scan& scan) {
         track(cloud, attemptToTrack(cloud, interval, step), step);
     retraceStart(cloud, step);
 
+    if (motionWasKnown) correctStampBefore(cloud, step);
     const bool hasFoundMotion = !motionWasKnown && !step.predicted && !step.interrupted;
     extendPath(cloud.stamp_s, hasFoundMotion, step);
     step.standing = isStanding(step, interval.duration_s);
@@ -334,6 +335,16 @@ void PlaneOdometry::report(const PlaneEstimate& estimate, ScanView& view, Step& 
     step.used.dynamic = std::move(view.dynamic);
 }
 
+/** A stamp after the scan's time (a driver stamped the end of the turn) lies in the motion that the
+ *  next scan shows. */
+void PlaneOdometry::correctStampBefore(const PointCloud& cloud, const Step& step) {
+    const Stamped& before = path_.latest();
+    const double since_s = before.sinceStart_s() - time_s_;
+    const bool isBetween = before.stamp_s > 0 && since_s < endsOf(cloud).second;
+    if (isBetween && step.deskewed && !step.predicted && !step.interrupted)
+        path_.correctStamp(pose_ * atStamp(motion_, since_s));
+}
+
 /** The step from the stamp of the scan before to this one's, which is `stamp_s` from the scan's
  *  time, and corrections of earlier ones. `hasFoundMotion`: the motion, which was not known before,
  *  is that of the scan before, too. */
@@ -405,10 +416,13 @@ void PlaneOdometry::learnFromGyro(const Eigen::Isometry3d& predicted, double sin
     gyroErrors_.unevenness.observe(reference_.pose.inverse() * pose_, even);
 }
 
-/** True where the scan showed every axis, and no earlier one was corrected. */
+/** True where the scan showed every axis, and no earlier one has moved. */
 bool PlaneOdometry::isObserved(const Step& step) const {
+    const bool hasMoved =
+        std::any_of(step.corrected.begin(), step.corrected.end(),
+                    [](const CorrectedPose& corrected) { return !corrected.staysInPlace; });
     return std::holds_alternative<Tracking>(state_) && !step.predicted && !step.interrupted &&
-           step.corrected.empty() && step.quality.unobservedTranslation.cols() == 0;
+           !hasMoved && step.quality.unobservedTranslation.cols() == 0;
 }
 
 /** Before a map of that scale begins. */

@@ -80,6 +80,7 @@ class PlaneOdometry : public Odometry {
         }
     };
     void track(const PointCloud& cloud, Attempt attempt, Step& step);
+    void correctStampBefore(const PointCloud& cloud, const Step& step);
     void extendPath(double stamp_s, bool hasFoundMotion, Step& step);
     void finish(PointCloud cloud, Step& step);
 

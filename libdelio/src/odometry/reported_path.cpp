@@ -12,9 +12,17 @@ Eigen::Isometry3d ReportedPath::advance(const Stamped& latest, const Eigen::Isom
     return normalised(before.inverse() * latest.pose);
 }
 
+void ReportedPath::correctStamp(const Eigen::Isometry3d& pose) {
+    if (scans_.empty() || scans_.back().isCorrected) return;
+    Scan& before = scans_.back();
+    before.at.pose = pose;
+    before.isCorrected = before.staysInPlace = true;
+}
+
 void ReportedPath::correctSince(double from_s, const ScanTrajectory& trajectory) {
     for (Scan& scan : scans_) {
         scan.isCorrected = scan.stamp_s >= from_s;
+        scan.staysInPlace = false;
         if (scan.isCorrected) scan.at.pose = trajectory.at(scan.stamp_s);
     }
 }
@@ -71,8 +79,9 @@ void ReportedPath::report(Step& step) {
         if (!std::exchange(scans_[i].isCorrected, false)) continue;
         const Eigen::Isometry3d fromHere = normalised(latest_.pose.inverse() * scans_[i].at.pose);
         scans_[i].at.reported = reported_ * fromHere;
-        step.corrected.push_back(
-            {scans_.size() - i, fromHere, std::exchange(scans_[i].isRegistered, false)});
+        step.corrected.push_back({scans_.size() - i, fromHere,
+                                  std::exchange(scans_[i].isRegistered, false),
+                                  std::exchange(scans_[i].staysInPlace, false)});
     }
     scans_.push_back({latest_.time_s, latest_.sinceStart_s(), anchor()});
     if (scans_.size() > kMostScans) scans_.pop_front();

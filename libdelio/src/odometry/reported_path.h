@@ -36,6 +36,7 @@ class ReportedPath {
         Anchor at;                  //!< at the stamp
         bool isCorrected = false;   //!< by the latest scan
         bool isRegistered = false;  //!< at the pose that the latest scan corrects
+        bool staysInPlace = false;  //!< it is corrected at its stamp alone
     };
 
     const Stamped& latest() const { return latest_; }
@@ -52,6 +53,10 @@ class ReportedPath {
 
     /** The scans, oldest first; the latest one comes in with report(). */
     std::deque<Scan>& scans() { return scans_; }
+
+    /** Corrects the scan before the latest one at its stamp: the latest one shows where the sensor
+     *  was then (sensor to map). Not where it is corrected as a whole. */
+    void correctStamp(const Eigen::Isometry3d& pose);
 
     /** Corrects the scans since the stamp `from_s`, which lie on `trajectory` (sensor to map, since
      *  the start). */

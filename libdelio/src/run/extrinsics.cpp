@@ -62,6 +62,10 @@ void Moments::add(const SlamScan& scan) {
     for (const auto& [node, pose] : scan.corrected)
         for (auto& placed : recent_)
             if (placed.node == node) placed.pose = pose;
+    if (scan.fromOldPose && !recent_.empty() && recent_.back().node + 1 == scan.node) {
+        auto& points = recent_.back().points;
+        points = (scan.fromOldPose->cast<float>() * points).eval();
+    }
     if (scan.step.predicted || scan.step.lost || scan.step.interrupted ||
         (!recent_.empty() && scan.scan.stamp_s <= recent_.back().stamp_s))
         recent_.clear();

@@ -73,6 +73,7 @@ mrpt::maps::CPointsMap::Ptr pointsForMap(const Scan& scan, const UsedPoints& use
 }  // namespace
 
 void MapListener::add(const SlamScan& scan) {
+    if (scan.fromOldPose) builder_.keepInPlace(scan.node - 1, *scan.fromOldPose);
     if (scan.step.predicted) return;
     for (const auto& [name, value] : scan.step.details)
         if (name == "scale") builder_.takeScale(value);

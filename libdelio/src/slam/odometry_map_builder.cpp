@@ -80,7 +80,7 @@ class OdometryMapBuilder::Keyframes : public SlamListener {
         pdf_.mean = toMrpt(pose_);
         step_ = scan.step;
         step_->features.reset();
-        correct(scan.corrected);
+        correct(scan);
         if (scan.step.predicted || !builder_.options.enableMapUpdating || !isFarEnough()) return;
         const auto cloud = mrpt::obs::CObservationPointCloud::Create();
         cloud->timestamp = scan.scan.time;
@@ -128,15 +128,19 @@ class OdometryMapBuilder::Keyframes : public SlamListener {
     }
 
     /** Earlier scans are now known to have been elsewhere. */
-    void correct(const std::vector<NodePose>& poses) {
-        bool isChanged = false;
-        for (const auto& [node, pose] : poses)
-            for (Keyframe& keyframe : keyframes_)
-                if (keyframe.node == node) {
-                    keyframe.pose = start_ * pose;
-                    isChanged = true;
-                }
-        if (!isChanged) return;
+    void correct(const SlamScan& scan) {
+        bool isMoved = false;
+        for (const auto& [node, pose] : scan.corrected)
+            for (Keyframe& keyframe : keyframes_) {
+                if (keyframe.node != node) continue;
+                keyframe.pose = start_ * pose;
+                if (scan.fromOldPose && node + 1 == scan.node)
+                    keyframe.cloud->pointcloud->changeCoordinatesReference(
+                        toMrpt(*scan.fromOldPose));
+                else
+                    isMoved = true;
+            }
+        if (!isMoved) return;
         metricMap_.clear();
         occupied_.clear();
         for (const Keyframe& keyframe : keyframes_) insert(keyframe);

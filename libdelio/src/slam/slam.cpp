@@ -113,9 +113,13 @@ ScanReport Slam::process(const Scan& scan) {
     if (nodes_ > 0) {
         told.increment = ofVehicle(report.step.increment, sensorPose_, scan.sensorPose);
         told.pose = poses.back() * told.increment.pose;
-        for (const auto& [scansAgo, pose, registered] : report.step.corrected)
-            told.corrected.push_back({nodes_ - scansAgo, told.pose * scan.sensorPose * pose *
-                                                             scan.sensorPose.inverse()});
+        for (const auto& corrected : report.step.corrected) {
+            told.corrected.push_back(
+                {nodes_ - corrected.scansAgo,
+                 told.pose * scan.sensorPose * corrected.pose * scan.sensorPose.inverse()});
+            if (corrected.staysInPlace)
+                told.fromOldPose = told.corrected.back().pose.inverse() * poses.back();
+        }
     }
     if (history_ == History::Last) {
         poses.clear();

@@ -60,7 +60,7 @@ TEST(PlaneOdometry, AStartThatShowsNoMotionIsCorrectedOnceItIsKnown) {
         poses.push_back(i == 0 ? Isometry3d::Identity() : poses.back() * step.increment.pose);
         lost.push_back(step.lost);
         lostAtFirst += step.lost;
-        for (const auto& [scansAgo, pose, registered] : step.corrected) {
+        for (const auto& [scansAgo, pose, registered, inPlace] : step.corrected) {
             poses.at(i - scansAgo) = poses[i] * pose;
             if (registered) lost.at(i - scansAgo) = false;
         }

@@ -277,7 +277,7 @@ std::vector<std::pair<double, double>> errorsOfSteps(double late_s, std::uint32_
         const auto result = odometry.process(scan);
         EXPECT_FALSE(result.predicted) << i;
         if (i > 0) poses.push_back(poses.back() * result.increment.pose);
-        for (const auto& [scansAgo, pose, registered] : result.corrected)
+        for (const auto& [scansAgo, pose, registered, inPlace] : result.corrected)
             poses[i - scansAgo] = poses[i] * pose;
     }
     std::vector<std::pair<double, double>> errors;

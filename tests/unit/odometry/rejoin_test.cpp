@@ -53,7 +53,7 @@ TEST(PlaneOdometry, TakesTheMapAgainThatItLeftWhenItWasLost) {
     for (std::size_t i = 0; i < kScans; ++i) {
         const Step step = odometry.process(scanAt(i, noise));
         poses.push_back(i == 0 ? Isometry3d::Identity() : poses.back() * step.increment.pose);
-        for (const auto& [scansAgo, pose, registered] : step.corrected) {
+        for (const auto& [scansAgo, pose, registered, inPlace] : step.corrected) {
             ASSERT_LE(scansAgo, i);
             EXPECT_GE(i - scansAgo, kLost) << "an earlier scan was corrected";
             poses[i - scansAgo] = poses[i] * pose;

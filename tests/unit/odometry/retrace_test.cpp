@@ -77,7 +77,7 @@ Flown fly(const Flight& flight, std::size_t scans, bool withGyro) {
         if (flown.correctedBy.empty()) flown.asItCame = poses;
         if (!step.corrected.empty()) flown.correctedBy.push_back(i);
         poses.push_back(i == 0 ? Isometry3d::Identity() : poses.back() * step.increment.pose);
-        for (const auto& [scansAgo, pose, registered] : step.corrected)
+        for (const auto& [scansAgo, pose, registered, inPlace] : step.corrected)
             poses.at(i - scansAgo) = poses[i] * pose;
     }
     return flown;

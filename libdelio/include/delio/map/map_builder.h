@@ -119,6 +119,13 @@ class MapBuilder {
              const mrpt::maps::CPointsMap& sensorPoints, const Eigen::Isometry3d& sensorPose,
              mrpt::Clock::time_point stamp, const std::vector<std::uint8_t>& moving = {});
 
+    /** The pose of the scan that was added last is known better, but its points stay where they
+     *  were. No effect for another scan.
+     *  @param poseIndex of that scan
+     *  @param fromOldPose maps the vehicle's coordinates at the old pose to those at the new one
+     */
+    void keepInPlace(std::size_t poseIndex, const Eigen::Isometry3d& fromOldPose);
+
     std::size_t keyframes() const { return keyframes_; }  //!< among the scans that were added
 
     /** The map at the given poses. Throws Error if a scan's poseIndex is outside `poses`. */

@@ -58,6 +58,8 @@ struct CorrectedPose {
     std::size_t scansAgo = 0;                                //!< 1: the scan before
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  //!< sensor's frame then to that now
     bool registered = false;  //!< it was registered there: it is lost no more
+    /** Only its pose at its stamp is known better; what it saw stays where it is. */
+    bool staysInPlace = false;
 };
 
 /** A named value. */
@@ -69,8 +71,9 @@ struct Step {
      *  The covariance of a predicted one is the motion model's. */
     Increment increment;
     /** Earlier scans that are now known to have been elsewhere, oldest first: after the
-     *  first scans of a map, after a start in motion, and after a loss. `increment` leads from
-     * where the scan before was said to be. */
+     *  first scans of a map, after a start in motion, and after a loss; and the scan before, where
+     *  its stamp lies between both scans' times. `increment` leads from where the scan before was
+     *  said to be. */
     std::vector<CorrectedPose> corrected;
     bool predicted = false;  //!< the scan could not be registered: `increment` is the prediction
     std::string reason;      //!< why; empty where it was registered

@@ -32,6 +32,9 @@ struct SlamScan {
     Eigen::Isometry3d pose;
     /** The same of earlier scans whose poses this one corrects (Step::corrected). */
     std::vector<NodePose> corrected = {};
+    /** Where one of these is the scan before, and what it saw stays in place: maps the vehicle's
+     *  coordinates at its old pose to those at its new one. */
+    std::optional<Eigen::Isometry3d> fromOldPose = {};
 };
 
 /** Static points of a scan, in the vehicle's frame: at most 20 000, as several scans are merged. */
