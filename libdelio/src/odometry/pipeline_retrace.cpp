@@ -79,10 +79,12 @@ void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
     }
     if (count - first < least) return;
     const Anchor held = past[known].at;
-    // The trajectory of a scan is known best between its time and that of the scan after it.
-    for (std::size_t i = first, k = first; i < count; ++i) {
+    // The trajectory of a scan is known best between its time and that of the scan after it. A
+    // stamp of the scan that comes next may lie there, too.
+    for (std::size_t i = first, k = first; i <= count; ++i) {
         ReportedPath::Scan& scan = past[known + i];
         while (k < count && beginning_[k + 1].scan.time_s <= scan.stamp_s) ++k;
+        if (i == count && k == count) break;
         scan.at.pose = atStamp(trajectories[k], scan.stamp_s - beginning_[k].scan.time_s);
         scan.isRegistered = true;
     }

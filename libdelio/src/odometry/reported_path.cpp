@@ -13,10 +13,10 @@ Eigen::Isometry3d ReportedPath::advance(const Stamped& latest, const Eigen::Isom
 }
 
 void ReportedPath::correctStamp(const Eigen::Isometry3d& pose) {
-    if (scans_.empty() || scans_.back().isCorrected) return;
+    if (scans_.empty()) return;
     Scan& before = scans_.back();
     before.at.pose = pose;
-    before.isCorrected = before.staysInPlace = true;
+    before.staysInPlace = !std::exchange(before.isCorrected, true);
 }
 
 void ReportedPath::correctSince(double from_s, const ScanTrajectory& trajectory) {

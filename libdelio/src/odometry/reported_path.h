@@ -55,7 +55,7 @@ class ReportedPath {
     std::deque<Scan>& scans() { return scans_; }
 
     /** Corrects the scan before the latest one at its stamp: the latest one shows where the sensor
-     *  was then (sensor to map). Not where it is corrected as a whole. */
+     *  was then (sensor to map). */
     void correctStamp(const Eigen::Isometry3d& pose);
 
     /** Corrects the scans since the stamp `from_s`, which lie on `trajectory` (sensor to map, since

@@ -219,6 +219,26 @@ TEST(MapBuilder, FinalPosesAndTheSensorsPlaceAreApplied) {
     }
 }
 
+TEST(MapBuilder, PointsStayInPlaceWhereAPoseIsKnownBetter) {
+    MapBuilder builder(everything());
+    const auto sensor = poseAt(0.5, -0.2, 1.7, 1.2, 0.1, -0.3);
+    builder.add(0, kHere, randomCloud(50, 3), sensor, kStamp);
+    builder.add(1, kHere, randomCloud(50, 4), sensor, kStamp);
+    std::vector<Isometry3d> poses = {kHere, poseAt(4, -7, 3, -0.5, 0.2, 0.4)};
+    const auto before = map::cloudOf(builder.build(poses).points);
+    const Isometry3d better = poseAt(4.1, -7.2, 3, -0.4, 0.2, 0.4);
+    builder.keepInPlace(1, better.inverse() * poses[1]);
+    builder.keepInPlace(0, better);  // not the latest scan
+    poses[1] = better;
+    const auto after = map::cloudOf(builder.build(poses).points);
+    ASSERT_EQ(after.size(), before.size());
+    for (std::size_t i = 0; i < after.size(); ++i) {
+        EXPECT_NEAR(after.getPointsBufferRef_x()[i], before.getPointsBufferRef_x()[i], 1e-4);
+        EXPECT_NEAR(after.getPointsBufferRef_y()[i], before.getPointsBufferRef_y()[i], 1e-4);
+        EXPECT_NEAR(after.getPointsBufferRef_z()[i], before.getPointsBufferRef_z()[i], 1e-4);
+    }
+}
+
 TEST(MapBuilder, MissingPosesAreAnError) {
     MapBuilder builder(everything());
     builder.add(5, kHere, randomCloud(10, 5), kHere, kStamp);

@@ -42,3 +42,16 @@ TEST(ReportedPath, ScansThatMovedAreCorrectedAndTheOneBeforeThem) {
         EXPECT_NEAR(corrected.pose.translation().x(), -static_cast<double>(3 - i), 1e-9);
     }
 }
+
+TEST(ReportedPath, AStampThatTheNextScanPassesIsCorrectedAlone) {
+    ReportedPath path;
+    for (const double time_s : {0.0, 0.1, 0.2}) advance(path, at(10 * time_s), time_s);
+    path.correctStamp(at(1.9));
+    const Step step = advance(path, at(3), 0.3);
+    EXPECT_NEAR(step.increment.pose.translation().x(), 1, 1e-9) << "from where it was said to be";
+    ASSERT_EQ(step.corrected.size(), 1);
+    EXPECT_EQ(step.corrected[0].scansAgo, 1);
+    EXPECT_TRUE(step.corrected[0].staysInPlace);
+    EXPECT_NEAR(step.corrected[0].pose.translation().x(), -1.1, 1e-9);
+    EXPECT_TRUE(advance(path, at(4), 0.4).corrected.empty());
+}

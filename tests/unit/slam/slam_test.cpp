@@ -221,16 +221,51 @@ class AnyScan : public Odometry {
 /** A metre a scan; the third one corrects the second. */
 class Correcting : public Odometry {
  public:
+    explicit Correcting(bool staysInPlace = false) : staysInPlace_(staysInPlace) {}
+
     Step process(const Scan&) override {
         Step step;
         if (scans_++ > 0) step.increment.pose.translation().x() = 1;
-        if (scans_ == 3) step.corrected = {{1, Eigen::Isometry3d(Eigen::Translation3d(-3, 0, 1))}};
+        const Eigen::Isometry3d back(Eigen::Translation3d(-3, 0, 1));
+        if (scans_ == 3) step.corrected = {{1, back, false, staysInPlace_}};
         return step;
     }
 
  private:
+    bool staysInPlace_;
     unsigned scans_ = 0;
 };
+
+/** Keeps where the latest scan's vehicle coordinates put a point of each scan. */
+class PointKeeper : public SlamListener {
+ public:
+    const char* name() const override { return "keeper"; }
+    void add(const SlamScan& scan) override {
+        if (scan.fromOldPose) inVehicle.back() = *scan.fromOldPose * inVehicle.back();
+        for (const auto& [node, pose] : scan.corrected) poses[node] = pose;
+        poses.push_back(scan.pose);
+        inVehicle.emplace_back(1, 2, 3);
+    }
+    std::vector<Eigen::Isometry3d> poses;
+    std::vector<Eigen::Vector3d> inVehicle;
+};
+
+TEST(Slam, WhatAScanSawStaysWhereOnlyItsStampIsCorrected) {
+    constexpr double kExact_m = 1e-12;
+    std::vector<Eigen::Vector3d> seen;
+    for (const bool staysInPlace : {true, false}) {
+        Slam slam(std::make_unique<Correcting>(staysInPlace));
+        const auto keeper = std::make_shared<PointKeeper>();
+        slam.attach(keeper);
+        for (Scan scan : scansOf(drive(4))) {
+            scan.sensorPose = test::poseAt(0.5, 0, 2, M_PI / 2);
+            slam.process(scan);
+        }
+        seen.push_back(keeper->poses[1] * keeper->inVehicle[1]);
+    }
+    EXPECT_LT((seen[0] - Eigen::Vector3d(1, 3, 3)).norm(), kExact_m);
+    EXPECT_LT((seen[1] - Eigen::Vector3d(1, 1, 4)).norm(), kExact_m);
+}
 
 TEST(Slam, CorrectedPosesReplaceThoseOfEarlierScans) {
     constexpr double kExact_m = 1e-12;
