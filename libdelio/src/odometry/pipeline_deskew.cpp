@@ -86,9 +86,8 @@ std::optional<ScanOnTrajectory> PlaneOdometry::deskewAgain(const PointCloud& clo
                                                            const ScanView& view) {
     const bool isNear =
         !isShaken() && stepBetween(predicted, pose).norm() < options().spacing.map_spacing;
-    KnownEnds known{
-        reference_.pose, since_s,  pose,    upright_, isPlacedByStanding(isGuessing()),
-        isNear,          motion(), {}};
+    KnownEnds known{reference_.pose, since_s,  pose, upright_, isPlacedByStanding(isGuessing()),
+                    isNear,          motion(), {}};
     if (isSettled()) known.placed = PlacedScan{placed, motion_};
     const auto fits = [&](const std::optional<ScanOnTrajectory>& found) {
         return found && found->inlierRatio >= placed.inlierRatio - kInlierNoise;
