@@ -77,9 +77,8 @@ void bindPoses(StepClass& step) {
                     poses.append(py::make_tuple(corrected.scansAgo, arrayOf(corrected.pose)));
                 return poses;
             },
-            "list of (scans_ago, (4, 4)): earlier scans that are now known to have been elsewhere "
-            "at "
-            "their stamps; "
+            "list of (scans_ago, (4, 4)): earlier scans whose poses at their stamps are now known "
+            "better; "
             "each pose maps the sensor's coordinates at that scan to those at this one.")
         .def_property_readonly(
             "covariance",

@@ -127,6 +127,16 @@ class OdometryMapBuilder::Keyframes : public SlamListener {
                angleOf(moved.linear()) > options_.keyframe_angle_deg * M_PI / 180;
     }
 
+    /** A copy: maps that were given away share the cloud. */
+    static mrpt::obs::CObservationPointCloud::Ptr movedCloud(
+        const mrpt::obs::CObservationPointCloud& cloud, const Eigen::Isometry3d& motion) {
+        const auto moved = mrpt::obs::CObservationPointCloud::Create(cloud);
+        moved->pointcloud = std::dynamic_pointer_cast<mrpt::maps::CPointsMap>(
+            cloud.pointcloud->duplicateGetSmartPtr());
+        moved->pointcloud->changeCoordinatesReference(toMrpt(motion));
+        return moved;
+    }
+
     /** Earlier scans are now known to have been elsewhere. */
     void correct(const SlamScan& scan) {
         bool isMoved = false;
@@ -135,8 +145,7 @@ class OdometryMapBuilder::Keyframes : public SlamListener {
                 if (keyframe.node != node) continue;
                 keyframe.pose = start_ * pose;
                 if (scan.fromOldPose && node + 1 == scan.node)
-                    keyframe.cloud->pointcloud->changeCoordinatesReference(
-                        toMrpt(*scan.fromOldPose));
+                    keyframe.cloud = movedCloud(*keyframe.cloud, *scan.fromOldPose);
                 else
                     isMoved = true;
             }
