@@ -79,10 +79,10 @@ TEST_F(Several, ComeInPlaceTogetherWheneverTheyAreKilled) {
     const auto after = lastingOf(out_);
     ASSERT_NE(after, before);
     std::mt19937 random{2};
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 5; ++i) {
         test::restore(old, out_);
         test::RunningTool run("delio-slam", joined({"--force"}));
-        std::this_thread::sleep_for(whole * (0.3 + 0.1 * i));
+        std::this_thread::sleep_for(whole * (0.3 + 0.17 * i));
         run.send(SIGKILL);
         run.wait();
         const auto found = lastingOf(out_);

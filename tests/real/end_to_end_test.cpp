@@ -18,7 +18,7 @@ using mrpt::containers::yaml;
 
 /** kitti2rawlog and delio-slam on one extract; its summary. */
 yaml runOn(const std::string& extract, const test::TemporaryFolder& folder,
-           const std::string& profile) {
+           const std::string& profile, const std::vector<std::string>& more = {}) {
     const auto sequence = test::dataFolder() / "kitti" / extract;
     const std::string rawlog = folder / (extract + ".rawlog");
     const std::string out = folder / (extract + profile);
@@ -26,7 +26,9 @@ yaml runOn(const std::string& extract, const test::TemporaryFolder& folder,
         const auto converted = test::runTool("kitti2rawlog", {"-i", sequence, "-o", rawlog});
         EXPECT_EQ(converted.exitCode, 0) << converted.err;
     }
-    const auto slam = test::runTool("delio-slam", {"-i", rawlog, "-o", out, "--profile", profile});
+    std::vector<std::string> words{"-i", rawlog, "-o", out, "--profile", profile};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto slam = test::runTool("delio-slam", words);
     EXPECT_EQ(slam.exitCode, 0) << slam.err;
     std::printf("== %s, %s\n%s", extract.c_str(), profile.c_str(), slam.out.c_str());
     return yaml::FromFile(out + "/summary.yaml");
@@ -122,12 +124,12 @@ TEST(EndToEnd, FirstScansOfSequence00) {
 TEST(EndToEnd, FirstScansOfDrive0005) {
     DELIO_NEED_DATA("kitti/drive0005_first60");
     const test::TemporaryFolder folder;
-    const auto summary = runOn("drive0005_first60", folder, "paper");
-    EXPECT_EQ(summary["scans"].as<int>(), 60);
+    const auto summary = runOn("drive0005_first60", folder, "paper", {"--count", "30"});
+    EXPECT_EQ(summary["scans"].as<int>(), 30);
     EXPECT_EQ(summary["predicted"].as<int>(), 0);
     EXPECT_LT(summary["metrics"]["scan_rotation_median_deg"].as<double>(), 0.12);
     const std::string out = folder / "drive0005_first60paper";
-    EXPECT_EQ(io::readTrajectory(out + "/trajectory_tum.txt").poses.size(), 60U);
+    EXPECT_EQ(io::readTrajectory(out + "/trajectory_tum.txt").poses.size(), 30U);
     expectPictureOfMap(out + "/map.png");
 }
 
