@@ -166,7 +166,7 @@ ScanTrajectory registerTrajectory(const PlaneMap& map, const TimedPoints& scan,
                                   const PlaneRegistrationOptions& options) {
     // A steady motion is nearly known: few points lead near to where all of them do. Of a swing,
     // all are needed.
-    constexpr Eigen::Index kFew = 2000;
+    constexpr Eigen::Index kFew = 1000;
     constexpr double kSwing_m = 1;  // predictions are off by more
     // From where few points have led, one step of all of them comes near enough.
     constexpr double kConverged = 4e-4, kRough = 1e-3, kNear = 3e-3;

@@ -66,7 +66,7 @@ Eigen::Isometry3d ReportedPath::correct(const std::vector<MovingScan>& scans) {
                 scan->isCorrected = scan->isRegistered = true;
             }
     // The first of them stays where it was said to be.
-    const Eigen::Isometry3d moved = first->at.pose * held.pose.inverse();
+    Eigen::Isometry3d moved = first->at.pose * held.pose.inverse();
     for (auto scan = scans_.begin(); scan != first; ++scan) scan->at.pose = moved * scan->at.pose;
     moveTo({first->at.pose, held.reported});
     return moved;

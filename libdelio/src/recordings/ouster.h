@@ -1,4 +1,6 @@
 #pragma once
+#include <mrpt/maps/CPointsMapXYZI.h>
+
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
@@ -82,6 +84,15 @@ bool addOusterImu(const OusterInfo& info, const std::uint8_t* payload, std::size
 /** True if packets of this size can come from an Ouster. */
 bool isOusterPacketSize(std::size_t bytes);
 
+/** Points of a turn's first columns. */
+struct OusterPoints {
+    mrpt::maps::CPointsMapXYZI::Ptr points;  //!< with room for the whole turn
+    std::vector<std::uint16_t> rings;        //!< likewise
+    std::vector<std::size_t> ends;           //!< number of points up to each received column
+    std::size_t columns = 0;                 //!< received or not
+    bool isWrong = false;                    //!< one of the columns came later, or again
+};
+
 /** One turn of an Ouster as it was sent: `columns` columns of `rows` pixels, staggered (pixels of a
  *  column were measured at once). What was not received is 0. */
 struct OusterFrame {
@@ -98,6 +109,7 @@ struct OusterFrame {
     std::vector<std::uint64_t> times_ns;       //!< of the sensor's clock, a column
     std::vector<bool> received;                //!< a column
     std::size_t count = 0;                     //!< of columns that were received
+    OusterPoints prepared;                     //!< see OusterScans::prepare()
 };
 
 /** When the columns of a turn were measured. */
@@ -165,13 +177,19 @@ class OusterScans {
     /** `info` has to live on. */
     explicit OusterScans(const OusterInfo& info) : info_(info), beams_(info) {}
 
-    Scan scanOf(const OusterFrame& frame);
+    /** After a column was received: makes points of those before it, so that little is left to do
+     *  when the last one comes. */
+    void prepare(OusterFrame& frame, std::size_t column) const;
+    /** Takes the points of the turn. */
+    Scan scanOf(OusterFrame& frame);
     std::size_t made() const { return made_; }
     /** Stamps as those of scans: nothing, and `waiting` stays, before the first one is made. */
     std::vector<ImuSample> takeImu(std::vector<OusterImu>& waiting) const;
     std::vector<std::string> findings() const;
 
  private:
+    /** Makes points of the columns before `end`. */
+    void extend(OusterFrame& frame, std::size_t end) const;
     /** Unix time at which the turn began. */
     double stampOf(const OusterFrame& frame, const std::optional<OusterTimes>& times);
 

@@ -125,6 +125,7 @@ bool OusterDecoder::add(const std::uint8_t* payload, std::size_t bytes, double r
             frame_->received_s = received_s;
         }
         packet.copyTo(*frame_, column);
+        maker_.prepare(*frame_, packet.place(column));
         if (frame_->count < info_.columns) continue;
         endFrame(false);
         first_ = false;

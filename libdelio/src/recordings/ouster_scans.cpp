@@ -1,8 +1,7 @@
-#include <mrpt/maps/CPointsMapXYZI.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/portable_math.h"
 #include "mrpt/clock.h"
@@ -29,36 +28,57 @@ double OusterScans::stampOf(const OusterFrame& frame, const std::optional<Ouster
     return stamp_s;
 }
 
-Scan OusterScans::scanOf(const OusterFrame& frame) {
+void OusterScans::extend(OusterFrame& frame, std::size_t end) const {
+    auto& [points, rings, ends, columns, isWrong] = frame.prepared;
+    if (!points) {
+        points = mrpt::maps::CPointsMapXYZI::Create();
+        points->resize(frame.ranges_mm.size());
+        rings.resize(frame.ranges_mm.size());
+        ends.reserve(info_.columns);
+    }
+    std::size_t count = ends.empty() ? 0 : ends.back();
+    for (; columns < end; ++columns) {
+        if (!frame.received[columns]) continue;
+        for (std::size_t row = 0; row < info_.rows; ++row) {
+            const std::size_t pixel = columns * info_.rows + row;
+            if (frame.ranges_mm[pixel] == 0) continue;
+            const Eigen::Vector3f point = beams_.point(pixel, frame.ranges_mm[pixel]);
+            points->setPointFast(count, point.x(), point.y(), point.z());
+            const float intensity = static_cast<float>(frame.reflectivities[pixel]) / 255.0F;
+            points->setPointColor_fast(count, intensity, 0, 0);  // where MRPT keeps intensities
+            rings[count] = static_cast<std::uint16_t>(row);
+            ++count;
+        }
+        ends.push_back(count);
+    }
+}
+
+void OusterScans::prepare(OusterFrame& frame, std::size_t column) const {
+    OusterPoints& prepared = frame.prepared;
+    prepared.isWrong = prepared.isWrong || column < prepared.columns;
+    if (!prepared.isWrong) extend(frame, column);
+}
+
+Scan OusterScans::scanOf(OusterFrame& frame) {
     const auto times = timesOf(frame);
     if (!times) untimed_.add(1, made_);
     if (times && times->mended > 0) mended_.add(times->mended, made_);
     ++made_;
-    std::size_t count = 0;
-    for (const std::uint32_t range_mm : frame.ranges_mm) count += range_mm > 0;
-    auto points = mrpt::maps::CPointsMapXYZI::Create();
+    if (frame.prepared.isWrong) frame.prepared = {};
+    extend(frame, info_.columns);
+    auto [points, rings, ends, columns, isWrong] = std::exchange(frame.prepared, {});
+    const std::size_t count = ends.empty() ? 0 : ends.back();
     points->resize(count);
-    Scan scan;
-    scan.rings.resize(count);
-    if (times) scan.times_s.resize(count);
-    std::size_t i = 0, received = 0;
-    for (std::size_t column = 0; column < info_.columns; ++column) {
-        if (!frame.received[column]) continue;
-        const auto since_s = static_cast<float>(times ? times->since_s[received++] : 0);
-        for (std::size_t row = 0; row < info_.rows; ++row) {
-            const std::size_t pixel = column * info_.rows + row;
-            if (frame.ranges_mm[pixel] == 0) continue;
-            const Eigen::Vector3f point = beams_.point(pixel, frame.ranges_mm[pixel]);
-            points->setPointFast(i, point.x(), point.y(), point.z());
-            const float intensity = static_cast<float>(frame.reflectivities[pixel]) / 255.0F;
-            points->setPointColor_fast(i, intensity, 0, 0);  // where MRPT keeps intensities
-            scan.rings[i] = static_cast<std::uint16_t>(row);
-            if (times) scan.times_s[i] = since_s;
-            ++i;
-        }
-    }
     points->mark_as_modified();
+    rings.resize(count);
+    Scan scan;
     scan.points = points;
+    scan.rings = std::move(rings);
+    if (times) {
+        scan.times_s.reserve(count);
+        for (std::size_t i = 0; i < ends.size(); ++i)
+            scan.times_s.resize(ends[i], static_cast<float>(times->since_s[i]));
+    }
     scan.stamp_s = stampOf(frame, times);
     scan.time = timeOf(scan.stamp_s);
     return scan;

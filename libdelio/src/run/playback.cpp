@@ -4,6 +4,7 @@
 #include <future>
 #include <utility>
 
+#include "core/spread_threads.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "delio/formats/georeference.h"
@@ -28,6 +29,8 @@ Playback::Reading Playback::read(std::size_t passedOver) {
 
 /** The next scan is read while this one is registered; `read_ms_` is the waiting time. */
 void Playback::processAll(Run& run, const OnScan& onScan) {
+    std::optional<SpreadThreads> spread;
+    if (now_.received_s) spread.emplace();
     const auto policy = settings_.readAhead ? std::launch::async : std::launch::deferred;
     for (std::size_t done = 1; now_.scan; ++done) {
         // Do not read beyond the last scan: a fault there does not matter.

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/spread_threads.h"
 #include "delio/core/error.h"
 
 namespace delio {
@@ -16,6 +17,7 @@ void LiveSlam::finish() {
 }
 
 void LiveSlam::run() {
+    const SpreadThreads spread;
     while (const auto item = feed_.take()) {
         std::string refusal;
         try {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "core/spread_threads.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 #include "odometry/spin_axis.h"
@@ -40,7 +41,10 @@ void LoopCloser::searchNext() noexcept {
     taken_ = std::exchange(waiting_, {});
     using Control = tbb::global_control;
     if (Control::active_value(Control::max_allowed_parallelism) > 1) try {
-            busy_ = std::async(std::launch::async, [this] { searchTaken(); });
+            busy_ = std::async(std::launch::async, [this] {
+                runAnywhere();
+                searchTaken();
+            });
             return;
         } catch (const std::exception&) {
             // The system has no more threads.

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 #include <mrpt/maps/CPointsMapXYZI.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <random>
 
 #include "delio/core/error.h"
@@ -115,6 +117,38 @@ TEST(PacketsOuster, BadColumnsLatePacketsAndHalfTurns) {
     EXPECT_EQ(scans[0].points->size(), 31U * 256);
     EXPECT_EQ(scans[1].points->size(), 31U * 16 - 1);
     EXPECT_EQ(scans[2].points->size(), 16U * 256);
+}
+
+/** The scan of one turn whose packets come in this order. */
+Scan scanOf(const OusterToy& toy, const std::vector<std::size_t>& order) {
+    const auto decoder = decoderOf(toy);
+    for (const std::size_t i : order) {
+        const Bytes packet = toy.packet(1, i);
+        decoder->add(packet.data(), packet.size(), kNow_s);
+    }
+    const auto scans = finish(*decoder);
+    return scans.empty() ? Scan() : scans.front();
+}
+
+TEST(PacketsOuster, PacketsOfATurnMayComeLateOrAgain) {
+    const OusterToy toy;
+    std::vector<std::size_t> inOrder(32);
+    std::iota(inOrder.begin(), inOrder.end(), 0);
+    auto late = inOrder, again = inOrder, backwards = inOrder;
+    std::swap(late[7], late[9]);
+    again.insert(again.begin() + 20, 3);
+    std::reverse(backwards.begin(), backwards.end());
+    const Scan expected = scanOf(toy, inOrder);
+    ASSERT_EQ(expected.points->size(), 16U * 512);
+    for (const auto& order : {late, again, backwards}) {
+        const Scan scan = scanOf(toy, order);
+        ASSERT_EQ(scan.points->size(), expected.points->size());
+        EXPECT_EQ(scan.points->getPointsBufferRef_x(), expected.points->getPointsBufferRef_x());
+        EXPECT_EQ(scan.points->getPointsBufferRef_y(), expected.points->getPointsBufferRef_y());
+        EXPECT_EQ(scan.points->getPointsBufferRef_z(), expected.points->getPointsBufferRef_z());
+        EXPECT_EQ(scan.rings, expected.rings);
+        EXPECT_EQ(scan.times_s, expected.times_s);
+    }
 }
 
 TEST(PacketsOuster, AWholeTurnIsAScanWithItsLastPacket) {
