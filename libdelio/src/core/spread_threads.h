@@ -19,7 +19,7 @@ class SpreadThreads : public tbb::task_scheduler_observer {
     void on_scheduler_exit(bool isWorker) override;
 
  private:
-    std::vector<cpu_set_t> shares_;  //!< of the processors; thread i takes one; empty: they are few
+    std::vector<cpu_set_t> shares_;  //!< of the processors; empty: there is one, or one thread
 };
 
 /** Lets the calling thread run on all processors of the program, wherever the thread that started

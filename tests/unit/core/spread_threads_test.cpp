@@ -46,6 +46,9 @@ TEST(SpreadThreads, NoTwoShareAProcessor) {
     }
     for (const auto& [one, its] : found) {
         EXPECT_GT(CPU_COUNT(&its), 0);
+        if (CPU_COUNT(&all) > 1) {
+            EXPECT_LT(CPU_COUNT(&its), CPU_COUNT(&all)) << one;
+        }
         for (const auto& [another, theirs] : found) {
             if (one == another) continue;
             cpu_set_t both;

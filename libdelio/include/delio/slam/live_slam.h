@@ -15,7 +15,7 @@
 namespace delio {
 /** A Slam in a thread of its own, fed by the threads of sensors' drivers. add() does not wait:
  *  where too many scans wait, whole ones are dropped, evenly in time. Poses come to the listeners
- * of the Slam, in its thread. This and TBB's threads that work for it stay on different
+ * of the Slam, in its thread. That thread and TBB's threads that work for it stay on different
  * processors. */
 class LiveSlam {
  public:
