@@ -27,9 +27,14 @@ bool isStanding(const Step& step, double duration_s) {
            angleOf(moved.linear()) < kSlow_radps * duration_s;
 }
 
+/** The planes constrained the scan. */
+bool isOnPlanes(const PlaneEstimate& estimate) {
+    return estimate.valid && estimate.rotation.observability[2] > 0;
+}
+
 /** The figures of both registrations. */
 std::vector<Named> detailsOf(const PlaneEstimate& estimate, const PointEstimate& placed) {
-    const bool byPlanes = estimate.valid && estimate.rotation.observability[2] > 0;
+    const bool byPlanes = isOnPlanes(estimate);
     const auto& rotation = estimate.rotation;
     return {{"inlier_ratio", placed.inlierRatio},
             {"kernel_m", placed.kernel_m},
@@ -51,6 +56,7 @@ PlaneOdometry::PlaneOdometry(const PlaneOdometryOptions& options)
 
 Step PlaneOdometry::process(const Scan& scan) {
     requireConsistent(scan);
+    retrace();
     findOwn();
     Step step;
     step.times_ms = noTimes();
@@ -112,6 +118,7 @@ Interval PlaneOdometry::arrive(const Scan& scan, const PointCloud& cloud, Step& 
 void PlaneOdometry::finish(PointCloud cloud, Step& step) {
     if (!step.predicted) unregistered_s_ = 0;
     if (!isLost(state_) && place_.isOther()) {
+        retrace();
         takeScale(place_.seen());
         beginMap(cloud, !std::holds_alternative<Degenerate>(state_));
     }
@@ -153,6 +160,7 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
     }
     const auto estimate = registerByPlanes(cloud, placed, predicted, since_s, view, step);
     planeMatches_ = estimate.isByPlanes ? estimate.translation.matches : 0;
+    inlierRatios_.planes = isOnPlanes(estimate) ? estimate.inlierRatio : 0;
 
     pose_ = estimate.valid ? estimate.pose() : wheels_.carried(pose_, predicted);
     {
@@ -349,6 +357,9 @@ void PlaneOdometry::correctStampBefore(const PointCloud& cloud, const Step& step
  *  time, and corrections of earlier ones. `hasFoundMotion`: the motion, which was not known before,
  *  is that of the scan before, too. */
 void PlaneOdometry::extendPath(double stamp_s, bool hasFoundMotion, Step& step) {
+    settleWindow(step);
+    // The first scan stays where it was said to be.
+    if (start_) path_.moveTo({window_.trajectory().at(start_->stamp_s), start_->reported});
     const Eigen::Isometry3d moved = atStamp(motion_, stamp_s);
     const Stamped latest = path_.latest();
     Eigen::Isometry3d before = latest.pose;
@@ -359,7 +370,6 @@ void PlaneOdometry::extendPath(double stamp_s, bool hasFoundMotion, Step& step) 
         const Eigen::Isometry3f toStamp = moved.inverse().cast<float>();
         step.used.points = (toStamp.linear() * step.used.points).colwise() + toStamp.translation();
     }
-    settleWindow(step);
     if (start_) path_.correctSince(start_->stamp_s, window_.trajectory());
     path_.report(step);
     step.carried = wheels_.haveCarried();

@@ -35,6 +35,7 @@ struct PredictionErrors {
 struct InlierRatios {
     double usual = 0;
     double latest = 0;
+    double planes = 0;  //!< of the latest scan on planes that constrained it
 };
 
 /** Scan-to-map odometry, rotation and translation decoupled. A scan is preprocessed, predicted,
@@ -50,7 +51,10 @@ class PlaneOdometry : public Odometry {
 
     Step process(const Scan& scan) override;
     void settle() override;
-    void addImu(const ImuSample& sample) override { gyro_.add(sample); }
+    void addImu(const ImuSample& sample) override {
+        retrace();
+        gyro_.add(sample);
+    }
     std::optional<ImuReport> imuReport() const override { return gyro_.report(); }
     void addOdometry(const OdometrySample& sample) override { wheels_.add(sample); }
     std::optional<OdometryReport> odometryReport() const override { return wheels_.report(); }
@@ -112,6 +116,7 @@ class PlaneOdometry : public Odometry {
     bool extendWindow(const PointCloud& cloud, double since_s, const Placement& found, Step& step);
     Attempt attemptInWindow(const PointCloud& cloud, double since_s, Step& step);
     Attempt attemptAgain(const PointCloud& cloud, double since_s, Attempt first, Step& step);
+    void prepare(FirstScan& first) const;
     void beginMapAgain();
     void settleWindow(const Step& step);
     void endWindow();
@@ -124,7 +129,10 @@ class PlaneOdometry : public Odometry {
 
     // The first scans of a map, once more (pipeline_retrace.cpp).
     void retraceStart(const PointCloud& cloud, const Step& step);
-    void retrace(std::size_t count, std::size_t least);
+    bool extendBeginning(const PointCloud& cloud, const Step& step);
+    std::optional<double> latestOnPlanes() const;
+    void retrace();
+    void registerStartAgain(std::size_t count);
     void turnBack(const PlaneOdometry& ahead, std::size_t first);
     std::optional<ScanTrajectory> stepBack(const MovingScan& scan);
 
@@ -204,8 +212,8 @@ class PlaneOdometry : public Odometry {
     bool isSettled() const { return beginning_.empty() && speeds_; }
     /** The latest scan was tracked, and many planes constrained it. */
     bool haveManyPlanes() const {
-        constexpr std::size_t kMany = 1000;
-        return std::holds_alternative<Tracking>(state_) && planeMatches_ >= kMany && !isShaken();
+        return std::holds_alternative<Tracking>(state_) && planeMatches_ >= kManyPlanes &&
+               !isShaken();
     }
     double kernel_m() const {
         return errors().kernel.width(options().points.least_kernel, options().points.first_kernel);
@@ -220,6 +228,7 @@ class PlaneOdometry : public Odometry {
     PlaceScale place_;
     /** Of the latest scan; 0: the planes did not constrain it along every axis. */
     std::size_t planeMatches_ = 0;
+    static constexpr std::size_t kManyPlanes = 1000;
     Eigen::Matrix3f upright_ = Eigen::Matrix3f::Identity();  //!< turns the sensor's z up
 
     TrackingState state_;
@@ -243,10 +252,13 @@ class PlaneOdometry : public Odometry {
         MovingScan scan;
         std::optional<PlacedPoints> points;
         std::size_t track = 0;  //!< Step::track
+        /** InlierRatios::planes; nothing for the first scan of a map. */
+        std::optional<double> onPlanes = {};
     };
     /** The first scans of the map, and those before it whose motion is not known, oldest first,
      * until they are registered again. */
     std::vector<BeginningScan> beginning_;
+    bool mayRetrace_ = false;  //!< enough scans followed
     /** The latest scans, where the motion changes faster than it can be predicted. */
     ScanWindow window_;
     /** While single scans do not show the speed. None while scans are retraced. */

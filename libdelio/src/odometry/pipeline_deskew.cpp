@@ -21,7 +21,7 @@ std::optional<ScanTrajectory> PlaneOdometry::trajectoryByGyro(const KnownEnds& k
 
 /** The scan that the map began with, which is all there is in it, as seen on this trajectory. */
 void PlaneOdometry::deskewFirst(const PointCloud& first, const ScanTrajectory& trajectory) {
-    for (auto& [scan, points, track] : beginning_)
+    for (auto& [scan, points, track, onPlanes] : beginning_)
         if (scan.time_s == reference_.time_s) scan.trajectory = placed(reference_.pose, trajectory);
     ScanView view = undistorted(first, trajectory);
     thinForMap(view, options().spacing.map_spacing);

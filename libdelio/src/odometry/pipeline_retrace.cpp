@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "odometry/pipeline.h"
 #include "odometry/preprocess.h"
@@ -7,6 +8,9 @@
 
 namespace delio::odometry {
 namespace {
+/** Scans that are registered again, at least, and those that follow them. */
+constexpr std::size_t kFirst = 4, kLater = 4;
+
 bool hasTimes(const PointCloud& cloud) { return !cloud.times_s.empty(); }
 
 /** The scan as a sensor that moves backwards through time takes it. */
@@ -26,48 +30,103 @@ ScanTrajectory reversed(const ScanTrajectory& trajectory) {
 }
 }  // namespace
 
-/** The first scans of a map were registered to few others, and while the motion was not known. As
- *  soon as more scans have followed, the first ones are registered again, to those and backwards in
- *  time, with a motion that is known. Where the sensor turns, this waits until a gyroscope may be
- *  trusted. */
-void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
-    constexpr std::size_t kFirst = 4, kLater = 4, kUntilGyro = 6, kMost = 32;
-    if (beginning_.empty()) return;
+/** Adds the latest scan to beginning_. False where the first ones cannot be registered again. */
+bool PlaneOdometry::extendBeginning(const PointCloud& cloud, const Step& step) {
+    constexpr std::size_t kMost = 40;
     if (beginning_.back().scan.time_s != time_s_) {
         const bool isSkipped = !step.reason.empty() && missesOf(state_) == 0,
                    isMissing = !step.reason.empty() && prediction_.hasMotion();
         if (isSkipped || isMissing || isUrgent_ || left_ ||
             hasTimes(cloud) != hasTimes(beginning_.back().scan.cloud))
-            return beginning_.clear();
+            return false;
         const bool isTracking = std::holds_alternative<Tracking>(state_) && waiting_;
-        beginning_.push_back(
-            {{cloud, time_s_, trajectoryOfLatest()}, isTracking ? waiting_ : std::nullopt, track_});
+        beginning_.push_back({{cloud, time_s_, trajectoryOfLatest()},
+                              isTracking ? waiting_ : std::nullopt,
+                              track_,
+                              inlierRatios_.planes});
     }
     if (start_)
-        for (auto& [scan, points, track] : beginning_)
+        for (auto& [scan, points, track, onPlanes] : beginning_)
             if (track == track_)
                 scan.trajectory = placed(window_.trajectory().at(scan.time_s),
                                          window_.trajectory().seenFrom(scan.time_s));
+    return beginning_.size() < kMost;
+}
+
+/** Inlier ratio on planes: the median of the map's latest scans, once there are enough. */
+std::optional<double> PlaneOdometry::latestOnPlanes() const {
+    constexpr std::size_t kScans = 5;
+    std::vector<double> latest;
+    for (auto scan = beginning_.rbegin(); scan != beginning_.rend() && scan->onPlanes; ++scan)
+        latest.push_back(*scan->onPlanes);
+    if (latest.size() < kScans) return {};
+    latest.resize(kScans);
+    std::sort(latest.begin(), latest.end());
+    return latest[kScans / 2];
+}
+
+/** The first scans of a map were registered to few others, and while the motion was not known. As
+ *  soon as more scans have followed, the first ones are registered again, to those and backwards in
+ *  time, with a motion that is known. Where the sensor turns, this waits until a gyroscope may be
+ *  trusted.
+ *
+ *  A few rings on rough ground lie on those of the scan before at a wrong tilt, too, and the scans
+ *  that follow confirm it. Then planes hold badly for them, and a new map begins. */
+void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
+    constexpr std::size_t kUntilGyro = 6, kDoubtful = 15, kFresh = 32;
+    constexpr double kTilted = 0.7, kGood = 0.85;  // inlier ratio on planes
+    constexpr double kFar_m = 3;
+    if (beginning_.empty()) return;
+    if (!extendBeginning(cloud, step)) return beginning_.clear();
+    const auto onPlanes = latestOnPlanes();
+    const auto isBelow = [&](double least) { return !usesGyro_ && onPlanes && *onPlanes < least; };
+    if (isBelow(kTilted) && !isLost(state_) && beginning_.size() < kFresh) {
+        beginning_.pop_back();
+        prediction_.forget();
+        return beginAnew(cloud);
+    }
     const auto isTracked = [](const BeginningScan& scan) { return scan.points.has_value(); };
     const auto tracked = static_cast<std::size_t>(
         std::find_if_not(beginning_.rbegin(), beginning_.rend(), isTracked) - beginning_.rbegin());
-    if (beginning_.size() >= kMost) return beginning_.clear();
     const std::size_t more = gyro_.hasTurned() ? kUntilGyro : 0;
     if (tracked + 1 < kFirst + kLater + more) return;
-    // Scans that need no de-skewing are registered well from the second one on.
+    // A few planes hold at a wrong tilt while the sensor hardly moves. A map is not linked to the
+    // one before it until then, which must not take long.
     const bool wasTracked = tracked + 1 >= beginning_.size();
-    if (hasTimes(cloud) || !wasTracked) retrace(beginning_.size() - kLater, kFirst);
+    const Eigen::Vector3d first = beginning_.front().scan.trajectory.at(0).translation();
+    const bool isTested = !isBelow(kGood) && (!wasTracked || planeMatches_ >= kManyPlanes ||
+                                              (pose_.translation() - first).norm() > kFar_m);
+    if (!isTested && tracked < kDoubtful && !usesGyro_) return;
+    // Scans that need no de-skewing are registered well from the second one on, if planes hold.
+    const auto isGood = [](const BeginningScan& scan) {
+        return !scan.onPlanes || *scan.onPlanes >= kGood;
+    };
+    const bool wereGood = std::all_of(beginning_.begin(), beginning_.end(), isGood);
+    if (!hasTimes(cloud) && wasTracked && wereGood) return beginning_.clear();
+    mayRetrace_ = true;
+    if (!wasTracked) retrace();  // the drive may end before maps are linked
+}
+
+/** What retraceStart() decided. At a usual start it comes after the pose of the latest scan and
+ *  before anything of the next one: a live sensor's pose does not wait for it. */
+void PlaneOdometry::retrace() {
+    if (!std::exchange(mayRetrace_, false)) return;
+    registerStartAgain(beginning_.size() - kLater);
     beginning_.clear();
 }
 
 /** Registers the first `count` scans of beginning_ again, the last of them first, as far as they
- *  are found; those before move along. Nothing is corrected where fewer than `least` are found. */
-void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
+ *  are found; those before move along. Nothing is corrected where few are found. */
+void PlaneOdometry::registerStartAgain(std::size_t count) {
     auto& past = path_.scans();
-    const std::size_t known = past.size() + 1 - beginning_.size();
-    const bool isInStep =
-        known < past.size() && past[known].time_s == beginning_.front().scan.time_s;
-    if (!isInStep) return;  // stamps were the same
+    const double first_s = beginning_.front().scan.time_s;
+    const auto known = static_cast<std::size_t>(
+        std::find_if(past.begin(), past.end(),
+                     [&](const ReportedPath::Scan& scan) { return scan.time_s == first_s; }) -
+        past.begin());
+    // The latest scan comes in with the report. (Stamps may have been the same.)
+    const std::size_t scans = past.size() - known;
+    if (scans != beginning_.size() && scans + 1 != beginning_.size()) return;
     PlaneOdometry back(place_.given());
     back.turnBack(*this, count);
     std::vector<ScanTrajectory> trajectories(count + 1, beginning_[count].scan.trajectory);
@@ -77,7 +136,7 @@ void PlaneOdometry::retrace(std::size_t count, std::size_t least) {
         if (!found) break;
         trajectories[--first] = *found;
     }
-    if (count - first < least) return;
+    if (count - first < kFirst) return;
     const Anchor held = past[known].at;
     // The trajectory of a scan is known best between its time and that of the scan after it. A
     // stamp of the scan that comes next may lie there, too.

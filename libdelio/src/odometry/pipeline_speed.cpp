@@ -78,7 +78,7 @@ void PlaneOdometry::restartAt(const std::vector<MovingScan>& scans) {
     state_ = Tracking{};
     // The scans before have to be registered again, too: see retraceStart().
     const Eigen::Isometry3d moved = path_.correct(scans);
-    for (auto& [scan, points, track] : beginning_)
+    for (auto& [scan, points, track, onPlanes] : beginning_)
         if (scan.time_s < scans.front().time_s)
             scan.trajectory = placed(moved * scan.trajectory.at(0), scan.trajectory.seenFrom(0));
 }

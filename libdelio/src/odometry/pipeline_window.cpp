@@ -17,18 +17,19 @@ bool PlaneOdometry::extendWindow(const PointCloud& cloud, double since_s, const 
         if (!window_.add(cloud, time_s_)) endWindow();
         return !window_.isEmpty();
     }
-    if (const auto* first = std::get_if<FirstScan>(&state_); first && first->skewed) {
+    if (auto* first = std::get_if<FirstScan>(&state_); first && first->skewed) {
         const auto& at = reference_.pose;
         Twist guess;
         if (found.estimate.valid) guess = Twist::of(at.inverse() * found.estimate.pose, since_s);
         if (found.isLikely && guess.velocity.norm() > kFastestHand_mps) return false;
-        window_.begin(*first->skewed, reference_.time_s, ScanTrajectory({0, 1}, {at, at}));
+        prepare(*first);
+        window_.begin(*std::exchange(first->timed, {}), ScanTrajectory({0, 1}, {at, at}));
         if (window_.addSecond(cloud, time_s_, guess, found.isLikely))
             start_ = Start{path_.latest().sinceStart_s(), path_.anchor().reported};
         else
             window_.clear();
     } else if (latest_ && prediction_.predict(1).translation().norm() < kFastestHand_mps) {
-        window_.begin(latest_->cloud, latest_->time_s, latest_->trajectory);
+        window_.begin(timedScanOf(latest_->cloud, latest_->time_s), latest_->trajectory);
         if (!window_.add(cloud, time_s_)) endWindow();
     }
     return !window_.isEmpty();
@@ -103,9 +104,16 @@ void PlaneOdometry::findOwn() {
     if (std::exchange(mayShowOwn_, false)) own_.add(latest_->cloud.points, upright_, pose_);
 }
 
+/** For a window that may begin with it. */
+void PlaneOdometry::prepare(FirstScan& first) const {
+    if (first.skewed && !first.timed) first.timed = timedScanOf(*first.skewed, reference_.time_s);
+}
+
 void PlaneOdometry::settle() {
+    retrace();
     insertWaiting();
     if (!isUrgent_) map_.prepare();
+    if (auto* first = std::get_if<FirstScan>(&state_)) prepare(*first);
     findOwn();
 }
 }  // namespace delio::odometry

@@ -188,18 +188,25 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
 }
 
 namespace {
-std::vector<PointMap::Nearest> nearestAt(const PointMap& map, const Eigen::Matrix3Xd& points,
+std::vector<PointMap::Nearest> nearestAt(const PointMap& map,
+                                         const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                          const Eigen::Isometry3d& pose, double distance) {
     return map.nearestOf((pose.linear() * points).colwise() + pose.translation(), distance);
 }
 }  // namespace
 
 double shareAt(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
-               double distance) {
+               double distance, double least) {
+    constexpr Eigen::Index kTogether = 64;
+    const Eigen::Index all = points.cols();
+    const double needed = least * static_cast<double>(all);
     Eigen::Index near = 0;
-    for (const auto& nearest : nearestAt(map, points, pose, distance)) near += nearest.any;
-    return static_cast<double>(near) /
-           static_cast<double>(std::max<Eigen::Index>(points.cols(), 1));
+    for (Eigen::Index i = 0; i < all; i += kTogether) {
+        if (static_cast<double>(near + all - i) < needed) return 0;
+        const auto part = points.middleCols(i, std::min(kTogether, all - i));
+        for (const auto& nearest : nearestAt(map, part, pose, distance)) near += nearest.any;
+    }
+    return static_cast<double>(near) / static_cast<double>(std::max<Eigen::Index>(all, 1));
 }
 
 Eigen::Matrix3Xd pointsOff(const PointMap& map, const Eigen::Matrix3Xd& points,

@@ -33,9 +33,10 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
  *  range, about its axes. */
 Vector6 stepBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
 
-/** Share of the points that lie within `distance` (metres) of one of the map's, 0 to 1. */
+/** Share of the points that lie within `distance` (metres) of one of the map's, 0 to 1. A share
+ *  below `least` may be returned as 0, which takes less time. */
 double shareAt(const PointMap& map, const Eigen::Matrix3Xd& points, const Eigen::Isometry3d& pose,
-               double distance);
+               double distance, double least = 0);
 
 /** The points that do not. */
 Eigen::Matrix3Xd pointsOff(const PointMap& map, const Eigen::Matrix3Xd& points,

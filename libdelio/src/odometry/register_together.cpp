@@ -328,7 +328,7 @@ double unevennessOf(const ScanTrajectory& trajectory) {
 
 TimedScan timedScanOf(const PointCloud& cloud, double time_s) {
     constexpr double kSpacing_m = 0.5, kSurfaceSpacing_m = 0.25;
-    constexpr Index kMostPoints = 1000, kMostSurfaces = 4000;
+    constexpr Index kMostPoints = 1000, kMostSurfaces = 4000, kMostVoxels = 8000;
     TimedScan scan;
     scan.time_s = time_s;
     const auto [least, most] = rangeOf(cloud.times_s);
@@ -340,7 +340,7 @@ TimedScan timedScanOf(const PointCloud& cloud, double time_s) {
 
     NormalsOptions options;
     options.voxel_size = kSurfaceSpacing_m;
-    const auto normals = paper::estimateNormals(cloud.points, options);
+    const auto normals = paper::estimateNormals(cloud.points, options, kMostVoxels);
     const Eigen::Matrix3Xf surfaces = sample(normals.points, kMostSurfaces);
     scan.surfaces.points = surfaces.cast<double>();
     scan.normals = sample(normals.directions, kMostSurfaces).cast<double>();
@@ -358,12 +358,12 @@ Together registerTogether(const std::deque<TimedScan>& scans, const ScanTrajecto
     return registered(Registration(scans, start, false), kernel);
 }
 
-void ScanWindow::begin(const PointCloud& cloud, double time_s, const ScanTrajectory& trajectory) {
+void ScanWindow::begin(TimedScan scan, const ScanTrajectory& trajectory) {
     scans_.clear();
     inlierRatio_ = 0;
-    scans_.push_back(timedScanOf(cloud, time_s));
     std::vector<double> times_s = trajectory.times_s();
-    for (auto& time : times_s) time += time_s;
+    for (auto& time : times_s) time += scan.time_s;
+    scans_.push_back(std::move(scan));
     trajectory_ =
         resampled({times_s, trajectory.poses()}, scans_.back().first_s, scans_.back().last_s);
 }

@@ -55,7 +55,7 @@ class ScanWindow {
     void clear() { scans_.clear(); }
     /** The window holds this scan alone, which was taken on `trajectory` (sensor to map, times from
      *  the scan's). */
-    void begin(const PointCloud& cloud, double time_s, const ScanTrajectory& trajectory);
+    void begin(TimedScan scan, const ScanTrajectory& trajectory);
     /** Registers a scan together with those before it, from where their motion leads, and drops the
      *  oldest of more than four. False where far fewer points fit than before. */
     bool add(const PointCloud& cloud, double time_s);

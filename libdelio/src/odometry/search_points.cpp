@@ -101,6 +101,9 @@ namespace {
 constexpr Eigen::Index kEnough = 1000;
 /** Of sparse scans all are needed: with half of a VLP-16's points a road was taken for a tunnel. */
 constexpr Eigen::Index kDense = 2000;
+/** So many show which starts are worth a closer look. */
+constexpr Eigen::Index kFew = 250;
+constexpr std::size_t kLikely = 60;
 /** So many starts are worth registering. */
 constexpr std::size_t kBest = 8;
 
@@ -125,7 +128,7 @@ Starts bestOf(const Starts& starts, std::size_t most, const PointMap& map,
               const Eigen::Matrix3Xd& points, double distance, double least) {
     std::vector<std::pair<double, std::size_t>> shares(starts.size());
     tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
-        shares[i] = {shareAt(map, points, starts[i], distance), i};
+        shares[i] = {shareAt(map, points, starts[i], distance, least), i};
     });
     std::stable_sort(shares.begin(), shares.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -140,19 +143,19 @@ Starts bestOf(const Starts& starts, std::size_t most, const PointMap& map,
 /** On a level disc about `guess`; of many those that seem best in a grid. */
 Starts discAbout(const Eigen::Isometry3d& guess, double reach, const Eigen::Matrix3f& upright,
                  double step, const PointMap& map, const Eigen::Matrix3Xd& points) {
-    constexpr std::size_t kFew = 50;
+    constexpr std::size_t kMostPlaces = 50;
     // (Times between scans are never quite even: half a step is not worth a ring of starts.)
     const auto steps = static_cast<int>(std::lround(reach / step));
     std::vector<Eigen::Array2i> places;
     for (int x = -steps; x <= steps; ++x)
         for (int y = -steps; y <= steps; ++y)
             if (x * x + y * y <= steps * steps) places.emplace_back(x, y);
-    if (places.size() > kFew) {
+    if (places.size() > kMostPlaces) {
         const auto counts = countsFrom({guess, upright, step, steps}, map, points);
         std::stable_sort(places.begin(), places.end(), [&](const auto& a, const auto& b) {
             return counts(a.x() + steps, a.y() + steps) > counts(b.x() + steps, b.y() + steps);
         });
-        places.resize(kFew);
+        places.resize(kMostPlaces);
     }
     Starts starts;
     for (const auto& place : places) {
@@ -246,8 +249,9 @@ PointEstimate searchPoints(const PointMap& map, const Eigen::Matrix3Xd& points,
     const Eigen::Matrix3Xd part = sample(off, kEnough);
     Starts judged;
     // No start leads where more of them lie on the map than come near it from there.
-    const auto starts = bestOf(startsAbout(guess, reach, upright, start, map, part), kBest, map,
-                               part, start / 2, least);
+    const auto likely = bestOf(startsAbout(guess, reach, upright, start, map, part), kLikely, map,
+                               sample(part, kFew), start / 2, 0),
+               starts = bestOf(likely, kBest, map, part, start / 2, least);
     for (const auto& found : placesFrom(map, part, starts, start, options)) {
         if (!isWithin(found) || found.inlierRatio <= least || isAmong(judged, found.pose, width))
             continue;
@@ -285,8 +289,7 @@ PointEstimate searchTurns(const PointMap& map, const Eigen::Matrix3Xd& points,
                           const Eigen::Isometry3d& guess, double reach_rad, double enough,
                           const PointRegistrationOptions& options) {
     constexpr double kStep_rad = 0.11;
-    constexpr Eigen::Index kFew = 250, kFewest = 60;
-    constexpr std::size_t kLikely = 60;
+    constexpr Eigen::Index kFewest = 60;
     constexpr std::ptrdiff_t kTogether = 2;  // for any number of threads
     const double start = options.first_kernel / 2;
     const auto likely = bestOf(turnsAbout(guess, reach_rad, kStep_rad), kLikely, map,

@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "odometry/preprocess.h"
+#include "odometry/register_together.h"
 
 namespace delio::odometry {
 /** There is no map: no usable scan yet. */
@@ -15,6 +16,8 @@ struct FirstScan {
     /** The scan as it came, where its points have times. It is de-skewed as soon as the second scan
      *  shows the motion. */
     std::optional<PointCloud> skewed;
+    /** The same, prepared while the second one is awaited. */
+    std::optional<TimedScan> timed;
     bool motionIsKnown = false;  //!< the map replaces another one, through which the scans led
     unsigned misses = 0;         //!< scans in a row that were not found in it
 };

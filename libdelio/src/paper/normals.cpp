@@ -57,22 +57,27 @@ Neighbourhood examine(const Eigen::Matrix3Xf& points, const Eigen::Vector3f& cen
 }
 }  // namespace
 
-SurfaceNormals estimateNormals(const Eigen::Matrix3Xf& points, const NormalsOptions& options) {
+SurfaceNormals estimateNormals(const Eigen::Matrix3Xf& points, const NormalsOptions& options,
+                               Eigen::Index most) {
     const Eigen::Matrix3Xf thinned = voxelCentroids(points, options.voxel_size);
     const KdTree tree(thinned);
-    std::vector<Neighbourhood> found(static_cast<std::size_t>(thinned.cols()));
+    using Numbers = Eigen::RowVectorX<Eigen::Index>;
+    const Numbers all = Numbers::LinSpaced(thinned.cols(), 0, thinned.cols() - 1),
+                  voxels = sample(all, most);
+    std::vector<Neighbourhood> found(static_cast<std::size_t>(voxels.cols()));
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, found.size(), 256),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                           for (std::size_t i = range.begin(); i != range.end(); ++i)
-                              found[i] = examine(thinned, thinned.col(static_cast<Eigen::Index>(i)),
+                              found[i] = examine(thinned,
+                                                 thinned.col(voxels[static_cast<Eigen::Index>(i)]),
                                                  tree, options);
                       });
     SurfaceNormals result;
     result.neighbourhoods = found.size();
-    result.directions.resize(3, thinned.cols());
-    result.points.resize(3, thinned.cols());
-    result.planarity.resize(thinned.cols());
-    result.voxels.resize(thinned.cols());
+    result.directions.resize(3, voxels.cols());
+    result.points.resize(3, voxels.cols());
+    result.planarity.resize(voxels.cols());
+    result.voxels.resize(voxels.cols());
     Eigen::Index kept = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
         const auto& neighbourhood = found[i];
@@ -81,8 +86,8 @@ SurfaceNormals estimateNormals(const Eigen::Matrix3Xf& points, const NormalsOpti
         if (neighbourhood.shape != Shape::kPlane) continue;
         result.directions.col(kept) = neighbourhood.normal;
         result.planarity[kept] = neighbourhood.planarity;
-        result.voxels[kept] = static_cast<Eigen::Index>(i);
-        result.points.col(kept) = thinned.col(static_cast<Eigen::Index>(i));
+        result.voxels[kept] = voxels[static_cast<Eigen::Index>(i)];
+        result.points.col(kept) = thinned.col(result.voxels[kept]);
         ++kept;
     }
     result.directions.conservativeResize(3, kept);

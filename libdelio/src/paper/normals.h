@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "delio/core/odometry_options.h"
@@ -19,8 +20,10 @@ struct SurfaceNormals {
 };
 
 /** Normals of the surfaces that `points` (metres, the sensor at the origin) were measured on: the
- *  eigenvector of the smallest eigenvalue of the k nearest neighbours' covariance, equation (1). */
-SurfaceNormals estimateNormals(const Eigen::Matrix3Xf& points, const NormalsOptions& options);
+ *  eigenvector of the smallest eigenvalue of the k nearest neighbours' covariance, equation (1).
+ *  One normal a voxel; of at most `most` voxels, evenly over their order. */
+SurfaceNormals estimateNormals(const Eigen::Matrix3Xf& points, const NormalsOptions& options,
+                               Eigen::Index most = std::numeric_limits<Eigen::Index>::max());
 
 /** Each normal becomes the mean of those found nearest in space and its own, weighted by planarity
  *  and by Gaussians of their distance in space and of their angle to it: noise is averaged within a

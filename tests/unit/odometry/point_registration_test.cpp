@@ -81,7 +81,14 @@ TEST(PointRegistration, PointsThatAreOffAreTold) {
     const auto off = odometry::pointsOff(map, points, Eigen::Isometry3d::Identity(), 0.5);
     ASSERT_EQ(off.cols(), 1);
     EXPECT_EQ(off(0, 0), 20);
-    EXPECT_NEAR(odometry::shareAt(map, points, Eigen::Isometry3d::Identity(), 0.5), 2.0 / 3, 1e-12);
+    const auto shareAt = [&](const Eigen::Matrix3Xd& of, double least) {
+        return odometry::shareAt(map, of, Eigen::Isometry3d::Identity(), 0.5, least);
+    };
+    EXPECT_NEAR(shareAt(points, 0), 2.0 / 3, 1e-12);
+    // A share that cannot be reached any more is not counted to the end.
+    const Eigen::Matrix3Xd many = points.replicate(1, 100);
+    EXPECT_EQ(shareAt(many, 0.66), shareAt(points, 0));
+    EXPECT_EQ(shareAt(many, 0.9), 0);
 }
 
 using odometry::Pairing;

@@ -84,7 +84,7 @@ TEST(RegisterTogether, WithoutPointsTheTrajectoryStays) {
 
 TEST(ScanWindow, FollowsASwingScanByScan) {
     ScanWindow window;
-    window.begin(scanAt(0), 0, Twist{});
+    window.begin(timedScanOf(scanAt(0), 0), Twist{});
     ASSERT_TRUE(window.addSecond(scanAt(0.1), 0.1, Twist{}, false));
     for (const double time_s : {0.2, 0.3, 0.4, 0.5})
         ASSERT_TRUE(window.add(scanAt(time_s), time_s));
@@ -101,13 +101,13 @@ TEST(ScanWindow, AConstantMotionNeedsNoWindow) {
     const Twist drive{{3, 0, 0}, {0, 0, 0.2}};
     const auto pose = [&](double time_s) { return drive.after(time_s); };
     ScanWindow window;
-    window.begin(scanAt(0, pose), 0, Twist{});
+    window.begin(timedScanOf(scanAt(0, pose), 0), Twist{});
     EXPECT_FALSE(window.addSecond(scanAt(0.1, pose), 0.1, drive, true));
 }
 
 TEST(ScanWindow, MovesAsAWhole) {
     ScanWindow window;
-    window.begin(scanAt(0), 0, Twist{});
+    window.begin(timedScanOf(scanAt(0), 0), Twist{});
     window.add(scanAt(0.1), 0.1);
     const auto before = window.trajectory();
     const Isometry3d pose = test::poseAt(3, 2, 1, 0.5);

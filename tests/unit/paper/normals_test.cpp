@@ -127,6 +127,18 @@ TEST(Normals, FourPointsAreTooFew) {
     EXPECT_GT(five.directions.row(2).minCoeff(), 0.999F);
 }
 
+TEST(Normals, OfAPartOfTheVoxelsAreThoseOfAll) {
+    const auto points = square({0, 0, -6}, {0, 0, 1}, 0.01);
+    const auto all = estimateNormals(points, {}), part = estimateNormals(points, {}, 50);
+    EXPECT_LE(part.neighbourhoods, 50U);
+    EXPECT_GT(part.directions.cols(), 25);
+    for (Eigen::Index i = 0, k = 0; i < part.directions.cols(); ++i) {
+        while (all.voxels[k] != part.voxels[i]) ASSERT_LT(++k, all.voxels.cols());
+        EXPECT_EQ(part.directions.col(i), all.directions.col(k));
+        EXPECT_EQ(part.points.col(i), all.points.col(k));
+    }
+}
+
 TEST(Normals, NeighboursBeyondTheRadiusAreNotUsed) {
     NormalsOptions options;
     options.max_radius = 0.55;

@@ -20,8 +20,9 @@ class Odometry {
      *  surfaces) gives the prediction, and says so. */
     virtual Step process(const Scan& scan) = 0;
 
-    /** Does what the next process() would do first. Not needed: it shortens the time from the next
-     *  scan to its pose, for a program that waits for a live sensor. The results are the same. */
+    /** Does what the next process() would do first: the latest scan enters the map, and the first
+     *  scans of a drive are registered again. Not needed: it shortens the time from the next scan
+     *  to its pose, for a program that waits for a live sensor. The results are the same. */
     virtual void settle() {}
 
     /** Takes a sample of the drive's IMU. Samples are used by their stamps: those up to 0.1 s after
