@@ -1,4 +1,4 @@
-// A sensor in a swinging hand: it turns by up to 25 deg within a scan, and the scans show it.
+// Starts: a sensor in a swinging hand, which turns by up to 25 deg within a scan, and rough ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>

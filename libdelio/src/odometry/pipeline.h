@@ -258,7 +258,7 @@ class PlaneOdometry : public Odometry {
     /** The first scans of the map, and those before it whose motion is not known, oldest first,
      * until they are registered again. */
     std::vector<BeginningScan> beginning_;
-    bool mayRetrace_ = false;  //!< enough scans followed
+    bool mayRetrace_ = false;  //!< retrace() registers the first of them again
     /** The latest scans, where the motion changes faster than it can be predicted. */
     ScanWindow window_;
     /** While single scans do not show the speed. None while scans are retraced. */

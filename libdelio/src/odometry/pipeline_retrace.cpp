@@ -53,7 +53,7 @@ bool PlaneOdometry::extendBeginning(const PointCloud& cloud, const Step& step) {
     return beginning_.size() < kMost;
 }
 
-/** Inlier ratio on planes: the median of the map's latest scans, once there are enough. */
+/** Inlier ratio on planes: the median of the map's latest five scans; nothing before these. */
 std::optional<double> PlaneOdometry::latestOnPlanes() const {
     constexpr std::size_t kScans = 5;
     std::vector<double> latest;
@@ -90,8 +90,8 @@ void PlaneOdometry::retraceStart(const PointCloud& cloud, const Step& step) {
         std::find_if_not(beginning_.rbegin(), beginning_.rend(), isTracked) - beginning_.rbegin());
     const std::size_t more = gyro_.hasTurned() ? kUntilGyro : 0;
     if (tracked + 1 < kFirst + kLater + more) return;
-    // A few planes hold at a wrong tilt while the sensor hardly moves. A map is not linked to the
-    // one before it until then, which must not take long.
+    // While the sensor hardly moves, few planes hold at a wrong tilt, too. A later map does not
+    // wait for the motion: it has to be linked to the one before it.
     const bool wasTracked = tracked + 1 >= beginning_.size();
     const Eigen::Vector3d first = beginning_.front().scan.trajectory.at(0).translation();
     const bool isTested = !isBelow(kGood) && (!wasTracked || planeMatches_ >= kManyPlanes ||
