@@ -1,6 +1,9 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <nanoflann.hpp>
+#include <utility>
+#include <vector>
 
 namespace delio {
 /** nanoflann's k-d tree over the columns of a matrix, which must outlive it. Distances are squared.
@@ -22,6 +25,18 @@ class KdTree {
         return columns_.points.cols() == 0
                    ? 0
                    : tree_.knnSearch(query.data(), count, indices, squaredDistances);
+    }
+
+    /** Finds the nearest column that is nearer than the root of `squared`, and sets both to it.
+     *  False where none is so near. */
+    bool nearestWithin(const Eigen::Vector3f& query, std::uint32_t& index, float& squared) const {
+        if (columns_.points.cols() == 0) return false;
+        const float most = squared;
+        nanoflann::KNNResultSet<float, std::uint32_t> nearest(1);
+        nearest.init(&index, &squared);
+        squared = most;
+        tree_.findNeighbors(nearest, query.data(), nanoflann::SearchParams());
+        return nearest.size() > 0;
     }
 
     /** Columns nearer than the root of `squaredRadius`, in the tree's order. */

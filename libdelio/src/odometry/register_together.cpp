@@ -1,7 +1,6 @@
 #include "odometry/register_together.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -13,6 +12,7 @@
 #include "core/kd_tree.h"
 #include "core/voxel_grid.h"
 #include "delio/core/geometry.h"
+#include "odometry/tuning.h"
 #include "paper/normals.h"
 
 namespace delio::odometry {
@@ -76,6 +76,7 @@ struct ScanPair {
     const TimedScan* to = nullptr;
     std::size_t toNumber = 0;
     std::vector<Pair> pairs;
+    std::vector<Index> nearest = {};  //!< of each point the surface in the last matching; or -1
 };
 
 /** Sums of the normal equations. */
@@ -97,48 +98,84 @@ Eigen::Matrix3Xf placed(const TimedPoints& points, const PoseTable& poses) {
     return result;
 }
 
+PoseTable tableOf(const ScanTrajectory& trajectory) {
+    return {trajectory, trajectory.times_s().front(), trajectory.times_s().back()};
+}
+
+/** The surfaces of a scan in the map. */
+struct PlacedSurfaces {
+    Eigen::Matrix3Xf points;
+    std::unique_ptr<KdTree> tree;  //!< of these
+};
+
+/** Of the first `count` scans. */
+std::vector<PlacedSurfaces> surfacesOf(const std::deque<TimedScan>& scans, std::size_t count,
+                                       const PoseTable& poses) {
+    std::vector<PlacedSurfaces> surfaces(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        surfaces[i].points = placed(scans[i].surfaces, poses);
+        surfaces[i].tree = std::make_unique<KdTree>(surfaces[i].points);
+    });
+    return surfaces;
+}
+
 /** Registration of some scans along one trajectory. */
 class Registration {
  public:
-    /** Of all scans to each other; or of the latest one to the others, which keep their poses. */
-    Registration(const std::deque<TimedScan>& scans, const ScanTrajectory& start, bool latestAlone)
-        : scans_(scans), knots_(start), surfaces_(scans.size()), trees_(scans.size()) {
-        const std::size_t last = scans.size() - 1;
+    /** Of all scans to each other. */
+    Registration(const std::deque<TimedScan>& scans, const ScanTrajectory& start)
+        : scans_(scans), knots_(start) {
         for (std::size_t to = 0; to < scans.size(); ++to)
             for (std::size_t from = 0; from < scans.size(); ++from)
-                if (from != to && (!latestAlone || from == last))
-                    pairs_.push_back({&scans[from], &scans[to], to, {}});
-        if (latestAlone) firstFree_ = knots_.between(scans[last - 1].last_s).knot + 2;
+                if (from != to) pairs_.push_back({&scans[from], &scans[to], to, {}});
+    }
+    /** Of the latest scan to the others, which keep their poses and have these surfaces. */
+    Registration(const std::deque<TimedScan>& scans, const ScanTrajectory& start,
+                 const std::vector<PlacedSurfaces>& others)
+        : scans_(scans), knots_(start), others_(&others) {
+        const std::size_t last = scans.size() - 1;
+        for (std::size_t to = 0; to < last; ++to)
+            pairs_.push_back({&scans[last], &scans[to], to, {}});
+        firstFree_ = knots_.between(scans[last - 1].last_s).knot + 2;
     }
 
     const ScanTrajectory& trajectory() const { return knots_.trajectory(); }
 
     /** Finds the nearest surfaces. */
     void match(double reach) {
-        const PoseTable poses = table();
-        tbb::parallel_for(std::size_t{0}, scans_.size(), [&](std::size_t i) {
-            const bool isFixed = firstFree_ > 0 && trees_[i];
-            if (isFixed || (firstFree_ > 0 && i + 1 == scans_.size())) return;
-            surfaces_[i] = placed(scans_[i].surfaces, poses);
-            trees_[i] = std::make_unique<KdTree>(surfaces_[i]);
-        });
+        const PoseTable poses = tableOf(trajectory());
+        std::vector<PlacedSurfaces> all;
+        if (!others_) all = surfacesOf(scans_, scans_.size(), poses);
+        const auto& placedSurfaces = others_ ? *others_ : all;
         tbb::parallel_for(std::size_t{0}, pairs_.size(), [&](std::size_t k) {
             auto& pair = pairs_[k];
             pair.pairs.clear();
             const Eigen::Matrix3Xf points = placed(pair.from->points, poses);
+            const PlacedSurfaces& surfaces = placedSurfaces[pair.toNumber];
+            pair.nearest.resize(numberOf(points.cols()), -1);
             for (Index i = 0; i < points.cols(); ++i) {
-                std::uint32_t nearest = 0;
-                float squared = 0;
-                if (trees_[pair.toNumber]->nearest(points.col(i), 1, &nearest, &squared) == 1 &&
-                    squared < reach * reach)
-                    pair.pairs.push_back({i, static_cast<Index>(nearest)});
+                // The surface of the last matching is a bound: few are nearer.
+                Index& nearest = pair.nearest[numberOf(i)];
+                float squared = static_cast<float>(reach * reach);
+                if (nearest >= 0) {
+                    const float before =
+                        (points.col(i) - surfaces.points.col(nearest)).squaredNorm();
+                    if (before < squared)
+                        squared = before;
+                    else
+                        nearest = -1;
+                }
+                std::uint32_t found = 0;
+                if (surfaces.tree->nearestWithin(points.col(i), found, squared))
+                    nearest = Index{found};
+                if (nearest >= 0) pair.pairs.push_back({i, nearest});
             }
         });
     }
 
     /** One Gauss-Newton step; its largest part, metres or rad. */
     double improve(double kernel) {
-        const PoseTable poses = table();
+        const PoseTable poses = tableOf(trajectory());
         std::vector<Sums> parts(pairs_.size(), Sums(unknowns()));
         tbb::parallel_for(std::size_t{0}, pairs_.size(),
                           [&](std::size_t k) { add(pairs_[k], poses, kernel, parts[k]); });
@@ -150,15 +187,15 @@ class Registration {
             sums.cost += part.cost;
         }
         if (sums.weight == 0) return 0;
-        constexpr double kLeast_m2 = 1e-4, kIndependentRatio = 0.16;  // neighbours err together
-        const double factor = kIndependentRatio / std::max(sums.cost / sums.weight, kLeast_m2);
+        constexpr double kLeast_m2 = 1e-4;
+        const double factor =
+            plane_tuning::kIndependentRatio / std::max(sums.cost / sums.weight, kLeast_m2);
         sums.information *= factor;
         sums.gradient *= factor;
         addSmoothness(sums);
         // Along an axis that nothing constrains, the trajectory stays as it is.
         sums.information.diagonal().array() += 1;
-        // The first pose stays, or all those of the scans before the latest one.
-        const Index kept = 6 * std::max<Index>(firstFree_, 1), free = unknowns() - kept;
+        const Index kept = 6 * firstUnknown(), free = unknowns() - kept;
         Eigen::VectorXd step = Eigen::VectorXd::Zero(unknowns());
         step.tail(free) =
             -sums.information.bottomRightCorner(free, free).ldlt().solve(sums.gradient.tail(free));
@@ -170,7 +207,7 @@ class Registration {
     double inlierRatio() {
         constexpr double kFits_m = 0.1, kReach_m = 0.6;
         match(kReach_m);
-        const PoseTable poses = table();
+        const PoseTable poses = tableOf(trajectory());
         std::size_t fitting = 0, all = 0;
         for (const auto& pair : pairs_) {
             if (pair.from != &scans_.back() && pair.to != &scans_.back()) continue;
@@ -189,11 +226,9 @@ class Registration {
         Matrix3d fromPoint, fromSurface;  //!< rotations: the map's frame to the sensor's
     };
 
-    PoseTable table() const {
-        return {knots_.trajectory(), knots_.trajectory().times_s().front(),
-                knots_.trajectory().times_s().back()};
-    }
     Index unknowns() const { return 6 * knots_.size(); }
+    /** The first pose stays, or all those of the scans before the latest one. */
+    Index firstUnknown() const { return std::max<Index>(firstFree_, 1); }
 
     static Residual residualOf(const ScanPair& pair, const Pair& one, const PoseTable& poses) {
         const Isometry3d point = poses.at(pair.from->points.times_s[numberOf(one.point)]),
@@ -208,9 +243,11 @@ class Registration {
         return residual;
     }
 
-    /** Geman-McClure's weights. Point and surface move in opposite directions. */
+    /** Geman-McClure's weights. Point and surface move in opposite directions. Only blocks on and
+     *  below the diagonal are summed, of the poses that are sought. */
     void add(const ScanPair& pair, const PoseTable& poses, double kernel, Sums& sums) const {
         constexpr double kLeastWeight = 0.01;
+        const Index kept = 6 * firstUnknown();
         for (const auto& one : pair.pairs) {
             const Residual residual = residualOf(pair, one, poses);
             const double ratio = residual.distance / kernel,
@@ -231,10 +268,13 @@ class Registration {
                  {6 * on.knot, (1 - on.share) * ofSurface},
                  {6 * on.knot + 6, on.share * ofSurface}}};
             for (const auto& [i, row] : rows) {
-                sums.gradient.segment<6>(i) += weight * residual.distance * row;
+                if (i < kept) continue;
+                const Vector6 weighted = weight * row;
+                sums.gradient.segment<6>(i) += residual.distance * weighted;
                 for (const auto& [j, other] : rows)
-                    sums.information.block<6, 6>(i, j).noalias() +=
-                        weight * row * other.transpose();
+                    if (j >= kept && j <= i)
+                        sums.information.block<6, 6>(i, j).noalias() +=
+                            weighted * other.transpose();
             }
             sums.weight += weight;
             sums.cost += weight * residual.distance * residual.distance;
@@ -271,8 +311,7 @@ class Registration {
     std::vector<ScanPair> pairs_;
     Knots knots_;
     Index firstFree_ = 0;  //!< knot; 0: all but the first
-    std::vector<Eigen::Matrix3Xf> surfaces_;
-    std::vector<std::unique_ptr<KdTree>> trees_;
+    const std::vector<PlacedSurfaces>* others_ = nullptr;
 };
 
 /** See registerTogether(). */
@@ -299,7 +338,7 @@ Together registered(Registration registration, double kernel) {
 /** At equal intervals from the first to the last point of the scans. */
 std::vector<double> knotTimes(double first_s, double last_s) {
     std::vector<double> times_s;
-    for (std::size_t k = 0; k < 2 || times_s.back() < last_s; ++k)
+    for (std::size_t k = 0; k < 3 || times_s.back() < last_s; ++k)
         times_s.push_back(first_s + static_cast<double>(k) * kInterval_s);
     return times_s;
 }
@@ -355,7 +394,7 @@ TimedScan timedScanOf(const PointCloud& cloud, double time_s) {
 
 Together registerTogether(const std::deque<TimedScan>& scans, const ScanTrajectory& start,
                           double kernel) {
-    return registered(Registration(scans, start, false), kernel);
+    return registered(Registration(scans, start), kernel);
 }
 
 void ScanWindow::begin(TimedScan scan, const ScanTrajectory& trajectory) {
@@ -369,19 +408,25 @@ void ScanWindow::begin(TimedScan scan, const ScanTrajectory& trajectory) {
 }
 
 namespace {
-/** The better of `best` and register(rate) from many rates of turn (rad/s). */
-template <class Register>
-Together bestOf(Together best, const Register& registerFrom) {
-    constexpr std::size_t kAll = 27;  // three about each axis
+/** Three about each axis, rad/s. */
+std::vector<Vector3d> ratesOfTurn() {
+    constexpr std::size_t kAll = 27;
     constexpr double kRate_radps = 1.5;
-    std::vector<Together> found(kAll);
     const auto step = [](std::size_t number) { return static_cast<double>(number % 3) - 1; };
-    tbb::parallel_for(std::size_t{0}, kAll, [&](std::size_t i) {
-        found[i] = registerFrom(kRate_radps * Vector3d(step(i), step(i / 3), step(i / 9)));
+    std::vector<Vector3d> rates;
+    for (std::size_t i = 0; i < kAll; ++i)
+        rates.push_back(kRate_radps * Vector3d(step(i), step(i / 3), step(i / 9)));
+    return rates;
+}
+
+/** Of the registrations number 0 to `count` - 1, in parallel: the one of the most inliers. */
+template <class Register>
+Together bestOf(std::size_t count, const Register& registration) {
+    std::vector<Together> found(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { found[i] = registration(i); });
+    return *std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
+        return a.inlierRatio < b.inlierRatio;
     });
-    for (auto& one : found)
-        if (one.inlierRatio > best.inlierRatio) best = std::move(one);
-    return best;
 }
 
 /** `trajectory`, of some poses at least, until `last_s` or longer. Its rate of turn is that of the
@@ -412,10 +457,13 @@ ScanTrajectory extended(const ScanTrajectory& trajectory, double last_s, const T
 
 }  // namespace
 
-Together ScanWindow::registerLatest(const TurningOn& turning) const {
+Together ScanWindow::registerLatest(const std::vector<TurningOn>& turnings) const {
     constexpr double kKernel_m = 1;
-    const auto start = extended(known_, scans_.back().last_s, turning);
-    return registered(Registration(scans_, start, true), kKernel_m);
+    const auto others = surfacesOf(scans_, scans_.size() - 1, tableOf(known_));
+    return bestOf(turnings.size(), [&](std::size_t i) {
+        const auto start = extended(known_, scans_.back().last_s, turnings[i]);
+        return registered(Registration(scans_, start, others), kKernel_m);
+    });
 }
 
 /** All scans together, from where the latest one was found. */
@@ -436,25 +484,16 @@ bool ScanWindow::add(const PointCloud& cloud, double time_s) {
     known_ = ScanTrajectory({times_s.begin() + first, times_s.end()},
                             {trajectory_.poses().begin() + first, trajectory_.poses().end()});
     const double usual = inlierRatio_;
-    Together best, steady;
-    tbb::parallel_invoke(
-        [&] {
-            best = registerLatest({1, Vector3d::Zero()});
-        },
-        [&] {
-            steady = registerLatest({0, Vector3d::Zero()});
-        });
-    if (steady.inlierRatio > best.inlierRatio) best = std::move(steady);
-    accept(best);
+    accept(registerLatest({{1, Vector3d::Zero()}, {0, Vector3d::Zero()}}));
     if (inlierRatio_ < kUsual * usual) search();
     return inlierRatio_ > kLeast * usual;
 }
 
 bool ScanWindow::search() {
     const double before = inlierRatio_;
-    Together best = bestOf({trajectory_, before}, [&](const Vector3d& more) {
-        return registerLatest({0, more});
-    });
+    std::vector<TurningOn> turnings;
+    for (const Vector3d& more : ratesOfTurn()) turnings.push_back({0, more});
+    const Together best = registerLatest(turnings);
     if (best.inlierRatio > before) accept(best);
     return inlierRatio_ > before;
 }
@@ -470,13 +509,15 @@ bool ScanWindow::addSecond(const PointCloud& cloud, double time_s, const Twist& 
     };
     Together best = registerTogether(scans_, from(guess), kNear_m);
     if (likely && unevennessOf(best.trajectory) < kUneven_rad) return false;
-    best = bestOf(std::move(best), [&](const Vector3d& rate) {
+    const auto rates = ratesOfTurn();
+    Together turned = bestOf(rates.size(), [&](std::size_t i) {
         Twist twist;
-        twist.turning = rate;
+        twist.turning = rates[i];
         return registerTogether(scans_, from(twist), kFar_m);
     });
+    if (turned.inlierRatio > best.inlierRatio) best = std::move(turned);
     trajectory_ = best.trajectory;
-    const double even = Registration(scans_, from(guess), false).inlierRatio();
+    const double even = Registration(scans_, from(guess)).inlierRatio();
     return unevennessOf(trajectory_) > kUneven_rad && best.inlierRatio > kBetter * even;
 }
 

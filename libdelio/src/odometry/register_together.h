@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <deque>
+#include <vector>
 
 #include "core/scan_trajectory.h"
 #include "odometry/preprocess.h"
@@ -78,7 +79,8 @@ class ScanWindow {
     void use(const ScanTrajectory& trajectory) { trajectory_ = trajectory; }
 
  private:
-    Together registerLatest(const TurningOn& turning) const;
+    /** The best registration of the latest scan to the others, from each of these starts. */
+    Together registerLatest(const std::vector<TurningOn>& turnings) const;
     void accept(const Together& found);
 
     std::deque<TimedScan> scans_;

@@ -97,6 +97,19 @@ TEST(ScanWindow, FollowsASwingScanByScan) {
     EXPECT_LT(degreesBetween(moved, truth), 0.3);
 }
 
+// A sensor that takes all points of a scan within a few milliseconds.
+TEST(ScanWindow, ScansMayBeShorterThanTheTrajectorysIntervals) {
+    const auto flash = [](double time_s) {
+        PointCloud cloud = scanAt(time_s);
+        for (float& point_s : cloud.times_s) point_s /= 20;
+        return cloud;
+    };
+    ScanWindow window;
+    window.begin(timedScanOf(flash(0), 0), Twist{});
+    window.add(flash(0.05), 0.05);
+    for (const auto& pose : window.trajectory().poses()) EXPECT_TRUE(pose.matrix().allFinite());
+}
+
 TEST(ScanWindow, AConstantMotionNeedsNoWindow) {
     const Twist drive{{3, 0, 0}, {0, 0, 0.2}};
     const auto pose = [&](double time_s) { return drive.after(time_s); };
