@@ -9,9 +9,8 @@
 
 namespace delio {
 namespace {
-constexpr Eigen::Index kBlock = 512;
+constexpr Eigen::Index kBlock = 512;  // points that findKeys() takes at most
 
-/** Maximum number of points in a block. */
 void findKeys(const float* points, Eigen::Index count, float perVoxel, std::uint64_t* keys) {
     // All coordinates alike, and in a plain loop: vector instructions.
     constexpr float kFarthest = 1 << 20;  // what keys have room for

@@ -5,8 +5,8 @@
 #include <vector>
 
 namespace delio {
-/** A voxel by its numbers along the axes, which count from the origin: the same key as no other
- *  within a million voxels to either side. */
+/** Key of a voxel from its numbers along the axes, which count from the origin; unique within 2^20
+ *  voxels of the origin along each axis. */
 inline std::uint64_t voxelKey(std::int64_t x, std::int64_t y, std::int64_t z) {
     constexpr std::int64_t kHalf = 1 << 20;  // 21 bits for each axis
     const auto part = [](std::int64_t index) {
@@ -14,8 +14,8 @@ inline std::uint64_t voxelKey(std::int64_t x, std::int64_t y, std::int64_t z) {
     };
     return part(x) << 42 | part(y) << 21 | part(z);
 }
-/** From a voxel's key that of the one, 2^levels times as large, that it is a part of; the same
- *  number as no other of these has. */
+/** Key of the voxel, 2^levels times as large, that contains the one of `key`; unique among voxels
+ *  of that size. */
 inline std::uint64_t coarserKey(std::uint64_t key, unsigned levels) {
     constexpr std::uint64_t kOnes = std::uint64_t{1} << 42 | 1 << 21 | 1;
     return key & ~(kOnes * ((std::uint64_t{1} << levels) - 1));
@@ -80,10 +80,15 @@ Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size);
 Eigen::Matrix3Xf firstOfVoxels(const Eigen::Matrix3Xf& points, double size, double smallest,
                                Eigen::Index enough);
 
+/** At most `most` of `count` elements are left if each of this many is kept. */
+inline Eigen::Index strideOf(Eigen::Index count, Eigen::Index most) {
+    return std::max<Eigen::Index>(1, 1 + (count - 1) / most);
+}
+
 /** At most `most` of the columns, evenly over their order: of a scan the same share all around. */
 template <typename Columns>
 Columns sample(const Columns& columns, Eigen::Index most) {
-    const Eigen::Index stride = std::max<Eigen::Index>(1, 1 + (columns.cols() - 1) / most);
+    const Eigen::Index stride = strideOf(columns.cols(), most);
     Columns result(columns.rows(), (columns.cols() + stride - 1) / stride);
     for (Eigen::Index i = 0; i < result.cols(); ++i) result.col(i) = columns.col(i * stride);
     return result;

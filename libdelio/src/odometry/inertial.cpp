@@ -31,7 +31,8 @@ std::string degrees(double rad, int digits) { return rounded(rad / kDeg, digits)
 void GyroPrior::add(const ImuSample& sample) {
     constexpr double kDamaged = 1e4;  // rad/s; no gyroscope has so much in deg/s either
     const bool isUsable = std::isfinite(sample.stamp_s) && sample.rate_radps.allFinite() &&
-                          sample.rate_radps.cwiseAbs().maxCoeff() < kDamaged;
+                          sample.rate_radps.cwiseAbs().maxCoeff() < kDamaged &&
+                          (!sample.sensorPose || sample.sensorPose->matrix().allFinite());
     if (!isUsable || !waiting_.add(sample)) ++dropped_;
 }
 
@@ -245,7 +246,10 @@ GyroPrior::Fit GyroPrior::fitAt(double offset_s) const {
     return fit;
 }
 
-double GyroPrior::costAt(double offset_s) const { return fitAt(offset_s).cost; }
+double GyroPrior::costAt(double offset_s) const {
+    const Fit fit = fitAt(offset_s);
+    return fit.pairs < kFewestPairs ? INFINITY : fit.cost;
+}
 
 /** The offset of the least cost: on a grid, then by intervals of golden ratio. */
 double GyroPrior::bestOffset() const {
@@ -310,7 +314,8 @@ void GyroPrior::calibrate() {
     const double bend = (costAt(offset_s - kProbe_s) + costAt(offset_s + kProbe_s) - 2 * fit.cost) /
                         (kProbe_s * kProbe_s) * static_cast<double>(fit.pairs);
     const double noise = std::max(fit.cost, 1e-4);
-    const double sigma_s = bend > 0 ? std::sqrt(2 * noise / (3 * bend)) : INFINITY;
+    const double sigma_s =
+        bend > 0 && std::isfinite(bend) ? std::sqrt(2 * noise / (3 * bend)) : INFINITY;
     if (sigma_s < kKnown_s && std::abs(offset_s) < kMostOffset_s) {
         offsetSigma_s_ = sigma_s;
         adopt(offset_s);

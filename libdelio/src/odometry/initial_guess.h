@@ -43,7 +43,7 @@ struct ReferenceScan {
 
 /** What is known of a scan's place before it is registered. */
 struct Expectation {
-    const Eigen::Isometry3d& pose;    //!< predicted, sensor to map
+    Eigen::Isometry3d pose;           //!< predicted, sensor to map
     const ReferenceScan& reference;   //!< to search from where the prediction fails
     const Eigen::Matrix3f& upright;   //!< turns the sensor's z up
     bool motionIsKnown = false;       //!< else it may be anywhere within `start`

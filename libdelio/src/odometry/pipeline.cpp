@@ -65,7 +65,7 @@ Step PlaneOdometry::process(const Scan& scan) {
 
     const bool motionWasKnown = !isLost(state_);
     if (std::holds_alternative<Empty>(state_))
-        begin(cloud, step);
+        begin(cloud, interval, step);
     else if (!step.reason.empty())
         skip(cloud, interval, step);
     else
@@ -117,7 +117,7 @@ Interval PlaneOdometry::arrive(const Scan& scan, const PointCloud& cloud, Step& 
 /** Leaves what the next scan needs. */
 void PlaneOdometry::finish(PointCloud cloud, Step& step) {
     if (!step.predicted) unregistered_s_ = 0;
-    if (!isLost(state_) && place_.isOther()) {
+    if (!isLost(state_) && place_.isOther() && !step.predicted) {
         retrace();
         takeScale(place_.seen());
         beginMap(cloud, !std::holds_alternative<Degenerate>(state_));
@@ -133,7 +133,8 @@ void PlaneOdometry::interrupt(double elapsed_s) {
     constexpr double kLongest_s = 3.5;  // longer, the motion is not extrapolated
     if (elapsed_s > kLongest_s) prediction_.forget();
     reference_.isBeforePause = true;
-    state_ = lostFrom(std::move(state_), missesOf(state_));
+    const unsigned misses = missesOf(state_);
+    state_ = lostFrom(std::move(state_), misses);
 }
 
 /** A degenerate scan is not lost while the motion is known. */
@@ -163,6 +164,7 @@ void PlaneOdometry::track(const PointCloud& cloud, Attempt attempt, Step& step) 
     inlierRatios_.planes = isOnPlanes(estimate) ? estimate.inlierRatio : 0;
 
     pose_ = estimate.valid ? estimate.pose() : wheels_.carried(pose_, predicted);
+    countMisfits(estimate, placed.inlierRatio, since_s);
     {
         const StageTimer timer(step, "map_update");
         if (estimate.valid)
@@ -205,8 +207,8 @@ PlaneEstimate PlaneOdometry::registerByPlanes(const PointCloud& cloud, const Poi
         wheels_.carry(pose_, found);
         if (isDeskewed) deskewed = deskewFrom(found.pose());
         if (!isDeskewed || !deskewed) return found;
-        wheels_.carry(pose_, deskewed->estimate);
     }
+    wheels_.carry(pose_, deskewed->estimate);
     view = std::move(deskewed->view);
     motion_ = deskewed->trajectory.seenFrom(0);
     extrapolation_ = Extrapolation(motion_, since_s / 8);
@@ -267,7 +269,8 @@ void PlaneOdometry::miss(const PointCloud& cloud) {
     constexpr unsigned kPatience = 3;
     const unsigned misses = missesOf(state_) + (cloud.points.cols() > 0 ? 1 : 0);
     state_ = lostFrom(std::move(state_), misses);
-    if (misses < kPatience) return;
+    const auto least = static_cast<Eigen::Index>(options().points.min_matches);
+    if (misses < kPatience || cloud.points.cols() < least) return;  // too few begin no map
     leaveMap();
     takeScale(place_.seen());  // the map may have begun with the vehicle's own body
     beginAnew(cloud);
@@ -296,10 +299,12 @@ void PlaneOdometry::learn(const PointEstimate& placed, const Eigen::Isometry3d& 
 }
 
 /** A map cannot begin before the first usable scan. */
-void PlaneOdometry::begin(const PointCloud& cloud, Step& step) {
+void PlaneOdometry::begin(const PointCloud& cloud, const Interval& interval, Step& step) {
     const bool isFirst = !std::get<Empty>(state_).hasSeenScans;
     ScanView view;
-    motion_ = Twist{};
+    const Extrapolation extrapolation = predictMotion(interval.duration_s);
+    pose_ = wheels_.carried(pose_, pose_ * extrapolation.at(interval.duration_s));
+    motion_ = extrapolation.motion();
     {
         const StageTimer timer(step, "map_update");
         view = beginMap(cloud, false);
@@ -327,11 +332,10 @@ void PlaneOdometry::skip(const PointCloud& cloud, const Interval& interval, Step
 void PlaneOdometry::report(const PlaneEstimate& estimate, ScanView& view, Step& step) const {
     const auto dynamic = std::count(view.dynamic.begin(), view.dynamic.end(), std::uint8_t{1});
     TranslationEstimate translation = estimate.translation;
-    if (mayFollowVehicle(estimate)) {
-        const Eigen::Vector3d& axis = estimate.weakestAxis;
-        translation.unobservedAxes = axis;
+    if (const auto axes = axesOfVehicles(estimate); axes.cols() > 0) {
+        translation.unobservedAxes = axes;
         translation.covariance +=
-            std::pow(options().registration.prior_sigma, 2) * axis * axis.transpose();
+            std::pow(options().registration.prior_sigma, 2) * axes * axes.transpose();
     }
     step.increment = incrementOf(estimate.rotation, translation);
     step.quality = qualityOf(estimate.rotation, translation);
@@ -389,9 +393,10 @@ ScanView PlaneOdometry::beginMap(const PointCloud& cloud, bool motionIsKnown) {
     start_.reset();
     if (prediction_.hasMotion() || usesGyro_) beginning_.clear();
     if (window_.isEmpty() && !usesGyro_)
-        beginning_.push_back({{cloud, time_s_, Twist{}}, {}, track_});
+        beginning_.push_back({{cloud, time_s_, placed(pose_, Twist{})}, {}, track_});
     dynamics_.clear();
     inlierRatios_.usual = 0;
+    misfits_ = 0;
     map_.addScan(view.fine, pose_);
     reference_ = {view.points, pose_, time_s_};
     if (!map_.isUsable()) {

@@ -51,10 +51,7 @@ class PlaneOdometry : public Odometry {
 
     Step process(const Scan& scan) override;
     void settle() override;
-    void addImu(const ImuSample& sample) override {
-        retrace();
-        gyro_.add(sample);
-    }
+    void addImu(const ImuSample& sample) override { gyro_.add(sample); }
     std::optional<ImuReport> imuReport() const override { return gyro_.report(); }
     void addOdometry(const OdometrySample& sample) override { wheels_.add(sample); }
     std::optional<OdometryReport> odometryReport() const override { return wheels_.report(); }
@@ -64,7 +61,7 @@ class PlaneOdometry : public Odometry {
     // The stages of process(), in their order.
     PointCloud prepare(const Scan& scan, Step& step);
     Interval arrive(const Scan& scan, const PointCloud& cloud, Step& step);
-    void begin(const PointCloud& cloud, Step& step);
+    void begin(const PointCloud& cloud, const Interval& interval, Step& step);
     void skip(const PointCloud& cloud, const Interval& interval, Step& step);
     void interrupt(double elapsed_s);
 
@@ -137,7 +134,8 @@ class PlaneOdometry : public Odometry {
     std::optional<ScanTrajectory> stepBack(const MovingScan& scan);
 
     // The speed where single scans do not show it (pipeline_speed.cpp).
-    bool mayFollowVehicle(const PlaneEstimate& estimate) const;
+    void countMisfits(const PlaneEstimate& estimate, double inlierRatio, double since_s);
+    Eigen::Matrix3Xd axesOfVehicles(const PlaneEstimate& estimate) const;
     bool settleSpeed(const PointCloud& cloud, const PlaneEstimate& estimate);
     void restartAt(const std::vector<MovingScan>& scans);
 
@@ -264,6 +262,7 @@ class PlaneOdometry : public Odometry {
     /** While single scans do not show the speed. None while scans are retraced. */
     std::optional<SpeedSearch> speeds_;
     unsigned shownSpeeds_ = 0;  //!< scans in a row up to the latest one that show the speed
+    unsigned misfits_ = 0;      //!< see countMisfits()
     /** The window holds all scans of the map: each scan more corrects the earlier ones. */
     struct Start {
         double stamp_s = 0;  //!< of the first scan, since the start of the drive
@@ -276,6 +275,7 @@ class PlaneOdometry : public Odometry {
         ReferenceScan reference;
         Anchor anchor;
         double usualInlierRatio = 0;
+        double scale = 1;       //!< PlaceScale::scale()
         std::size_t track = 0;  //!< of its scans
         double left_s = 0;      //!< time of the first scan in the new map
         unsigned scans = 0;     //!< that were sought in it since

@@ -10,8 +10,15 @@ namespace delio::odometry {
 void PlaneOdometry::leaveMap() {
     if (inlierRatios_.usual == 0) return;
     insertWaiting();
-    left_ = LeftMap{
-        std::move(map_), reference_, path_.anchor(), inlierRatios_.usual, track_, time_s_, 0, {}};
+    left_ = LeftMap{std::move(map_),
+                    reference_,
+                    path_.anchor(),
+                    inlierRatios_.usual,
+                    place_.scale(),
+                    track_,
+                    time_s_,
+                    0,
+                    {}};
 }
 
 /** Goes on in the map that was left, as soon as two scans in a row are found there and agree about
@@ -53,6 +60,7 @@ void PlaneOdometry::rejoin(const ScanView& view) {
 void PlaneOdometry::moveToLeftMap(const Eigen::Isometry3d& toLeft) {
     path_.correctSince(left_->reference.time_s, left_->left_s, toLeft);
     path_.moveTo(left_->anchor);
+    place_.use(left_->scale);
     map_ = std::move(left_->map);
     inlierRatios_.usual = left_->usualInlierRatio;
     track_ = left_->track;
@@ -60,6 +68,7 @@ void PlaneOdometry::moveToLeftMap(const Eigen::Isometry3d& toLeft) {
     reference_.pose = pose_;
     if (waiting_) waiting_->pose = pose_;
     dynamics_.clear();
+    if (speeds_) speeds_->clear();
     start_.reset();
     left_.reset();
 }

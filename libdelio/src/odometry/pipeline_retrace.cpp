@@ -213,6 +213,7 @@ std::optional<ScanTrajectory> PlaneOdometry::stepBack(const MovingScan& scan) {
         // Scans that were taken for those of a sensor that stood lie on each other better.
         if (asBefore.isBetterThan(attempt)) {
             endWindow();
+            usesGyro_ = false;
             attempt = std::move(asBefore);
         }
     }

@@ -8,16 +8,36 @@ constexpr double kVertical = 0.7;  // of a unit axis
 constexpr double kRooms = 0.5;     // scale of places that no vehicle drives through, at most
 }  // namespace
 
-/** True where the planes that show the translation along a horizontal axis are few and lie in one
- *  direction: they may be those of a vehicle that drives along. */
-bool PlaneOdometry::mayFollowVehicle(const PlaneEstimate& estimate) const {
+/** Counts slow scans in a row of which many points are not in the map. Of a sensor that stands, or
+ *  nearly so, nearly all are: it may drive among vehicles of its own speed. */
+void PlaneOdometry::countMisfits(const PlaneEstimate& estimate, double inlierRatio,
+                                 double since_s) {
+    constexpr double kSlow_mps = 1, kStanding = 0.75;
+    const double moved_m = (pose_.translation() - reference_.pose.translation()).norm();
+    const bool isMisfit =
+        estimate.valid && inlierRatio < kStanding && moved_m < kSlow_mps * since_s && !isShaken();
+    misfits_ = isMisfit ? misfits_ + 1 : 0;
+}
+
+/** Horizontal axes (map's frame, a column each) along which the scan may follow vehicles that drive
+ *  along: the planes that show the translation there are few and lie in one direction, or the
+ *  sensor seems to stand where few points fit. */
+Eigen::Matrix3Xd PlaneOdometry::axesOfVehicles(const PlaneEstimate& estimate) const {
     constexpr double kThin = 0.05;     // of the planes' weight
     constexpr double kFewSectors = 2;  // that such a vehicle covers
+    constexpr unsigned kMisfits = 5;
     const auto& translation = estimate.translation;
     const double observability = translation.observability[0];
-    return translation.unobservedAxes.cols() == 0 && observability > 0 && observability < kThin &&
-           estimate.weakestSpread < kFewSectors && place_.scale() > kRooms &&
-           !wheels_.areTrusted() && std::abs(estimate.weakestAxis.dot(upAt(pose_))) < kVertical;
+    Eigen::Matrix3Xd axes(3, 0);
+    if (!estimate.valid || wheels_.areTrusted()) return axes;
+    const bool isOneSided = translation.unobservedAxes.cols() == 0 && observability > 0 &&
+                            observability < kThin && estimate.weakestSpread < kFewSectors &&
+                            place_.scale() > kRooms;
+    if (misfits_ >= kMisfits)
+        axes = (pose_.linear() * upright_.transpose().cast<double>()).leftCols<2>();
+    else if (isOneSided && std::abs(estimate.weakestAxis.dot(upAt(pose_))) < kVertical)
+        axes = estimate.weakestAxis;
+    return axes;
 }
 
 /** Where the scene hardly constrains the translation along a horizontal axis, a wrong speed (a
@@ -30,7 +50,7 @@ bool PlaneOdometry::settleSpeed(const PointCloud& cloud, const PlaneEstimate& es
     const double speed_mps = axis.dot(pose_.linear() * prediction_.predict(1).translation());
     const bool isDoubtful =
         (estimate.translation.observability[0] < kThinAtFirst && !beginning_.empty()) ||
-        mayFollowVehicle(estimate) || std::abs(speed_mps) > options().spacing.first_speed;
+        axesOfVehicles(estimate).cols() > 0 || std::abs(speed_mps) > options().spacing.first_speed;
     const bool isHidden = estimate.valid &&
                           (isDoubtful || std::holds_alternative<Degenerate>(state_)) &&
                           place_.scale() > kRooms && !isShaken() && !isUrgent_ &&

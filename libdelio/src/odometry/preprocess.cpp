@@ -79,6 +79,7 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
         const float px = x.data()[i], py = y.data()[i], pz = z.data()[i];
         squaredRanges[i] = px * px + (py * py + pz * pz);
     }
+    constexpr float kLongest_s = 1;  // from a stamp to a point of its scan
     const bool timed = options.deskew && !scan.times_s.empty(), numbered = !scan.rings.empty();
     PointCloud cloud;
     cloud.points.resize(3, all);
@@ -88,8 +89,10 @@ PointCloud preprocess(const Scan& scan, const PreprocessOptions& options) {
     Eigen::Index kept = 0;
     for (Eigen::Index i = 0; i < all; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        const bool isTimed = !timed || std::isfinite(scan.times_s[k]);
-        if (!(squaredRanges[i] >= near && squaredRanges[i] <= far) || !isTimed) {
+        const bool isTimed = !timed || std::abs(scan.times_s[k]) <= kLongest_s;
+        const bool isInRange =
+            squaredRanges[i] > 0 && squaredRanges[i] >= near && squaredRanges[i] <= far;
+        if (!isInRange || !isTimed) {
             const bool finite = std::isfinite(x[k]) && std::isfinite(y[k]) && std::isfinite(z[k]);
             ++(finite && isTimed ? cloud.outOfRange : cloud.notFinite);
             continue;

@@ -168,7 +168,7 @@ PointEstimate registerToPoints(const PointMap& map, const Eigen::Matrix3Xd& poin
     // off by 0.2 %, not 0.02 %.)
     constexpr Eigen::Index kEnough = 4000, kEnoughIfKnown = 1000;
     const Eigen::Index enough = kernel < options.first_kernel ? kEnoughIfKnown : kEnough,
-                       stride = std::max<Eigen::Index>(1, (points.cols() + enough - 1) / enough);
+                       stride = strideOf(points.cols(), enough);
     Pairing pairing(map, points);
     for (double width = estimate.kernel_m;; width = std::max(width / 2, options.last_kernel)) {
         // Only the last kernel has to converge; the others lead into its reach.

@@ -122,7 +122,7 @@ ScanTrajectory bent(const ScanTrajectory& trajectory, const Coefficients& step, 
 
 TimedPoints sampled(const TimedPoints& all, Eigen::Index most) {
     TimedPoints few{sample(all.points, most), {}};
-    const Eigen::Index stride = std::max<Eigen::Index>(1, (all.points.cols() + most - 1) / most);
+    const Eigen::Index stride = strideOf(all.points.cols(), most);
     for (Eigen::Index i = 0; i < few.points.cols(); ++i)
         few.times_s.push_back(all.times_s[static_cast<std::size_t>(i * stride)]);
     return few;

@@ -56,17 +56,14 @@ PointCloud thinned(const PointCloud& cloud, double spacing) {
 }
 
 /** At most `most` of those that stand above the ground, evenly over the scan. */
-PointCloud standing(const PointCloud& cloud, const Eigen::Matrix3f& upright, std::size_t most) {
+PointCloud standing(const PointCloud& cloud, const Eigen::Matrix3f& upright, Eigen::Index most) {
     const SegmentTuning segments;
-    const auto heights = heightsAboveGround(upright * cloud.points, segments.radius);
-    std::vector<Eigen::Index> kept;
-    for (Eigen::Index i = 0; i < cloud.points.cols(); ++i)
-        if (heights[static_cast<std::size_t>(i)] > segments.above_ground) kept.push_back(i);
-    const std::size_t stride = std::max<std::size_t>(1, (kept.size() + most - 1) / most);
+    const auto kept = standingPoints(cloud.points, upright, segments.above_ground, segments.radius);
+    const auto all = static_cast<Eigen::Index>(kept.size()), stride = strideOf(all, most);
     PointCloud result;
-    result.points.resize(3, static_cast<Eigen::Index>((kept.size() + stride - 1) / stride));
+    result.points.resize(3, (all + stride - 1) / stride);
     for (Eigen::Index i = 0; i < result.points.cols(); ++i) {
-        const Eigen::Index from = kept[static_cast<std::size_t>(i) * stride];
+        const Eigen::Index from = kept[static_cast<std::size_t>(i * stride)];
         result.points.col(i) = cloud.points.col(from);
         if (!cloud.times_s.empty())
             result.times_s.push_back(cloud.times_s[static_cast<std::size_t>(from)]);

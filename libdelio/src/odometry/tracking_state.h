@@ -6,7 +6,7 @@
 #include "odometry/register_together.h"
 
 namespace delio::odometry {
-/** There is no map: no usable scan yet. */
+/** There is no map: no usable scan yet, or too few points to begin another map. */
 struct Empty {
     bool hasSeenScans = false;  //!< scans came, but none that a map can begin with
 };
@@ -41,8 +41,9 @@ struct Lost {
 /** What the odometry knows before a scan. Transitions: Empty -> FirstScan (a usable scan);
  *  FirstScan, Lost -> Tracking, Degenerate (registered); any -> Lost (not found, or a pause);
  *  Lost, FirstScan -> FirstScan (three scans not found: a new map); Tracking, Degenerate ->
- *  FirstScan (the place has another size: a new map);
- *  Degenerate -> FirstScan (ever fewer points fit: a new map). */
+ *  FirstScan (the place has another size, or planes show a wrong tilt: a new map);
+ *  Degenerate -> FirstScan (ever fewer points fit: a new map), Tracking (several scans show the
+ *  speed). */
 using TrackingState = std::variant<Empty, FirstScan, Tracking, Degenerate, Lost>;
 
 /** True where the pose of the next scan is not known to better than metres. */

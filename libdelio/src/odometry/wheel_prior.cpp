@@ -22,7 +22,8 @@ Isometry3d between(const Isometry3d& from, const Isometry3d& to, double share) {
 }  // namespace
 
 void WheelPrior::add(const OdometrySample& sample) {
-    const bool isUsable = std::isfinite(sample.stamp_s) && sample.pose.matrix().allFinite();
+    const bool isUsable = std::isfinite(sample.stamp_s) && sample.pose.matrix().allFinite() &&
+                          (!sample.sensorPose || sample.sensorPose->matrix().allFinite());
     if (!isUsable || !waiting_.add(sample)) ++dropped_;
 }
 

@@ -431,6 +431,7 @@ void Run::score() {
 }
 
 void Run::findOwnVehicle() {
+    slam_.settle();  // the latest scan counts as well
     const Eigen::AlignedBox3d box = slam_.ownVehicle();
     if (box.isEmpty() || record_.rows.empty()) return;
     record_.ownVehicle = box.transformed(record_.rows.back().sensorPose);

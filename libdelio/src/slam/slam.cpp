@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/voxel_grid.h"
 #include "delio/core/error.h"
 #include "delio/core/stopwatch.h"
 
@@ -17,8 +18,7 @@ Eigen::Matrix3Xf staticPoints(const SlamScan& scan) {
     const auto& dynamic = scan.step.used.dynamic;
     const auto moving = std::count(dynamic.begin(), dynamic.end(), std::uint8_t{1});
     // Every n-th point in sensor order, so that all azimuths are thinned alike.
-    const Eigen::Index all = points.cols() - moving,
-                       stride = std::max<Eigen::Index>(1, (all + kMost - 1) / kMost);
+    const Eigen::Index all = points.cols() - moving, stride = strideOf(all, kMost);
     Eigen::Matrix3Xf still(3, (all + stride - 1) / stride);
     Eigen::Index kept = 0, toPass = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -111,12 +111,13 @@ ScanReport Slam::process(const Scan& scan) {
     auto& [poses, stamps_s] = trajectory_;
     SlamScan told{nodes_, scan, report.step, {}, Eigen::Isometry3d::Identity(), {}};
     if (nodes_ > 0) {
-        told.increment = ofVehicle(report.step.increment, sensorPose_, scan.sensorPose);
+        told.increment = ofVehicle(report.step.increment, sensorPoses_.back(), scan.sensorPose);
         told.pose = poses.back() * told.increment.pose;
         for (const auto& corrected : report.step.corrected) {
+            const auto& sensorThen = sensorPoses_.at(sensorPoses_.size() - corrected.scansAgo);
             told.corrected.push_back(
                 {nodes_ - corrected.scansAgo,
-                 told.pose * scan.sensorPose * corrected.pose * scan.sensorPose.inverse()});
+                 told.pose * scan.sensorPose * corrected.pose * sensorThen.inverse()});
             if (corrected.staysInPlace)
                 told.fromOldPose = told.corrected.back().pose.inverse() * poses.back();
         }
@@ -129,7 +130,9 @@ ScanReport Slam::process(const Scan& scan) {
     poses.push_back(told.pose);
     stamps_s.push_back(scan.stamp_s);
     ++nodes_;
-    sensorPose_ = scan.sensorPose;
+    constexpr std::size_t kMostCorrected = 64;
+    sensorPoses_.push_back(scan.sensorPose);
+    if (sensorPoses_.size() > kMostCorrected) sensorPoses_.pop_front();
     tell(told, report);
     return report;
 }

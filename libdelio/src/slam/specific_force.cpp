@@ -34,6 +34,7 @@ std::vector<std::optional<ForceBetween>> SpecificForce::take() {
 }
 
 void SpecificForce::integrate(double from_s, double to_s) {
+    if (!(to_s > from_s)) readings_.clear();  // the clock was set back
     waiting_.takeUpTo(to_s + kLongestGap_s, 0, [&](const ImuSample& sample) {
         const bool isLater = readings_.empty() || sample.stamp_s > readings_.back().time_s;
         if (isLater)

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "ring_scan.h"
@@ -99,6 +100,7 @@ TEST(Sample, TakesAFewEvenlyOverTheOrder) {
 TEST(Sample, TakesAllWhereThereAreFew) {
     EXPECT_EQ(sample(counted(4), 4), counted(4));
     EXPECT_EQ(sample(counted(0), 4).cols(), 0);
+    EXPECT_EQ(sample(counted(4), std::numeric_limits<Eigen::Index>::max()).cols(), 4);
 }
 }  // namespace
 }  // namespace delio::odometry

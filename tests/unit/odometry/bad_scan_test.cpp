@@ -14,8 +14,8 @@ Scan scanOfNaN() {
         Eigen::Matrix3Xf::Constant(3, 5000, std::numeric_limits<float>::quiet_NaN()));
 }
 
-Scan fewPoints() {
-    test::Noise noise;
+Scan fewPoints(std::uint32_t seed = 7) {
+    test::Noise noise(seed);
     Eigen::Matrix3Xf points(3, 10);
     for (int i = 0; i < 10; ++i) points.col(i) = (10 * noise.direction()).cast<float>();
     return test::scanOf(points);
@@ -105,5 +105,32 @@ TEST_P(BadScan, AsTheSecondIsNotTakenForARest) {
     expectPose(steps[1].increment.pose * steps[2].increment.pose, truth[0].inverse() * truth[2],
                kMetres, kDegrees);
     expectPose(steps[3].increment.pose, stepTo(truth, 3), kMetres, kDegrees);
+}
+
+// They begin no map: the one before is kept, and the motion goes on meanwhile.
+TEST(BadScans, ManyInARowArePredicted) {
+    constexpr std::size_t kFirst = 6, kLast = 11;
+    constexpr double kSlowest_m = 0.4, kNear_m = 1;
+    const auto truth = drive(16);
+    for (const bool isEmpty : {true, false}) {
+        SCOPED_TRACE(isEmpty ? "empty" : "ten points");
+        auto scans = scansOf(truth);
+        for (std::size_t i = kFirst; i <= kLast; ++i) {
+            const auto seed = static_cast<std::uint32_t>(i);  // a copy would be recognised
+            scans[i].points = (isEmpty ? test::scanOf({}) : fewPoints(seed)).points;
+        }
+        const auto steps = stepsOf(scans, quick("accurate"));
+        Eigen::Isometry3d pose = truth[0];
+        for (std::size_t i = 0; i < steps.size(); ++i) {
+            pose = pose * steps[i].increment.pose;
+            const bool isBad = i >= kFirst && i <= kLast;
+            EXPECT_EQ(steps[i].predicted, isBad) << i;
+            EXPECT_EQ(steps[i].track, 0U) << i;
+            if (isBad) {
+                EXPECT_GT(steps[i].increment.pose.translation().norm(), kSlowest_m) << i;
+            }
+            EXPECT_LT(test::metresBetween(pose, truth[i]), isBad ? kNear_m : 3 * kMetres) << i;
+        }
+    }
 }
 }  // namespace

@@ -70,6 +70,24 @@ TEST(Preprocess, PointsWithoutATimeAreDroppedWhereTimesCount) {
     EXPECT_EQ(preprocess(scan, options).points.cols(), 3);
 }
 
+TEST(Preprocess, TimesBeyondASecondAreNoTimes) {
+    Eigen::Matrix3Xf points(3, 3);
+    points << 10, 20, 30, 1, 2, 3, 0, 0, 0;
+    Scan scan = test::scanOf(points);
+    scan.times_s = {1e9F, 0.01F, -1.5F};
+    const auto cloud = preprocess(scan, {});
+    EXPECT_EQ(cloud.notFinite, 2U);
+    EXPECT_EQ(cloud.times_s, std::vector<float>{0.01F});
+}
+
+TEST(Preprocess, APointAtTheSensorHasNoDirection) {
+    PreprocessOptions options;
+    options.min_range = 0;
+    Eigen::Matrix3Xf points(3, 2);
+    points << 0, 0.1F, 0, 0, 0, 0;
+    EXPECT_EQ(preprocess(test::scanOf(points), options).points.cols(), 1);
+}
+
 TEST(Preprocess, WhatIsOutOfRangeIsDroppedAndCounted) {
     PreprocessOptions options;
     options.min_range = 2;

@@ -53,6 +53,30 @@ TEST(Standstill, IsNotClaimedWhereAMovingSensorWouldSeeTheSame) {
             }
 }
 
+// They are most of what it sees: the sensor seems to stand among them.
+TEST(Standstill, AmongVehiclesOfItsOwnSpeedIsDoubtful) {
+    constexpr double kStep_m = 0.9;
+    constexpr std::size_t kFrom = 8;
+    std::vector<Scan> scans;
+    test::Noise noise;
+    for (int i = 0; i < 14; ++i) {
+        const double x = kStep_m * i;
+        test::Scene scene = test::highway(true);
+        for (const double y : {3.0, -5.0}) scene.push_back({{x - 7, y, -1.8}, {x + 6, y + 2, 1.2}});
+        for (const double ahead : {9.0, -16.0})
+            scene.push_back({{x + ahead, -1.2, -1.8}, {x + ahead + 6, 1.2, 1.2}});
+        scans.push_back(
+            test::scanOf(test::ringScan(scene, test::poseAt(x, 0, 0), kVlp16, noise).points));
+        scans.back().stamp_s = 0.1 * i;
+    }
+    const auto steps = stepsOf(scans, quick("accurate"));
+    for (std::size_t i = kFrom; i < steps.size(); ++i) {
+        const bool isRight = std::abs(steps[i].increment.pose.translation().x() - kStep_m) < 0.1;
+        EXPECT_FALSE(steps[i].standing) << i;
+        EXPECT_TRUE(isRight || isOpenAlongX(steps[i])) << i;
+    }
+}
+
 /** Walls across the x axis at these distances, 4 m wide and 2 m high, as points 0.2 m apart. */
 Eigen::Matrix3Xd wallsAt(const std::vector<double>& x) {
     Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(x.size()) * 20 * 10);

@@ -282,6 +282,17 @@ TEST(Slam, CorrectedPosesReplaceThoseOfEarlierScans) {
     EXPECT_LT((last.trajectory().poses[0].translation() - expected[3]).norm(), kExact_m);
 }
 
+TEST(Slam, ACorrectedScanHasTheSensorPoseOfItsTime) {
+    constexpr double kExact_m = 1e-12;
+    Slam slam(std::make_unique<Correcting>());
+    auto scans = scansOf(drive(4));
+    scans[1].sensorPose = test::poseAt(0, 0, 1, 0);  // the sensor was a metre higher
+    for (const Scan& scan : scans) slam.process(scan);
+    const std::vector<Eigen::Vector3d> expected = {{0, 0, 0}, {-1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_LT((slam.trajectory().poses[i].translation() - expected[i]).norm(), kExact_m) << i;
+}
+
 std::string faultOf(const std::function<void()>& act) {
     try {
         act();

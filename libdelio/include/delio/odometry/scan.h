@@ -27,7 +27,8 @@ struct Scan {
     std::vector<std::uint16_t> rings;
 
     /** Time of each point, in the order of `points`, in seconds from the stamp (negative: before
-     *  it); empty if the source does not give times. NaN: the time of that point is not known. */
+     *  it); empty if the source does not give times. A point of NaN or of more than a second from
+     *  the stamp is not used. */
     std::vector<float> times_s;
 
     /** Scans since the one before that were dropped for lack of time (ScanFeed). An odometry then

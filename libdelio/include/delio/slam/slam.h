@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -112,6 +113,6 @@ class Slam {
     io::Trajectory trajectory_;
     std::size_t nodes_ = 0;  //!< scans that were taken
     /** Sensor in the vehicle at the last scan that was taken. */
-    Eigen::Isometry3d sensorPose_ = Eigen::Isometry3d::Identity();
+    std::deque<Eigen::Isometry3d> sensorPoses_;  //!< of the latest scans
 };
 }  // namespace delio
