@@ -190,14 +190,19 @@ int optimiseGraph(SlamCommandLine& line, const std::string& input,
     return cli::kExitSuccess;
 }
 
+void refuseExisting(const std::string& file, SlamCommandLine& line) {
+    const bool isThere = fs::exists(fs::symlink_status(file)) && !fs::is_character_file(file);
+    if (isThere && !line.force.getValue())
+        throw Error("'" + file + "' exists; overwrite it with --force");
+}
+
 /** Adds what --save-rawlog reads and writes, which may be there with --force only. */
 void checkCopy(SlamCommandLine& line, std::vector<std::string>& read,
                std::vector<std::string>& written) {
     const auto inputs = cli::filesOfRawlog(line.input.getValue().front());
     read.insert(read.end(), inputs.begin(), inputs.end());
     for (const auto& file : run::filesOfCopy(line.saveRawlog.getValue())) {
-        if (fs::exists(fs::symlink_status(file)) && !line.force.getValue())
-            throw Error("'" + file + "' exists; overwrite it with --force");
+        refuseExisting(file, line);
         written.push_back(file);
     }
 }
@@ -207,7 +212,10 @@ void checkFolders(SlamCommandLine& line) {
     auto read = line.input.getValue();
     auto written = run::RunFolder(line.output.getValue()).files();
     const std::string map = line.map.isSet() ? run::storedMapIn(line.map.getValue()) : "";
-    if (line.record.isSet()) written.push_back(line.record.getValue());
+    if (line.record.isSet()) {
+        refuseExisting(line.record.getValue(), line);
+        written.push_back(line.record.getValue());
+    }
     if (read.size() > 1) written = filesOfSeveral(read, map, line.output.getValue());
     if (line.saveRawlog.isSet()) checkCopy(line, read, written);
     for (auto* file :
@@ -229,13 +237,13 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
         if (line.vehicleBox.isSet()) io::vehiclePartsIn(line.vehicleBox.getValue());
         const std::string contradiction = contradictionIn(line);
         if (!contradiction.empty()) throw Error(contradiction);
-        if (line.printConfig.getValue()) {
-            printConfig(line);
-            return cli::kExitSuccess;
-        }
     } catch (const Error& e) {
         cli::inform(e.what());
         return cli::kExitBadCommandLine;
+    }
+    if (line.printConfig.getValue()) {
+        printConfig(line);
+        return cli::kExitSuccess;
     }
     const unsigned threads = line.threads.getValue();
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
@@ -244,6 +252,8 @@ int slam(SlamCommandLine& line, int argc, char** argv) {
     for (const auto& input : inputs)
         if (input != "-" && !io::isLive(input) && !fs::exists(input))
             throw Error("cannot read '" + input + "': no such file or folder");
+    if (line.gnss.isSet() && !fs::exists(line.gnss.getValue()))
+        throw Error("cannot read '" + line.gnss.getValue() + "': no such file");
     checkFolders(line);
     LiveOutput shown(line);
     const OutputFolder folder(line.output.getValue(), line.force.getValue());

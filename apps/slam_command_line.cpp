@@ -22,6 +22,19 @@ std::string textOf(const std::string& path) {
     text << in.rdbuf();
     return text.str();
 }
+
+/** Adds those of a file to the options. */
+void load(const std::string& path, Options& options) {
+    const std::string byteOrderMark = "\xEF\xBB\xBF";  // of some editors
+    std::string text = textOf(path);
+    if (text.compare(0, byteOrderMark.size(), byteOrderMark) == 0)
+        text.erase(0, byteOrderMark.size());
+    try {
+        options.load(text);
+    } catch (const Error& e) {
+        throw Error("'" + path + "': " + e.what());
+    }
+}
 }  // namespace
 
 cli::HelpText slamHelp() {
@@ -82,7 +95,7 @@ cli::HelpText slamHelp() {
 
 Options optionsFor(SlamCommandLine& line, const std::optional<io::DriveMeta>& meta) {
     Options options = Options::forDrive(line.profile.getValue(), meta);
-    if (line.config.isSet()) options.load(textOf(line.config.getValue()));
+    if (line.config.isSet()) load(line.config.getValue(), options);
     for (const auto& assignment : line.set.getValue()) options.set(assignment);
     options.check();
     return options;
@@ -100,6 +113,7 @@ void printConfig(SlamCommandLine& line) {
     otherOptions.write(ofOther);
     for (std::string text, otherText; std::getline(own, text) && std::getline(ofOther, otherText);)
         std::cout << (text == otherText ? "" : "# ") << text << "\n";
+    if (!std::cout.flush()) throw Error("cannot write the options to stdout");
 }
 
 run::RunSettings settingsFor(SlamCommandLine& line, int argc, char** argv) {

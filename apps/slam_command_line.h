@@ -70,7 +70,7 @@ struct SlamCommandLine {
         "",
         "extrinsics",
         "Poses of the sensors in the vehicle, instead of the recording's; lines LABEL x "
-        "y z yaw pitch roll, metres and degrees",
+        "y z yaw pitch roll, metres and degrees; LABEL imu: the IMU's",
         false,
         "",
         "FILE",

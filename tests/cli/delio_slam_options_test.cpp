@@ -31,7 +31,7 @@ TEST_F(DelioSlam, ABadCommandLineIsExit2) {
         writeText(folder_ / "c.ini", text);
         return slam({"-c", folder_ / "c.ini"});
     };
-    expectRefused(withConfig("[scan]\nmax_range = 1.5x\n"), 2, {"scan.max_range", "1.5x"});
+    expectRefused(withConfig("[scan]\nmax_range = 1.5x\n"), 2, {"c.ini", "scan.max_range", "1.5x"});
     expectRefused(withConfig("[scan]\nmax_ragne = 15\n"), 2, {"scan.max_ragne"});
     expectRefused(withConfig("max_range = 15\n"), 2, {"line 1"});
     expectRefused(withConfig("[scan]\nmax_range 15\n"), 2, {"line 2"});
@@ -168,8 +168,10 @@ TEST(PrintConfig, TakesTheOptionsThatAreGiven) {
     EXPECT_EQ(set.exitCode, 0) << set.err;
     EXPECT_NE(set.out.find("\nmax_range = 42\n"), std::string::npos) << set.out;
     EXPECT_NE(with({"--set", "scan.deskew=true"}).out.find("\ndeskew = true\n"), std::string::npos);
-    // Input and output may be named, and are left alone.
     const test::TemporaryFolder folder;
+    writeText(folder / "c.ini", "\xEF\xBB\xBF[scan]\nmax_range = 42\n");  // of some editors
+    EXPECT_EQ(with({"-c", folder / "c.ini"}).out, set.out);
+    // Input and output may be named, and are left alone.
     const fs::path out = folder / "out";
     EXPECT_EQ(with({"-i", folder / "none.rawlog", "-o", out}).out, with({}).out);
     EXPECT_FALSE(fs::exists(out));
@@ -178,5 +180,7 @@ TEST(PrintConfig, TakesTheOptionsThatAreGiven) {
         EXPECT_EQ(wrong.out, "");
         test::expectFailure(wrong, 2, {"delio-slam"});
     }
+    const Words full{"-c", "\"$0\" --print-config > /dev/full", test::toolPath("delio-slam")};
+    test::expectFailure(runTool("sh", full), 1, {"stdout"});
 }
 }  // namespace

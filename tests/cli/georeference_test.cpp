@@ -149,6 +149,8 @@ TEST_F(OnEarth, WithoutFixesNothingChanges) {
             << name;
     test::writeText(at("bad.csv"), "time,latitude\n");
     EXPECT_EQ(slam("bad", {"--gnss", at("bad.csv")}).exitCode, 1);
+    EXPECT_EQ(slam("missing", {"--gnss", at("missing.csv")}).exitCode, 1);
+    EXPECT_FALSE(fs::exists(at("missing"))) << "refused after the drive";
     EXPECT_EQ(slam("bad", {"--no-gnss", "--gnss", at("bad.csv")}).exitCode, 2);
     EXPECT_EQ(slam("bad", {"--antenna", "1,2"}).exitCode, 2);
 }

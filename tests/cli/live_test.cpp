@@ -268,6 +268,14 @@ TEST_F(Live, AFullDiskEndsTheRecordingOnly) {
     EXPECT_FALSE(fs::exists(out_ / "packets.pcap"));
 }
 
+TEST_F(Live, ARecordingReplacesNoOtherFile) {
+    const fs::path kept = folder_ / "kept.pcap";
+    test::writeText(kept, "precious");
+    expectRefused(test::runTool("delio-slam", words({"--record", kept})), 1,
+                  {"kept.pcap", "--force"});
+    EXPECT_EQ(readText(kept), "precious");
+}
+
 TEST_F(Live, APortInUse) {
     const test::UdpEnd taken;
     const std::string port = std::to_string(taken.port());
