@@ -27,8 +27,8 @@ class KdTree {
                    : tree_.knnSearch(query.data(), count, indices, squaredDistances);
     }
 
-    /** Finds the nearest column that is nearer than the root of `squared`, and sets both to it.
-     *  False where none is so near. */
+    /** Finds the nearest column, if it is nearer than the root of `squared`: sets its index and its
+     *  squared distance. Otherwise false. */
     bool nearestWithin(const Eigen::Vector3f& query, std::uint32_t& index, float& squared) const {
         if (columns_.points.cols() == 0) return false;
         const float most = squared;

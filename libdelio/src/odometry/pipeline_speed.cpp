@@ -8,8 +8,8 @@ constexpr double kVertical = 0.7;  // of a unit axis
 constexpr double kRooms = 0.5;     // scale of places that no vehicle drives through, at most
 }  // namespace
 
-/** Counts slow scans in a row of which many points are not in the map. Of a sensor that stands, or
- *  nearly so, nearly all are: it may drive among vehicles of its own speed. */
+/** Counts slow scans in a row of which many points do not lie on the map. A sensor that stands sees
+ *  nearly all of it again; this one may drive among vehicles of its own speed. */
 void PlaneOdometry::countMisfits(const PlaneEstimate& estimate, double inlierRatio,
                                  double since_s) {
     constexpr double kSlow_mps = 1, kStanding = 0.75;

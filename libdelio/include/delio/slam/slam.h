@@ -112,7 +112,7 @@ class Slam {
     History history_;
     io::Trajectory trajectory_;
     std::size_t nodes_ = 0;  //!< scans that were taken
-    /** Sensor in the vehicle at the last scan that was taken. */
-    std::deque<Eigen::Isometry3d> sensorPoses_;  //!< of the latest scans
+    /** Sensor in the vehicle at each of the latest scans. */
+    std::deque<Eigen::Isometry3d> sensorPoses_;
 };
 }  // namespace delio
